@@ -1,0 +1,22 @@
+# Every outside package that Tufa needs, found in one place.
+#
+# TBB comes first and by its own package config: the folder of Debian's FindOpenVDB.cmake also holds
+# a FindTBB.cmake that would shadow it. OpenVDB is found by cmake/FindOpenVDB.cmake of this project,
+# because Debian installs OpenVDB's module outside CMake's module path.
+
+find_package(Threads REQUIRED)
+find_package(TBB CONFIG REQUIRED)
+find_package(OpenVDB 8.0 REQUIRED)
+find_package(nlohmann_json 3.10 REQUIRED)
+
+if(TUFA_BUILD_CHECK)
+  # CGAL warns about missing build types and sets flags of its own unless told not to.
+  set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+  find_package(CGAL 5.5 REQUIRED)
+endif()
+if(TUFA_BUILD_TOOLS)
+  find_package(CLI11 2.1 REQUIRED)
+endif()
+if(TUFA_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+endif()

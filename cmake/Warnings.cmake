@@ -1,0 +1,11 @@
+# tufa_warnings: a private interface target with the warnings that all own code is built with.
+
+add_library(tufa_warnings INTERFACE)
+target_compile_options(tufa_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align -Woverloaded-virtual
+  -Wold-style-cast -Wconversion -Wno-sign-conversion
+  # The same bytes everywhere: no fused multiply-add that one compiler makes and another does not.
+  -ffp-contract=off)
+if(TUFA_WARNINGS_AS_ERRORS)
+  target_compile_options(tufa_warnings INTERFACE -Werror)
+endif()

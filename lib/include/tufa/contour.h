@@ -1,0 +1,93 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
+#include <vector>
+
+namespace tufa {
+
+/// Which side of the isovalue is inside the solid.
+enum class Inside {
+  Auto,   ///< below for level sets, above for fog volumes; other grids: the side without background
+  Below,  ///< values below the isovalue are inside (signed distance fields)
+  Above,  ///< values above the isovalue are inside (densities)
+};
+
+/// How a cell face whose corners alternate inside, outside, inside, outside is joined. Every rule
+/// gives a closed 2-manifold; they differ in which thin links they keep.
+enum class Ambiguity {
+  Separate,    ///< inside corners are kept apart
+  Join,        ///< inside corners are joined
+  Asymptotic,  ///< by the bilinear interpolant's saddle value (Nielson and Hamann 1991)
+  Chord,       ///< by the value where the chords between opposite crossings meet
+};
+
+/// Where the normals of the vertices come from.
+enum class Normals {
+  Gradient,  ///< the field's gradient at the crossings around the vertex
+  Faces,     ///< the faces around the vertex, weighted by their angle
+  None,      ///< no normals
+};
+
+/// What to do with NaN and infinite samples.
+enum class NonFinite {
+  Refuse,   ///< throw Error with their count and the first coordinate
+  Outside,  ///< treat them as outside
+};
+
+/// Options of contour(). The defaults suit signed distance fields and densities alike.
+struct ContourOptions {
+  /// Value of the field on the surface, in the grid's own unit. Unset: 0 for level sets, else half
+  /// way between the least and the greatest value.
+  std::optional<double> isovalue;
+  Inside inside = Inside::Auto;
+  Ambiguity ambiguity = Ambiguity::Separate;
+  Normals normals = Normals::Gradient;
+  NonFinite nonFinite = NonFinite::Refuse;
+  /// Close the surface where it runs out of a level set's band (a clipped level set) instead of
+  /// leaving an open boundary there.
+  bool cap = false;
+  /// Most threads to use; 0: as many as the caller's TBB arena allows. Never changes the result.
+  int threads = 0;
+  Progress progress;  ///< called from the calling thread; may cancel
+};
+
+/// Wall-clock seconds that one stage took.
+struct StageTime {
+  std::string stage;
+  double seconds = 0;
+};
+
+/// What contour() did, beside the mesh.
+struct ContourReport {
+  double isovalue = 0;            ///< as used
+  bool insideIsBelow = true;      ///< as used
+  bool distanceField = false;     ///< the field has unit gradient: creases were restored from it
+  std::size_t activeVoxels = 0;   ///< of the grid
+  std::size_t nonFiniteValues = 0;  ///< treated as outside
+  std::size_t surfaceCells = 0;   ///< cells of eight samples that the surface passes
+  std::size_t creaseCells = 0;    ///< of these, cells whose vertex was placed on a crease or corner
+  std::size_t faceFlips = 0;      ///< ambiguous faces joined against the rule to stay manifold
+  std::size_t cutEdges = 0;       ///< sign changes at the edge of the data, left open
+  std::vector<StageTime> stages;  ///< in the order they ran
+};
+
+/// Meshes the surface of `grid` at the isovalue: dual contouring with one vertex for each surface
+/// component of a cell and one quad for each crossed lattice edge.
+///
+/// The mesh is a closed, consistently oriented 2-manifold whenever the surface does not meet the edge
+/// of the data, in world space, outward by the right-hand rule under any affine transform. A grid
+/// without surface gives an empty mesh. The result is the same, byte for byte, for any number of
+/// threads. FloatGrid and DoubleGrid are supported.
+///
+/// Throws Error: UnsupportedGrid (other value types, frustum transforms), NonFiniteValues,
+/// InvalidArgument (isovalue not finite), LimitExceeded (2^32 vertices or more), Cancelled.
+[[nodiscard]] Mesh contour(const openvdb::GridBase& grid, const ContourOptions& options = {},
+                           ContourReport* report = nullptr);
+
+}  // namespace tufa

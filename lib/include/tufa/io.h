@@ -1,0 +1,72 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
+#include <vector>
+
+namespace tufa {
+
+/// Options of write().
+struct WriteOptions {
+  std::string name = "mesh";  ///< of the object inside formats that name objects (.obj, .glb)
+  Progress progress;
+};
+
+/// Writes a mesh in the format that the file name's ending says: .ply (binary), .obj, .stl (binary),
+/// .off or .glb. Quads stay quads in .ply, .obj and .off.
+///
+/// .ply and .obj keep double precision where single precision would lose more than a millionth of
+/// the mesh's extent; .glb stores positions relative to the node's translation; .stl is single
+/// precision always. The file appears whole or not at all: it is written under a temporary name in
+/// the same folder and renamed.
+///
+/// Throws Error: UnwritableFile, InvalidArgument (unknown ending), LimitExceeded (more than the
+/// format can hold), Cancelled.
+void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options = {});
+
+/// Reads a mesh: .ply (text or binary), .obj, .stl (text or binary), .off or .glb. Polygons with more
+/// than four corners are fanned; .stl vertices at equal positions are shared. Throws Error:
+/// UnreadableFile with the place where reading failed, InvalidArgument (unknown ending).
+[[nodiscard]] Mesh readMesh(const std::filesystem::path& path);
+
+/// What a .vdb file says of one grid.
+struct GridInfo {
+  std::string name;
+  std::string valueType;    ///< "float", "double", "vec3s", ...
+  std::string gridClass;    ///< "level set", "fog volume", "unknown", ...
+  std::string transform;    ///< "uniform scale", "affine", "frustum", ...
+  double voxelSize[3] = {0, 0, 0};  ///< world length of a voxel's edges
+  std::size_t activeVoxels = 0;
+  std::size_t leaves = 0;
+  std::size_t tiles = 0;    ///< active tiles
+  std::size_t memoryBytes = 0;
+  int boundsMin[3] = {0, 0, 0};     ///< first index of the active voxels' bounding box
+  int boundsMax[3] = {0, 0, 0};     ///< last index of it
+  double background = 0;
+  std::optional<double> minValue;   ///< of the active values that are finite
+  std::optional<double> maxValue;
+  std::size_t nonFiniteValues = 0;  ///< NaN or infinite active values
+  bool meshable = false;            ///< contour() takes it
+  std::string whyNot;               ///< if not, the reason
+};
+
+/// Describes every grid of a .vdb file. Throws Error(UnreadableFile).
+[[nodiscard]] std::vector<GridInfo> describeGrids(const std::filesystem::path& path);
+
+/// Reads one grid of a .vdb file: by name, or, without one, the first level set that can be meshed,
+/// else the first grid that can be meshed. Throws Error: UnreadableFile, UnknownGrid (the message
+/// lists the names there are), UnsupportedGrid (nothing in the file can be meshed).
+[[nodiscard]] openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
+                                              const std::optional<std::string>& name = {});
+
+/// Writes grids to a .vdb file, whole or not at all. Throws Error(UnwritableFile).
+void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
+                const std::filesystem::path& path);
+
+}  // namespace tufa

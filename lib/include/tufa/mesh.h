@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tufa {
+
+/// A point in the grid's world space. Double, so that a volume far from the origin keeps its detail.
+/// Default construction leaves the coordinates unset: large arrays are filled in parallel.
+struct Position {
+  double x, y, z;
+  Position() {}  // NOLINT(modernize-use-equals-default): "= default" would zero every array
+  Position(double px, double py, double pz) : x(px), y(py), z(pz) {}
+  friend bool operator==(const Position&, const Position&) = default;
+};
+
+/// A unit vector in world space, pointing outward.
+struct Normal {
+  float x, y, z;
+  Normal() {}  // NOLINT(modernize-use-equals-default)
+  Normal(float nx, float ny, float nz) : x(nx), y(ny), z(nz) {}
+  friend bool operator==(const Normal&, const Normal&) = default;
+};
+
+/// Names an element of Mesh::positions.
+using VertexIndex = std::uint32_t;
+
+/// Three vertices, counter-clockwise seen from outside.
+struct Triangle {
+  std::array<VertexIndex, 3> vertices;
+  Triangle() {}  // NOLINT(modernize-use-equals-default)
+  Triangle(VertexIndex a, VertexIndex b, VertexIndex c) : vertices{a, b, c} {}
+  friend bool operator==(const Triangle&, const Triangle&) = default;
+};
+
+/// Four vertices, counter-clockwise seen from outside. The better of the two ways to split it is
+/// always the diagonal from vertices[0] to vertices[2], so a program that fans polygons from their
+/// first vertex shows the surface as it was meant.
+struct Quad {
+  std::array<VertexIndex, 4> vertices;
+  Quad() {}  // NOLINT(modernize-use-equals-default)
+  Quad(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) : vertices{a, b, c, d} {}
+  friend bool operator==(const Quad&, const Quad&) = default;
+};
+
+/// An indexed polygon mesh. Plain data, no hidden state.
+struct Mesh {
+  std::vector<Position> positions;  ///< world space
+  std::vector<Normal> normals;      ///< empty, or one for each position
+  std::vector<Quad> quads;
+  std::vector<Triangle> triangles;
+
+  /// Triangles once every quad is split in two.
+  [[nodiscard]] std::size_t triangleCount() const { return triangles.size() + 2 * quads.size(); }
+};
+
+/// All faces as triangles: the mesh's own first, then two for each quad, split from vertices[0] to
+/// vertices[2].
+[[nodiscard]] std::vector<Triangle> triangulate(const Mesh& mesh);
+
+}  // namespace tufa

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
+#include <vector>
+
+namespace tufa {
+
+/// Demonstration volumes with a known truth. All but Noise and Fog are signed distance fields.
+enum class Shape {
+  Sphere,   ///< radius 1
+  Torus,    ///< radii 1 and 0.35, tilted
+  Box,      ///< rotated box with sharp edges
+  Bracket,  ///< a mechanical part: plates, a rib, through holes; convex, concave and curved creases
+  Gyroid,   ///< thin shell of high genus inside a sphere or cube
+  Terrain,  ///< a hilly heightfield slab, closed below
+  Noise,    ///< white noise: every configuration of cells there is
+  Fog,      ///< a soft density
+};
+
+/// Options of makeShape().
+struct ShapeOptions {
+  double voxelSize = 0.02;   ///< world units; every shape is about 2 units in size
+  double halfWidth = 3;      ///< of the narrow band, in voxels, 1 at least
+  std::uint32_t seed = 1;    ///< of the random shapes
+  int threads = 0;
+  Progress progress;
+};
+
+/// The shape of that name ("sphere", "torus", ...), if there is one.
+[[nodiscard]] std::optional<Shape> shapeByName(std::string_view name);
+
+/// Names of all shapes, in the order of the enum.
+[[nodiscard]] const std::array<std::string_view, 8>& shapeNames();
+
+/// Samples the shape on a grid of the given voxel size. Noise is a dense cube of 64^3 random samples
+/// with a border of outside samples. Throws Error(InvalidArgument) for a voxel size or half width
+/// that is not positive, or so small that the grid's coordinates overflow.
+[[nodiscard]] openvdb::FloatGrid::Ptr makeShape(Shape shape, const ShapeOptions& options = {});
+
+/// Exact signed distance from a world point to the true shape, negative inside; for Gyroid and
+/// Terrain the field that defines them, whose zero set is the shape. Throws
+/// Error(InvalidArgument) for Noise and Fog, which have no such truth.
+[[nodiscard]] double shapeDistance(Shape shape, const Position& point);
+
+/// Points along the true creases of Box and Bracket, at most `spacing` apart; empty for the others.
+[[nodiscard]] std::vector<Position> shapeCreasePoints(Shape shape, double spacing);
+
+}  // namespace tufa

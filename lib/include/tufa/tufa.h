@@ -1,0 +1,11 @@
+#pragma once
+
+// The whole of tufa::tufa. The checker, <tufa/check.h>, is apart: it links CGAL under the GPL.
+#include <tufa/contour.h>
+#include <tufa/error.h>
+#include <tufa/io.h>
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
+#include <tufa/shapes.h>
+#include <tufa/version.h>
+#include <tufa/voxelize.h>

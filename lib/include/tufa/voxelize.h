@@ -1,0 +1,23 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
+
+namespace tufa {
+
+/// Options of voxelize().
+struct VoxelizeOptions {
+  double voxelSize = 0;     ///< world units, must be given
+  double halfWidth = 3;     ///< of the narrow band, in voxels, 1 at least
+  int threads = 0;
+  Progress progress;
+};
+
+/// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. The mesh should be closed;
+/// an open one gives an unsigned shell that OpenVDB decides the inside of. Throws Error:
+/// InvalidArgument (voxel size, half width, empty mesh), Cancelled.
+[[nodiscard]] openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options);
+
+}  // namespace tufa

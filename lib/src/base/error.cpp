@@ -1,0 +1,11 @@
+#include <tufa/error.h>
+#include <tufa/version.h>
+
+namespace tufa {
+
+Error::Error(ErrorCode code, const std::string& message)
+    : std::runtime_error(message), code_(code) {}
+
+const char* version() noexcept { return TUFA_VERSION; }
+
+}  // namespace tufa

@@ -1,0 +1,17 @@
+#include <tufa/mesh.h>
+
+namespace tufa {
+
+std::vector<Triangle> triangulate(const Mesh& mesh) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh.triangleCount());
+  triangles = mesh.triangles;
+  for (const Quad& quad : mesh.quads) {
+    const auto& v = quad.vertices;
+    triangles.emplace_back(v[0], v[1], v[2]);
+    triangles.emplace_back(v[0], v[2], v[3]);
+  }
+  return triangles;
+}
+
+}  // namespace tufa
