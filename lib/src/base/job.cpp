@@ -1,0 +1,71 @@
+#include "base/job.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <tufa/error.h>
+#include <utility>
+
+namespace tufa::base {
+
+Job::Job(int threads, Progress progress) : threads_(threads), progress_(std::move(progress)) {
+  if (threads < 0) {
+    throw Error(ErrorCode::InvalidArgument,
+                "threads is " + std::to_string(threads) + ", must be 0 (all) or more");
+  }
+}
+
+void Job::run(const std::function<void()>& work) {
+  if (threads_ == 0) {
+    work();
+    return;
+  }
+  tbb::task_arena arena(threads_);
+  arena.execute(work);
+}
+
+void Job::closeStage() {
+  if (times_.empty()) return;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - stageStart_;
+  times_.back().seconds = elapsed.count();
+}
+
+void Job::beginStage(std::string name, double endFraction) {
+  closeStage();
+  times_.push_back({std::move(name), 0});
+  stageStart_ = std::chrono::steady_clock::now();
+  stageBegin_ = stageEnd_;
+  stageEnd_ = endFraction;
+  report(0, 1);
+}
+
+std::vector<StageTime> Job::finish() {
+  closeStage();
+  stageBegin_ = stageEnd_;
+  report(1, 1);
+  return std::exchange(times_, {});
+}
+
+void Job::report(std::size_t done, std::size_t count) {
+  if (!progress_) return;
+  const double inStage = static_cast<double>(done) / static_cast<double>(count);
+  lastFraction_ = std::max(lastFraction_, stageBegin_ + (stageEnd_ - stageBegin_) * inStage);
+  const std::string_view stage = times_.empty() ? std::string_view() : times_.back().stage;
+  if (!progress_(stage, lastFraction_)) cancelled_ = true;
+  if (cancelled_) throw Error(ErrorCode::Cancelled, "cancelled by the caller");
+}
+
+void Job::forRanges(std::size_t count, std::size_t grain, const RangeBody& body) {
+  std::atomic<std::size_t> done{0};
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      if (cancelled_.load(std::memory_order_relaxed)) return;
+                      body(range.begin(), range.end());
+                      done.fetch_add(range.size(), std::memory_order_relaxed);
+                      if (std::this_thread::get_id() == caller_) report(done, count);
+                    });
+}
+
+}  // namespace tufa::base

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <thread>
+#include <tufa/contour.h>
+#include <tufa/progress.h>
+#include <vector>
+
+namespace tufa::base {
+
+/// One long call: its threads, its progress and its stage times. The only door to TBB.
+///
+/// Loops hand out index ranges; bodies write to places of their own only, so that results do not
+/// depend on the number of threads.
+class Job {
+ public:
+  using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
+
+  /// At most `threads` threads, 0: as many as the caller's arena has. `progress` may be empty.
+  Job(int threads, Progress progress);
+
+  /// Runs `work` under the thread limit. Loops started inside it share that limit.
+  void run(const std::function<void()>& work);
+
+  /// Ends the stage before and begins one that reaches to `endFraction` of the whole call.
+  void beginStage(std::string name, double endFraction);
+
+  /// Ends the last stage and hands out all times.
+  std::vector<StageTime> finish();
+
+  /// Calls body(begin, end) over disjoint ranges that cover [0, count), in parallel, each of at
+  /// least `grain` indices where there are so many. Throws Error(Cancelled) when asked to stop.
+  void forRanges(std::size_t count, std::size_t grain, const RangeBody& body);
+
+ private:
+  void report(std::size_t done, std::size_t count);
+  void closeStage();
+
+  int threads_;
+  Progress progress_;
+  std::atomic<bool> cancelled_{false};
+  std::thread::id caller_ = std::this_thread::get_id();
+  std::vector<StageTime> times_;
+  std::chrono::steady_clock::time_point stageStart_{};
+  double stageBegin_ = 0;
+  double stageEnd_ = 0;
+  double lastFraction_ = 0;
+};
+
+
+}  // namespace tufa::base
