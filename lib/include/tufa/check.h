@@ -2,75 +2,95 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <tufa/mesh.h>
-#include <tufa/progress.h>
 #include <vector>
 
 namespace tufa {
 
-/// One connected piece of the surface.
+/// One connected piece of the surface: vertices that a chain of faces joins, be it at a vertex.
 struct CheckComponent {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   long long eulerCharacteristic = 0;  ///< V - E + F
-  /// Handles: (2 - eulerCharacteristic) / 2; unset unless the piece is a closed 2-manifold.
+  /// Handles: (2 - eulerCharacteristic) / 2; unset unless the piece is a closed, oriented
+  /// 2-manifold.
   std::optional<long long> genus;
 };
 
 /// What check() found. Everything counts triangles, quads being split from vertex 0 to vertex 2.
+///
+/// Invalid and collapsed faces are counted and then left out: edges, vertices, boundaries, pieces,
+/// area and volume are those of the other faces.
 struct CheckReport {
-  std::size_t vertices = 0;  ///< used by a face
-  std::size_t triangles = 0;
-  std::size_t unusedVertices = 0;       ///< positions that no face uses
-  std::size_t boundaryEdges = 0;        ///< edges of one triangle
-  std::size_t boundaryLoops = 0;        ///< closed curves that the boundary edges form
-  std::size_t nonManifoldEdges = 0;     ///< edges of three or more triangles
-  std::size_t nonManifoldVertices = 0;  ///< vertices whose triangles are not one fan
-  std::size_t misorientedEdges = 0;     ///< edges that two triangles run through in one direction
-  std::size_t degenerateFaces = 0;      ///< a repeated index, or three points on a line (exact)
-  std::size_t duplicateFaces = 0;       ///< triangles with the vertex set of an earlier one
-  std::size_t invalidFaces = 0;         ///< an index out of range, or a position that is not finite
-  /// Pairs of triangles that meet elsewhere than in a shared vertex or edge (exact predicates);
-  /// unset if it was not asked for.
+  std::size_t vertices = 0;        ///< used by a face
+  std::size_t triangles = 0;       ///< all of them, the faces that are left out included
+  std::size_t unusedVertices = 0;  ///< positions that no face uses
+  std::size_t boundaryEdges = 0;   ///< edges of one triangle
+  /// Closed curves that the boundary edges form; curves that touch in a vertex count as one.
+  std::size_t boundaryLoops = 0;
+  std::size_t nonManifoldEdges = 0;  ///< edges of three or more triangles
+  /// Vertices whose triangles are not one open or closed fan; the ends of a non-manifold edge too.
+  std::size_t nonManifoldVertices = 0;
+  std::size_t misorientedEdges = 0;  ///< edges of two triangles, both of which run the same way
+  std::size_t degenerateFaces = 0;   ///< a repeated index, or three points on a line (exact)
+  std::size_t collapsedFaces = 0;    ///< of these, the faces with a repeated index
+  std::size_t duplicateFaces = 0;    ///< triangles with the vertex set of an earlier one
+  std::size_t invalidFaces = 0;      ///< an index out of range, or a position that is not finite
+  /// Pairs of triangles that meet elsewhere than in the vertices or the edge whose indices they
+  /// share (exact predicates). Degenerate faces are in no pair; duplicates are pairs. Unset if it
+  /// was not asked for.
   std::optional<std::size_t> selfIntersectingPairs;
   std::vector<CheckComponent> components;  ///< largest first
   long long eulerCharacteristic = 0;       ///< of the whole mesh
   double area = 0;                         ///< world units squared
-  double volume = 0;                       ///< world units cubed, by the divergence theorem
-  double smallestAngleDegrees = 0;         ///< of all corners of all triangles
-  double shareUnder10Degrees = 0;          ///< triangles whose smallest angle is under 10 degrees
+  /// World units cubed, by the divergence theorem: positive if normals point out. Means little
+  /// unless the surface is closed and oriented.
+  double volume = 0;
+  double smallestAngleDegrees = 0;  ///< of all corners of all triangles
+  double shareUnder10Degrees = 0;  ///< share, 0 to 1, of triangles whose smallest angle is under 10
 
-  bool closed = false;         ///< no boundary edge, at least one face
-  bool manifold = false;       ///< no non-manifold edge or vertex
-  bool oriented = false;       ///< no misoriented edge
-  bool outward = false;        ///< closed, oriented, and normals point away from the solid
-  bool boundsVolume = false;   ///< CGAL's does_bound_a_volume: nested pieces alternate in direction
-  double seconds = 0;
+  bool closed = false;    ///< no boundary edge, at least one face
+  bool manifold = false;  ///< no non-manifold edge or vertex
+  bool oriented = false;  ///< no misoriented edge
+  /// Closed, oriented, and normals point away from the solid: out on outermost pieces, into the
+  /// cavity on pieces inside those, and so on.
+  bool outward = false;
+  /// CGAL's does_bound_a_volume: the directions of nested pieces alternate; a mesh turned inside
+  /// out as a whole bounds a volume too. False unless the mesh is closed, manifold, oriented and
+  /// was searched for intersecting pairs and has none: CGAL promises nothing for other meshes.
+  /// Meshes of more than 1000 pieces are answered by the test behind `outward`, as CGAL compares
+  /// pieces in pairs.
+  bool boundsVolume = false;
+  double seconds = 0;  ///< wall clock
 
-  /// Closed, manifold, oriented, outward, free of invalid, degenerate-by-index and duplicate faces.
+  /// Closed, manifold, oriented, outward, and free of invalid, collapsed and duplicate faces.
   [[nodiscard]] bool watertight() const;
 };
 
 /// Options of check().
 struct CheckOptions {
   bool selfIntersections = true;  ///< search for intersecting pairs
-  bool boundsVolume = true;       ///< ask CGAL whether the mesh bounds a volume
+  bool boundsVolume = true;       ///< ask CGAL whether the mesh bounds a volume; needs the search
   /// Weld vertices at bit-equal positions first: for formats without shared indices, such as STL.
   bool weld = false;
-  int threads = 0;                ///< most threads; 0: as many as the TBB arena allows
-  Progress progress;
+  int threads = 0;  ///< most threads; 0: as many as the TBB arena allows. Never changes the result.
+  Progress progress = {};  ///< called from the calling thread; may cancel
 };
 
 /// Answers whether a mesh is closed, 2-manifold, oriented, free of self-intersections, and what its
-/// topology is. Takes any mesh, broken ones too: what is wrong is counted, never thrown.
+/// topology is. Takes any mesh, broken ones too: what is wrong is counted, never thrown. Throws
+/// Error only for the call itself: InvalidArgument (threads), LimitExceeded (2^32 triangles),
+/// Cancelled.
 ///
 /// Uses CGAL (GPL): lives in the target tufa::check, apart from tufa::tufa.
 [[nodiscard]] CheckReport check(const Mesh& mesh, const CheckOptions& options = {});
 
-/// Distances in voxels, where a voxel is the cube root of its world volume.
+/// Distances in voxels, where a voxel is the cube root of its world volume. Infinite where there
+/// are samples but nothing to measure to.
 struct DistanceSummary {
   std::size_t samples = 0;
   double largest = 0;
@@ -89,10 +109,10 @@ struct DistanceReport {
 
 /// Options of checkAgainst().
 struct DistanceOptions {
-  std::optional<double> isovalue;  ///< unset: as contour() chooses
-  int samplesPerEdge = 3;          ///< each triangle is sampled on a lattice with that many a side
+  std::optional<double> isovalue = {};  ///< unset: as contour() chooses
+  int samplesPerEdge = 3;  ///< each triangle is sampled on a lattice with that many a side
   int threads = 0;
-  Progress progress;
+  Progress progress = {};  ///< called from the calling thread; may cancel
 };
 
 /// Measures how far the mesh is from the trilinear isosurface of `grid`, both ways. Throws Error as

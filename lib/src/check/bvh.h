@@ -1,0 +1,181 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "base/job.h"
+
+namespace tufa::checks {
+
+/// An axis-aligned box with its faces.
+struct Box {
+  openvdb::Vec3d lower;
+  openvdb::Vec3d upper;
+
+  /// A box that holds nothing and grows from the first point.
+  static Box empty() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {openvdb::Vec3d(kInfinity), openvdb::Vec3d(-kInfinity)};
+  }
+  void add(const openvdb::Vec3d& point) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], point[axis]);
+      upper[axis] = std::max(upper[axis], point[axis]);
+    }
+  }
+  void add(const Box& other) {
+    add(other.lower);
+    add(other.upper);
+  }
+  [[nodiscard]] bool meets(const Box& other) const {
+    return lower[0] <= other.upper[0] && other.lower[0] <= upper[0] && lower[1] <= other.upper[1] &&
+           other.lower[1] <= upper[1] && lower[2] <= other.upper[2] && other.lower[2] <= upper[2];
+  }
+  [[nodiscard]] double distanceSquared(const openvdb::Vec3d& point) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double d = std::max({lower[axis] - point[axis], point[axis] - upper[axis], 0.0});
+      sum += d * d;
+    }
+    return sum;
+  }
+};
+
+/// A binary tree of boxes over any items that have boxes. Built from the Morton order of their
+/// centres, so building is one parallel sort and one pass; the same for any number of threads.
+///
+/// Nodes lie in preorder and every node halves its leaves, so children need no pointers: a node
+/// with n leaves is followed by its left child (n/2 leaves), and 2*(n/2) nodes later by its right
+/// child.
+class Bvh {
+ public:
+  static constexpr std::size_t kLeafSize = 4;
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  /// `boxes[i]` is the box of item i. At most 2^32 - 2 items.
+  Bvh(std::vector<Box> boxes, base::Job& job);
+
+  [[nodiscard]] bool empty() const { return items_.empty(); }
+  [[nodiscard]] std::size_t leafCount() const {
+    return (items_.size() + kLeafSize - 1) / kLeafSize;
+  }
+
+  /// Calls visit(a, b) for items whose boxes meet, a being in leaf `leaf`. Over all leaves, each
+  /// pair of items is visited once.
+  template <class Visit>
+  void pairsOfLeaf(std::size_t leaf, const Visit& visit) const {
+    Box own = Box::empty();
+    const std::size_t ownBegin = leaf * kLeafSize;
+    const std::size_t ownEnd = std::min(ownBegin + kLeafSize, items_.size());
+    for (std::size_t i = ownBegin; i < ownEnd; ++i) own.add(boxes_[i]);
+    const auto enter = [&](const Node& node) {
+      return node.firstLeaf + node.leaves > leaf && boxOf(node).meets(own);
+    };
+    walk(enter, [&](std::size_t j) {
+      for (std::size_t i = ownBegin; i < ownEnd && i < j; ++i) {
+        if (boxes_[i].meets(boxes_[j])) visit(items_[i], items_[j]);
+      }
+    });
+  }
+
+  /// Calls visit(item) for each item whose box is met by the ray from `point` towards +z.
+  template <class Visit>
+  void itemsAbove(const openvdb::Vec3d& point, const Visit& visit) const {
+    const auto met = [&](const Box& box) {
+      return box.lower[0] <= point[0] && point[0] <= box.upper[0] && box.lower[1] <= point[1] &&
+             point[1] <= box.upper[1] && box.upper[2] >= point[2];
+    };
+    walk([&](const Node& node) { return met(boxOf(node)); },
+         [&](std::size_t i) {
+           if (met(boxes_[i])) visit(items_[i]);
+         });
+  }
+
+  /// The item of least distanceSquared(item) among those nearer than `best`; kNone if there is
+  /// none. `best` becomes the squared distance found.
+  template <class DistanceSquared>
+  std::uint32_t nearest(const openvdb::Vec3d& point, double& best,
+                        const DistanceSquared& distanceSquared) const {
+    std::uint32_t found = kNone;
+    if (empty()) return found;
+    std::array<std::pair<Node, double>, kMaxDepth> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {root(), boxOf(root()).distanceSquared(point)};
+    while (depth > 0) {
+      const auto [node, bound] = stack[--depth];
+      if (bound >= best) continue;
+      if (node.leaves == 1) {
+        const std::size_t end = std::min((node.firstLeaf + 1) * kLeafSize, items_.size());
+        for (std::size_t i = node.firstLeaf * kLeafSize; i < end; ++i) {
+          if (boxes_[i].distanceSquared(point) >= best) continue;
+          const double d = distanceSquared(items_[i]);
+          if (d < best) {
+            best = d;
+            found = items_[i];
+          }
+        }
+        continue;
+      }
+      std::pair<Node, double> near{left(node), boxOf(left(node)).distanceSquared(point)};
+      std::pair<Node, double> far{right(node), boxOf(right(node)).distanceSquared(point)};
+      if (far.second < near.second) std::swap(near, far);
+      stack[depth++] = far;
+      stack[depth++] = near;
+    }
+    return found;
+  }
+
+ private:
+  // Every level halves at most 2^30 leaves, and each leaves one sibling on the stack.
+  static constexpr std::size_t kMaxDepth = 64;
+
+  struct Node {
+    std::size_t index;
+    std::size_t firstLeaf;
+    std::size_t leaves;
+  };
+  [[nodiscard]] Node root() const { return {0, 0, leafCount()}; }
+  [[nodiscard]] static Node left(const Node& node) {
+    return {node.index + 1, node.firstLeaf, node.leaves / 2};
+  }
+  [[nodiscard]] static Node right(const Node& node) {
+    const std::size_t half = node.leaves / 2;
+    return {node.index + 2 * half, node.firstLeaf + half, node.leaves - half};
+  }
+  [[nodiscard]] const Box& boxOf(const Node& node) const { return nodes_[node.index]; }
+
+  void fill(const Node& node);
+
+  /// Calls visit(i) for the places i of all items in leaves that `enter` lets pass.
+  template <class Enter, class Visit>
+  void walk(const Enter& enter, const Visit& visit) const {
+    if (empty()) return;
+    std::array<Node, kMaxDepth> stack;
+    std::size_t depth = 0;
+    stack[depth++] = root();
+    while (depth > 0) {
+      const Node node = stack[--depth];
+      if (!enter(node)) continue;
+      if (node.leaves > 1) {
+        stack[depth++] = right(node);
+        stack[depth++] = left(node);
+        continue;
+      }
+      const std::size_t end = std::min((node.firstLeaf + 1) * kLeafSize, items_.size());
+      for (std::size_t i = node.firstLeaf * kLeafSize; i < end; ++i) visit(i);
+    }
+  }
+
+  std::vector<std::uint32_t> items_;  ///< in Morton order
+  std::vector<Box> boxes_;            ///< of items_
+  std::vector<Box> nodes_;            ///< in preorder
+};
+
+}  // namespace tufa::checks

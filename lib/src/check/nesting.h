@@ -1,0 +1,24 @@
+#pragma once
+
+#include "base/job.h"
+#include "check/bvh.h"
+#include "check/faces.h"
+#include "check/topology.h"
+
+namespace tufa::checks {
+
+/// How the directions of the pieces of a closed, oriented mesh fit their nesting.
+struct Nesting {
+  /// Outermost pieces face outward, and directions alternate from each piece to those inside it.
+  bool outward = false;
+  /// The same, or all of it turned inside out: the pieces bound one set of solids.
+  bool alternates = false;
+};
+
+/// Finds for each piece how many others hold it, by a vertical ray from one of its vertices
+/// (exact), and its direction by the sign of its volume. Where pieces intersect the answer is the
+/// one for that vertex.
+[[nodiscard]] Nesting studyNesting(const Faces& faces, const Pieces& pieces, const Bvh& tree,
+                                   base::Job& job);
+
+}  // namespace tufa::checks
