@@ -1,4 +1,5 @@
-# Finds OpenVDB and defines OpenVDB::openvdb. Needs TBB::tbb, found before.
+# Finds OpenVDB and defines OpenVDB::openvdb. Needs TBB::tbb, found before. OpenVDB's headers use
+# half floats of Imath, so programs link that too.
 #
 # OpenVDB_ROOT or CMAKE_PREFIX_PATH point it at an installation outside the system folders.
 
@@ -22,10 +23,12 @@ find_package_handle_standard_args(OpenVDB
   REQUIRED_VARS OpenVDB_LIBRARY OpenVDB_INCLUDE_DIR
   VERSION_VAR OpenVDB_VERSION)
 
+find_package(Imath CONFIG QUIET)
+
 if(OpenVDB_FOUND AND NOT TARGET OpenVDB::openvdb)
   add_library(OpenVDB::openvdb UNKNOWN IMPORTED)
   set_target_properties(OpenVDB::openvdb PROPERTIES
     IMPORTED_LOCATION ${OpenVDB_LIBRARY}
     INTERFACE_INCLUDE_DIRECTORIES ${OpenVDB_INCLUDE_DIR}
-    INTERFACE_LINK_LIBRARIES "TBB::tbb;Threads::Threads")
+    INTERFACE_LINK_LIBRARIES "TBB::tbb;Threads::Threads;$<TARGET_NAME_IF_EXISTS:Imath::Imath>")
 endif()

@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cmath>
 #include <optional>
 #include <tufa/contour.h>
 
@@ -12,6 +13,12 @@ struct IsoChoice {
   double isovalue = 0;
   bool insideIsBelow = true;
 };
+
+/// Whether a value is inside. A value on the isovalue, NaN or an infinite one is outside.
+[[nodiscard]] inline bool isInside(double value, const IsoChoice& iso) {
+  if (!std::isfinite(value)) return false;
+  return iso.insideIsBelow ? value < iso.isovalue : value > iso.isovalue;
+}
 
 /// Settles what the caller left open. Isovalue: 0 for level sets, else half way between the least and
 /// the greatest finite value, background included. Inside: below for level sets, above for fog

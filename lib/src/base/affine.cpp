@@ -1,0 +1,38 @@
+#include "base/affine.h"
+
+#include <cmath>
+
+namespace tufa::base {
+
+Affine::Affine(const openvdb::math::Transform& transform) {
+  const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0));
+  openvdb::math::Mat3d linear;
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d unit(0);
+    unit[axis] = 1;
+    linear.setCol(axis, transform.indexToWorld(unit) - origin);
+  }
+  const double size = std::cbrt(std::abs(linear.det()));
+  const openvdb::math::Mat3d inverse = linear.inverse();
+  for (int i = 0; i < 3; ++i) {
+    t_[i] = origin[i];
+    for (int j = 0; j < 3; ++j) {
+      m_[i][j] = linear(i, j);
+      // The inverse transpose, scaled to the size of a rotation so that single precision serves.
+      normals_[i][j] = static_cast<float>(inverse(j, i) * size);
+    }
+  }
+  mirrored_ = linear.det() < 0;
+}
+
+Normal Affine::normal(float gx, float gy, float gz) const {
+  const float x = normals_[0][0] * gx + normals_[0][1] * gy + normals_[0][2] * gz;
+  const float y = normals_[1][0] * gx + normals_[1][1] * gy + normals_[1][2] * gz;
+  const float z = normals_[2][0] * gx + normals_[2][1] * gy + normals_[2][2] * gz;
+  const float squared = x * x + y * y + z * z;
+  if (squared == 0) return {0, 0, 0};
+  const float scale = 1 / std::sqrt(squared);
+  return {x * scale, y * scale, z * scale};
+}
+
+}  // namespace tufa::base

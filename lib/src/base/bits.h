@@ -1,0 +1,29 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+namespace tufa::base {
+
+/// Calls body(index) for each set bit, lowest first.
+template <class Body>
+inline void forEachBit(std::uint64_t word, Body&& body) {
+  while (word != 0) {
+    body(std::countr_zero(word));
+    word &= word - 1;
+  }
+}
+
+/// Number of set bits. Written out because the baseline instruction set has no population count and
+/// the library call it would become costs several times as much.
+inline int countBits(std::uint64_t word) {
+  word -= (word >> 1) & 0x5555555555555555u;
+  word = (word & 0x3333333333333333u) + ((word >> 2) & 0x3333333333333333u);
+  word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<int>((word * 0x0101010101010101u) >> 56);
+}
+
+/// The bits below bit `index`.
+inline std::uint64_t bitsBelow(int index) { return (std::uint64_t{1} << index) - 1; }
+
+}  // namespace tufa::base

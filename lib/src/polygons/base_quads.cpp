@@ -1,0 +1,182 @@
+#include "polygons/base_quads.h"
+
+#include "base/bits.h"
+#include "polygons/diagonal.h"
+
+namespace tufa::polygons {
+
+using blocks::BlockBits;
+using blocks::CornerWords;
+using blocks::kBlockSize;
+using components::Components;
+using components::SurfaceBlock;
+using components::SurfaceBlockIndex;
+using components::Topology;
+
+namespace {
+
+// The vertices of a block's cells and of the layer of cells below it on each axis.
+template <class TreeT>
+class VertexTable {
+ public:
+  VertexTable(const blocks::Blocks<TreeT>& blocks, const Topology& topology)
+      : blocks_(blocks), topology_(topology) {}
+
+  void fill(const SurfaceBlock& block) {
+    special_ = false;
+    for (int corner = 0; corner < components::kCorners; ++corner) {
+      const int dx = corner >> 2, dy = (corner >> 1) & 1, dz = corner & 1;
+      const SurfaceBlockIndex index = topology_.neighbour(block, -dx, -dy, -dz);
+      if (index == components::kNoSurfaceBlock) continue;
+      fillFrom(topology_.blocks[index], dx, dy, dz);
+    }
+  }
+
+  /// The vertex of the cell at (x, y, z), each -1..7, that owns the crossing of its edge `edge`.
+  [[nodiscard]] VertexIndex at(int x, int y, int z, int edge) const {
+    const int slot = slotOf(x, y, z);
+    if (!special_) return first_[slot];
+    return first_[slot] + static_cast<VertexIndex>(components_[slot].of(edge));
+  }
+
+ private:
+  static constexpr int kSize = kBlockSize + 1;
+  static int slotOf(int x, int y, int z) { return ((x + 1) * kSize + y + 1) * kSize + z + 1; }
+
+  // Takes over the cells of `from`, which lies (dx, dy, dz) blocks below: all, or its last layer on
+  // each of those axes.
+  void fillFrom(const SurfaceBlock& from, int dx, int dy, int dz) {
+    constexpr std::uint64_t kLastY = std::uint64_t{0xff} << 56;
+    constexpr std::uint64_t kLastZ = 0x8080808080808080u;
+    const std::uint64_t layer = (dy != 0 ? kLastY : ~std::uint64_t{0}) &
+                                (dz != 0 ? kLastZ : ~std::uint64_t{0});
+    const bool special = from.special >= 0;
+    const bool whole = dx == 0 && dy == 0 && dz == 0;
+    CornerWords corners;
+    if (special) corners = blocks_.cornerWords(from.neighbours);
+    if (special && !special_) {
+      special_ = true;
+      components_.fill({});
+    }
+    auto next = static_cast<VertexIndex>(from.firstVertex);
+    for (int x = dx != 0 ? kBlockSize - 1 : 0; x < kBlockSize; ++x) {
+      base::forEachBit(from.cells.slabs[x] & layer, [&](int bit) {
+        const int cell = x * 64 + bit;
+        const int slot = slotOf(x - dx * kBlockSize, (bit >> 3) - dy * kBlockSize,
+                                (bit & 7) - dz * kBlockSize);
+        if (special) {
+          components_[slot] =
+              topology_.componentsAt(from, cell, components::cornerMask(corners, cell));
+        } else if (special_) {
+          components_[slot] = {};
+        }
+        first_[slot] = whole && !special ? next++
+                                         : static_cast<VertexIndex>(
+                                               from.firstVertex +
+                                               topology_.firstVertexInBlock(from, cell));
+      });
+    }
+  }
+
+  const blocks::Blocks<TreeT>& blocks_;
+  const Topology& topology_;
+  bool special_ = false;
+  std::array<VertexIndex, kSize * kSize * kSize> first_{};
+  std::array<Components, kSize * kSize * kSize> components_{};
+};
+
+// The four cells around an edge, counter-clockwise seen from its upper end, as steps down the next
+// axis and the one after it, in cyclic order of the axes.
+constexpr int kAround[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
+
+template <class TreeT>
+class QuadWriter {
+ public:
+  QuadWriter(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
+             const base::Affine& affine, const std::vector<float>& alongs, Mesh& mesh)
+      : blocks_(blocks), topology_(topology), affine_(affine), alongs_(alongs), mesh_(mesh),
+        table_(blocks, topology) {}
+
+  void write(const SurfaceBlock& block) {
+    table_.fill(block);
+    const CornerWords corners = blocks_.cornerWords(block.neighbours);
+    std::uint64_t quad = block.firstQuad;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int x = 0; x < kBlockSize; ++x) {
+        const std::uint64_t cut =
+            block.special < 0 ? 0 : topology_.specials[block.special].cut[axis].slabs[x];
+        const std::uint64_t insideBelow = corners.words[x][0];
+        base::forEachBit(components::crossedEdges(corners, x)[axis] & ~cut, [&](int bit) {
+          const bool upward = ((insideBelow >> bit) & 1) != 0;
+          mesh_.quads[quad] = quadAround({x, bit >> 3, bit & 7}, axis, upward,
+                                         blocks_.origin(block.block), alongs_[quad]);
+          ++quad;
+        });
+      }
+    }
+  }
+
+ private:
+  Quad quadAround(const std::array<int, 3>& start, int axis, bool upward,
+                  const openvdb::Coord& origin, float along) const {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const bool swapped = u > v;  // the edge numbers count the other axes in rising order
+    std::array<VertexIndex, 4> corners{};
+    for (int i = 0; i < 4; ++i) {
+      const auto [du, dv] = kAround[i];
+      std::array<int, 3> cell = start;
+      cell[u] -= du;
+      cell[v] -= dv;
+      const int edge = axis * 4 + (swapped ? dv * 2 + du : du * 2 + dv);
+      corners[i] = table_.at(cell[0], cell[1], cell[2], edge);
+    }
+    if (upward == affine_.mirrored()) std::swap(corners[1], corners[3]);
+    if (secondDiagonal(corners, start, axis, upward, origin, along)) {
+      return {corners[1], corners[2], corners[3], corners[0]};
+    }
+    return {corners[0], corners[1], corners[2], corners[3]};
+  }
+
+  bool secondDiagonal(const std::array<VertexIndex, 4>& corners, const std::array<int, 3>& start,
+                      int axis, bool upward, const openvdb::Coord& origin, float along) const {
+    std::array<Point, 4> points;
+    for (int i = 0; i < 4; ++i) {
+      const Position& p = mesh_.positions[corners[i]];
+      points[i] = {p.x, p.y, p.z};
+    }
+    std::array<double, 3> place = {static_cast<double>(start[0]), static_cast<double>(start[1]),
+                                   static_cast<double>(start[2])};
+    place[axis] += static_cast<double>(along);
+    const Position crossing = affine_.position(origin, place[0], place[1], place[2]);
+    const openvdb::Vec3d direction = affine_.axis(axis) * (upward ? 1.0 : -1.0);
+    return secondDiagonalIsBetter(points, {crossing.x, crossing.y, crossing.z},
+                                  {direction[0], direction[1], direction[2]});
+  }
+
+  const blocks::Blocks<TreeT>& blocks_;
+  const Topology& topology_;
+  const base::Affine& affine_;
+  const std::vector<float>& alongs_;
+  Mesh& mesh_;
+  VertexTable<TreeT> table_;
+};
+
+}  // namespace
+
+template <class TreeT>
+void writeBaseQuads(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
+                    const base::Affine& affine, const std::vector<float>& alongs, Mesh& mesh,
+                    base::Job& job) {
+  mesh.quads.resize(topology.quadCount);
+  job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    QuadWriter<TreeT> writer(blocks, topology, affine, alongs, mesh);
+    for (std::size_t i = begin; i < end; ++i) writer.write(topology.blocks[i]);
+  });
+}
+
+template void writeBaseQuads(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
+                             const base::Affine&, const std::vector<float>&, Mesh&, base::Job&);
+template void writeBaseQuads(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
+                             const base::Affine&, const std::vector<float>&, Mesh&, base::Job&);
+
+}  // namespace tufa::polygons

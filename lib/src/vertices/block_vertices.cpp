@@ -1,0 +1,136 @@
+#include "vertices/block_vertices.h"
+
+#include "base/bits.h"
+
+namespace tufa::vertices {
+
+using blocks::CornerWords;
+using blocks::kBlockSize;
+using components::SurfaceBlock;
+using components::Topology;
+
+namespace {
+
+// Vertices keep this distance from the faces of their cell, so that no two of different cells meet.
+constexpr float kHalfCell = 0.499F;
+
+}  // namespace
+
+template <class TreeT>
+void BlockVertices::place(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
+                          const SurfaceBlock& block,
+                          typename blocks::Blocks<TreeT>::Accessor& accessor) {
+  const CornerWords corners = blocks.cornerWords(block.neighbours);
+  samples_.gather(blocks, scale_, block.block, block.neighbours, accessor);
+  numberVertices(topology, block, corners);
+  addEdges(block, topology, corners);
+  solveAll();
+}
+
+void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock& block,
+                                   const CornerWords& corners) {
+  special_ = block.special >= 0;
+  cells_.clear();
+  for (int x = 0; x < kBlockSize; ++x) {
+    base::forEachBit(block.cells.slabs[x], [&](int bit) {
+      const int cell = x * 64 + bit;
+      firstVertexOf_[cell] = static_cast<std::uint16_t>(cells_.size());
+      int count = 1;
+      if (special_) {
+        componentsOf_[cell] =
+            topology.componentsAt(block, cell, components::cornerMask(corners, cell));
+        cutEdgesOf_[cell] = static_cast<std::uint16_t>(topology.cutEdgesOf(block, cell));
+        count = componentsOf_[cell].count();
+      }
+      cells_.insert(cells_.end(), count, static_cast<std::uint16_t>(cell));
+    });
+  }
+  qefs_.assign(cells_.size(), {});
+  creases_.assign(cells_.size(), 0);
+}
+
+// Every crossed edge of the block's cells, those on its upper faces included. The edges that start
+// in the block come first in each slab and are its quads.
+void BlockVertices::addEdges(const SurfaceBlock& block, const Topology& topology,
+                             const CornerWords& corners) {
+  alongs_.clear();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int x = 0; x < kBlockSize + (axis == 0 ? 0 : 1); ++x) {
+      const auto& w = corners.words[x];
+      std::array<std::uint64_t, 4> crossed{};
+      for (int i = 0; i < 4; ++i) {
+        // Words i are the lattice points (y + i / 2, z + i % 2).
+        if (axis == 0) crossed[i] = w[i] ^ corners.words[x + 1][i];
+        if (axis == 1 && i < 2) crossed[i] = w[i] ^ w[i + 2];
+        if (axis == 2 && i % 2 == 0) crossed[i] = w[i] ^ w[i + 1];
+      }
+      const std::uint64_t cut = special_ && x < kBlockSize
+                                    ? topology.specials[block.special].cut[axis].slabs[x]
+                                    : 0;
+      const bool inside = x < kBlockSize;
+      base::forEachBit(crossed[0] & ~cut,
+                       [&](int bit) { addCrossing(axis, x, bit >> 3, bit & 7, inside); });
+      constexpr std::uint64_t kLastY = std::uint64_t{0xff} << 56;
+      constexpr std::uint64_t kLastZ = 0x8080808080808080u;
+      if (axis != 2) {
+        base::forEachBit(crossed[1] & kLastZ,
+                         [&](int bit) { addCrossing(axis, x, bit >> 3, 8, false); });
+      }
+      if (axis != 1) {
+        base::forEachBit(crossed[2] & kLastY,
+                         [&](int bit) { addCrossing(axis, x, 8, bit & 7, false); });
+      }
+      if (axis == 0) {
+        base::forEachBit(crossed[3] & kLastY & kLastZ,
+                         [&](int) { addCrossing(axis, x, 8, 8, false); });
+      }
+    }
+  }
+}
+
+void BlockVertices::addCrossing(int axis, int x, int y, int z, bool owned) {
+  const crossings::Crossing crossing =
+      finder_.at(blocks::BlockSamples::index(x, y, z), axis);
+  if (owned) alongs_.push_back(crossing.along);
+  const auto [u, v] = components::otherAxes(axis);
+  const std::array<int, 3> start = {x, y, z};
+  for (int side = 0; side < 4; ++side) {
+    // The edge is number `side` of this cell: at the cell's upper end of u if bit 1 is set.
+    const int du = side >> 1, dv = side & 1;
+    std::array<int, 3> at = start;
+    at[u] -= du;
+    at[v] -= dv;
+    if (((at[0] | at[1] | at[2]) & ~7) != 0) continue;
+    const int cell = blocks::cellIndex(at[0], at[1], at[2]);
+    int vertex = firstVertexOf_[cell];
+    if (special_) {
+      const int edge = axis * 4 + side;
+      if (((cutEdgesOf_[cell] >> edge) & 1) != 0) continue;
+      vertex += componentsOf_[cell].of(edge);
+    }
+    qef::Vector point;
+    point[axis] = crossing.along - 0.5F;
+    point[u] = static_cast<float>(du) - 0.5F;
+    point[v] = static_cast<float>(dv) - 0.5F;
+    qefs_[vertex].add(point, crossing.normal);
+    creases_[vertex] |= crossing.crease ? 1 : 0;
+  }
+}
+
+void BlockVertices::solveAll() {
+  points_.resize(qefs_.size());
+  normals_.resize(qefs_.size());
+  for (std::size_t i = 0; i < qefs_.size(); ++i) {
+    points_[i] = qef::solve(qefs_[i], kHalfCell);
+    normals_[i] = qefs_[i].normals;
+  }
+}
+
+template void BlockVertices::place(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
+                                   const SurfaceBlock&,
+                                   blocks::Blocks<openvdb::FloatTree>::Accessor&);
+template void BlockVertices::place(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
+                                   const SurfaceBlock&,
+                                   blocks::Blocks<openvdb::DoubleTree>::Accessor&);
+
+}  // namespace tufa::vertices

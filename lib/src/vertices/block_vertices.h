@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "blocks/field.h"
+#include "blocks/samples.h"
+#include "components/topology.h"
+#include "crossings/crossings.h"
+#include "qef/qef.h"
+
+namespace tufa::vertices {
+
+/// Gathers the QEFs of one block's vertices and solves them. Made once for each range of blocks and
+/// used again for each block, so that its arrays stay in the cache.
+class BlockVertices {
+ public:
+  explicit BlockVertices(const blocks::FieldScale& scale)
+      : scale_(scale), finder_(samples_, scale) {}
+
+  /// Fills the results below for one block.
+  template <class TreeT>
+  void place(const blocks::Blocks<TreeT>& blocks, const components::Topology& topology,
+             const components::SurfaceBlock& block,
+             typename blocks::Blocks<TreeT>::Accessor& accessor);
+
+  /// Surface cell of each vertex of the block, in their order.
+  [[nodiscard]] const std::vector<std::uint16_t>& cells() const { return cells_; }
+  /// Each vertex, in voxels from the middle of its cell.
+  [[nodiscard]] const std::vector<qef::Vector>& points() const { return points_; }
+  /// The sum of the normals gathered at each vertex, in index space.
+  [[nodiscard]] const std::vector<qef::Vector>& normals() const { return normals_; }
+  /// For each quad of the block in its order, the place of the crossing on its edge, 0 to 1.
+  [[nodiscard]] const std::vector<float>& alongs() const { return alongs_; }
+  /// Vertices that were placed on a crease or corner.
+  [[nodiscard]] std::size_t creaseVertices() const { return creaseVertices_; }
+
+ private:
+  void numberVertices(const components::Topology& topology,
+                      const components::SurfaceBlock& block,
+                      const blocks::CornerWords& corners);
+  void addEdges(const components::SurfaceBlock& block, const components::Topology& topology,
+                const blocks::CornerWords& corners);
+  void addCrossing(int axis, int x, int y, int z, bool owned);
+  void solveAll();
+
+  const blocks::FieldScale& scale_;
+  blocks::BlockSamples samples_;
+  crossings::CrossingFinder finder_;
+  bool special_ = false;
+  std::array<std::uint16_t, blocks::kBlockCells> firstVertexOf_;      ///< of surface cells
+  std::array<components::Components, blocks::kBlockCells> componentsOf_;  ///< if special_
+  std::array<std::uint16_t, blocks::kBlockCells> cutEdgesOf_;             ///< if special_
+  std::vector<std::uint16_t> cells_;
+  std::vector<qef::Qef> qefs_;
+  std::vector<std::uint8_t> creases_;  ///< a kink was seen at one of the vertex's crossings
+  std::vector<qef::Vector> points_;
+  std::vector<qef::Vector> normals_;
+  std::vector<float> alongs_;
+  std::size_t creaseVertices_ = 0;
+};
+
+}  // namespace tufa::vertices

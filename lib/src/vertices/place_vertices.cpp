@@ -1,0 +1,53 @@
+#include "vertices/place_vertices.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "vertices/block_vertices.h"
+
+namespace tufa::vertices {
+
+template <class TreeT>
+Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldScale& scale,
+                     const components::Topology& topology, const base::Affine& affine,
+                     bool normals, Mesh& mesh, base::Job& job) {
+  Placed placed;
+  placed.alongs.resize(topology.quadCount);
+  mesh.positions.resize(topology.vertexCount);
+  if (normals) mesh.normals.resize(topology.vertexCount);
+  std::atomic<std::size_t> creases{0};
+  job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
+    typename blocks::Blocks<TreeT>::Accessor accessor(blocks.tree());
+    BlockVertices work(scale);
+    for (std::size_t i = begin; i < end; ++i) {
+      const components::SurfaceBlock& block = topology.blocks[i];
+      work.place(blocks, topology, block, accessor);
+      const openvdb::Coord& origin = blocks.origin(block.block);
+      for (std::size_t v = 0; v < work.cells().size(); ++v) {
+        const int cell = work.cells()[v];
+        const qef::Vector& point = work.points()[v];
+        mesh.positions[block.firstVertex + v] = affine.position(
+            origin, (cell >> 6) + 0.5 + static_cast<double>(point[0]),
+            ((cell >> 3) & 7) + 0.5 + static_cast<double>(point[1]),
+            (cell & 7) + 0.5 + static_cast<double>(point[2]));
+        if (!normals) continue;
+        const qef::Vector& n = work.normals()[v];
+        mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
+      }
+      std::copy(work.alongs().begin(), work.alongs().end(),
+                placed.alongs.begin() + static_cast<std::ptrdiff_t>(block.firstQuad));
+    }
+    creases += work.creaseVertices();
+  });
+  placed.creaseVertices = creases;
+  return placed;
+}
+
+template Placed placeVertices(const blocks::Blocks<openvdb::FloatTree>&, const blocks::FieldScale&,
+                              const components::Topology&, const base::Affine&, bool, Mesh&,
+                              base::Job&);
+template Placed placeVertices(const blocks::Blocks<openvdb::DoubleTree>&, const blocks::FieldScale&,
+                              const components::Topology&, const base::Affine&, bool, Mesh&,
+                              base::Job&);
+
+}  // namespace tufa::vertices

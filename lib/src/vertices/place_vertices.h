@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <tufa/mesh.h>
+#include <vector>
+
+#include "base/affine.h"
+#include "base/job.h"
+#include "blocks/blocks.h"
+#include "blocks/field.h"
+#include "components/topology.h"
+
+namespace tufa::vertices {
+
+/// What placeVertices() leaves beside the mesh.
+struct Placed {
+  std::vector<float> alongs;       ///< for each quad, the place of the crossing on its edge
+  std::size_t creaseVertices = 0;  ///< placed on a crease or corner
+};
+
+/// Sizes and fills the positions of the mesh and, if asked, its normals from the field's gradient.
+template <class TreeT>
+[[nodiscard]] Placed placeVertices(const blocks::Blocks<TreeT>& blocks,
+                                   const blocks::FieldScale& scale,
+                                   const components::Topology& topology,
+                                   const base::Affine& affine, bool normals, Mesh& mesh,
+                                   base::Job& job);
+
+/// Gives each vertex the mean of the normals of its faces, weighted by their angles at the vertex.
+void setFaceNormals(Mesh& mesh, base::Job& job);
+
+}  // namespace tufa::vertices
