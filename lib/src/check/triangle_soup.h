@@ -1,0 +1,37 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/mesh.h>
+#include <cstdint>
+#include <vector>
+
+#include "base/job.h"
+#include "check/bvh.h"
+#include "check/frame.h"
+
+namespace tufa::checks {
+
+/// The valid triangles of a mesh in voxel space, and the nearest of them to any point.
+class TriangleSoup {
+ public:
+  TriangleSoup(const Mesh& mesh, const Frame& frame, base::Job& job);
+
+  [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
+  [[nodiscard]] const openvdb::Vec3d& point(VertexIndex v) const { return points_[v]; }
+
+  /// The distance to the nearest triangle; infinite if there is none. `hint` is a triangle that is
+  /// likely near, or Bvh::kNone, and becomes the nearest: points asked for in order of place are
+  /// then answered much faster.
+  [[nodiscard]] double distance(const openvdb::Vec3d& from, std::uint32_t& hint) const;
+
+ private:
+  [[nodiscard]] double distanceSquared(const openvdb::Vec3d& from, std::uint32_t triangle) const;
+  [[nodiscard]] std::vector<Box> boxes(base::Job& job) const;
+
+  std::vector<openvdb::Vec3d> points_;  ///< one for each position of the mesh
+  std::vector<Triangle> triangles_;
+  Bvh tree_;
+};
+
+}  // namespace tufa::checks
