@@ -105,7 +105,7 @@ class Bvh {
                         const DistanceSquared& distanceSquared) const {
     std::uint32_t found = kNone;
     if (empty()) return found;
-    std::array<std::pair<Node, double>, kMaxDepth> stack;
+    std::array<Candidate, kMaxDepth> stack;
     std::size_t depth = 0;
     stack[depth++] = {root(), boxOf(root()).distanceSquared(point)};
     while (depth > 0) {
@@ -123,9 +123,9 @@ class Bvh {
         }
         continue;
       }
-      std::pair<Node, double> near{left(node), boxOf(left(node)).distanceSquared(point)};
-      std::pair<Node, double> far{right(node), boxOf(right(node)).distanceSquared(point)};
-      if (far.second < near.second) std::swap(near, far);
+      Candidate near{left(node), boxOf(left(node)).distanceSquared(point)};
+      Candidate far{right(node), boxOf(right(node)).distanceSquared(point)};
+      if (far.bound < near.bound) std::swap(near, far);
       stack[depth++] = far;
       stack[depth++] = near;
     }
@@ -140,6 +140,11 @@ class Bvh {
     std::size_t index;
     std::size_t firstLeaf;
     std::size_t leaves;
+  };
+  /// A node to look into, no item of which is nearer than the root of `bound`.
+  struct Candidate {
+    Node node;
+    double bound;
   };
   [[nodiscard]] Node root() const { return {0, 0, leafCount()}; }
   [[nodiscard]] static Node left(const Node& node) {
