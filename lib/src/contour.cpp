@@ -1,6 +1,7 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "base/affine.h"
@@ -8,6 +9,7 @@
 #include "blocks/blocks.h"
 #include "blocks/field.h"
 #include "components/topology.h"
+#include "creases/promote.h"
 #include "polygons/base_quads.h"
 #include "vertices/place_vertices.h"
 
@@ -31,23 +33,33 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
                     " vertices, more than 32-bit indices can name; use a coarser grid");
   }
 
-  job.beginStage("vertices", 0.8);
+  job.beginStage("vertices", 0.75);
   Mesh mesh;
   const base::Affine affine(grid.transform());
-  const vertices::Placed placed =
-      vertices::placeVertices(blocks, scale, topology, affine,
-                              options.normals == Normals::Gradient, mesh, job);
+  const bool normals = options.normals == Normals::Gradient || scale.distance;
+  vertices::Placed placed =
+      vertices::placeVertices(blocks, scale, topology, affine, normals, mesh, job);
 
-  job.beginStage("polygons", 1.0);
-  polygons::writeBaseQuads(blocks, topology, affine, placed.alongs, mesh, job);
+  job.beginStage("polygons", 0.9);
+  polygons::connectQuads(blocks, topology, affine, mesh, job);
+
+  job.beginStage("creases", 0.92);
+  if (scale.distance) {
+    creases::promoteToCreases(mesh, placed.sides, affine.voxelSize(), job);
+  }
+
+  job.beginStage("diagonals", 1.0);
+  polygons::chooseDiagonals(blocks, topology, affine, placed.alongs, placed.sides, mesh, job);
   if (options.normals == Normals::Faces) vertices::setFaceNormals(mesh, job);
+  if (options.normals == Normals::None) mesh.normals = {};
 
   report.isovalue = iso.isovalue;
   report.insideIsBelow = iso.insideIsBelow;
   report.distanceField = scale.distance;
   report.nonFiniteValues = blocks.nonFiniteValues();
   report.surfaceCells = topology.cellCount;
-  report.creaseCells = placed.creaseVertices;
+  report.creaseCells = static_cast<std::size_t>(
+      std::count_if(placed.sides.begin(), placed.sides.end(), [](auto n) { return n > 1; }));
   report.faceFlips = topology.faceFlips;
   report.cutEdges = topology.cutEdges;
   return mesh;

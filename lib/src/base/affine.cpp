@@ -22,6 +22,7 @@ Affine::Affine(const openvdb::math::Transform& transform) {
       normals_[i][j] = static_cast<float>(inverse(j, i) * size);
     }
   }
+  voxelSize_ = size;
   mirrored_ = linear.det() < 0;
 }
 

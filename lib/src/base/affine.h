@@ -26,6 +26,8 @@ class Affine {
   [[nodiscard]] openvdb::Vec3d axis(int axis) const {
     return {m_[0][axis], m_[1][axis], m_[2][axis]};
   }
+  /// World length of a voxel: the cube root of its volume.
+  [[nodiscard]] double voxelSize() const { return voxelSize_; }
   /// The transform turns right-handed into left-handed.
   [[nodiscard]] bool mirrored() const { return mirrored_; }
 
@@ -33,6 +35,7 @@ class Affine {
   double m_[3][3];
   double t_[3];
   float normals_[3][3];
+  double voxelSize_;
   bool mirrored_;
 };
 

@@ -89,94 +89,97 @@ class VertexTable {
 // axis and the one after it, in cyclic order of the axes.
 constexpr int kAround[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
 
+// Calls body(quad, lattice point in the block, axis, whether the lower end is inside) for each quad
+// of a block, in their order.
+template <class TreeT, class Body>
+void forQuads(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
+              const SurfaceBlock& block, const Body& body) {
+  const CornerWords corners = blocks.cornerWords(block.neighbours);
+  std::uint64_t quad = block.firstQuad;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int x = 0; x < kBlockSize; ++x) {
+      const std::uint64_t cut =
+          block.special < 0 ? 0 : topology.specials[block.special].cut[axis].slabs[x];
+      const std::uint64_t inside = corners.words[x][0];
+      base::forEachBit(components::crossedEdges(corners, x)[axis] & ~cut, [&](int bit) {
+        body(quad++, std::array<int, 3>{x, bit >> 3, bit & 7}, axis, ((inside >> bit) & 1) != 0);
+      });
+    }
+  }
+}
+
 template <class TreeT>
-class QuadWriter {
- public:
-  QuadWriter(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
-             const base::Affine& affine, const std::vector<float>& alongs, Mesh& mesh)
-      : blocks_(blocks), topology_(topology), affine_(affine), alongs_(alongs), mesh_(mesh),
-        table_(blocks, topology) {}
-
-  void write(const SurfaceBlock& block) {
-    table_.fill(block);
-    const CornerWords corners = blocks_.cornerWords(block.neighbours);
-    std::uint64_t quad = block.firstQuad;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int x = 0; x < kBlockSize; ++x) {
-        const std::uint64_t cut =
-            block.special < 0 ? 0 : topology_.specials[block.special].cut[axis].slabs[x];
-        const std::uint64_t insideBelow = corners.words[x][0];
-        base::forEachBit(components::crossedEdges(corners, x)[axis] & ~cut, [&](int bit) {
-          const bool upward = ((insideBelow >> bit) & 1) != 0;
-          mesh_.quads[quad] = quadAround({x, bit >> 3, bit & 7}, axis, upward,
-                                         blocks_.origin(block.block), alongs_[quad]);
-          ++quad;
-        });
-      }
-    }
+Quad quadAround(const VertexTable<TreeT>& table, const std::array<int, 3>& start, int axis,
+                bool clockwise) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const bool swapped = u > v;  // the edge numbers count the other axes in rising order
+  Quad quad;
+  for (int i = 0; i < 4; ++i) {
+    const auto [du, dv] = kAround[i];
+    std::array<int, 3> cell = start;
+    cell[u] -= du;
+    cell[v] -= dv;
+    const int edge = axis * 4 + (swapped ? dv * 2 + du : du * 2 + dv);
+    quad.vertices[i] = table.at(cell[0], cell[1], cell[2], edge);
   }
-
- private:
-  Quad quadAround(const std::array<int, 3>& start, int axis, bool upward,
-                  const openvdb::Coord& origin, float along) const {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const bool swapped = u > v;  // the edge numbers count the other axes in rising order
-    std::array<VertexIndex, 4> corners{};
-    for (int i = 0; i < 4; ++i) {
-      const auto [du, dv] = kAround[i];
-      std::array<int, 3> cell = start;
-      cell[u] -= du;
-      cell[v] -= dv;
-      const int edge = axis * 4 + (swapped ? dv * 2 + du : du * 2 + dv);
-      corners[i] = table_.at(cell[0], cell[1], cell[2], edge);
-    }
-    if (upward == affine_.mirrored()) std::swap(corners[1], corners[3]);
-    if (secondDiagonal(corners, start, axis, upward, origin, along)) {
-      return {corners[1], corners[2], corners[3], corners[0]};
-    }
-    return {corners[0], corners[1], corners[2], corners[3]};
-  }
-
-  bool secondDiagonal(const std::array<VertexIndex, 4>& corners, const std::array<int, 3>& start,
-                      int axis, bool upward, const openvdb::Coord& origin, float along) const {
-    std::array<Point, 4> points;
-    for (int i = 0; i < 4; ++i) {
-      const Position& p = mesh_.positions[corners[i]];
-      points[i] = {p.x, p.y, p.z};
-    }
-    std::array<double, 3> place = {static_cast<double>(start[0]), static_cast<double>(start[1]),
-                                   static_cast<double>(start[2])};
-    place[axis] += static_cast<double>(along);
-    const Position crossing = affine_.position(origin, place[0], place[1], place[2]);
-    const openvdb::Vec3d direction = affine_.axis(axis) * (upward ? 1.0 : -1.0);
-    return secondDiagonalIsBetter(points, {crossing.x, crossing.y, crossing.z},
-                                  {direction[0], direction[1], direction[2]});
-  }
-
-  const blocks::Blocks<TreeT>& blocks_;
-  const Topology& topology_;
-  const base::Affine& affine_;
-  const std::vector<float>& alongs_;
-  Mesh& mesh_;
-  VertexTable<TreeT> table_;
-};
+  if (clockwise) std::swap(quad.vertices[1], quad.vertices[3]);
+  return quad;
+}
 
 }  // namespace
 
 template <class TreeT>
-void writeBaseQuads(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
-                    const base::Affine& affine, const std::vector<float>& alongs, Mesh& mesh,
-                    base::Job& job) {
+void connectQuads(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
+                  const base::Affine& affine, Mesh& mesh, base::Job& job) {
   mesh.quads.resize(topology.quadCount);
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-    QuadWriter<TreeT> writer(blocks, topology, affine, alongs, mesh);
-    for (std::size_t i = begin; i < end; ++i) writer.write(topology.blocks[i]);
+    VertexTable<TreeT> table(blocks, topology);
+    for (std::size_t i = begin; i < end; ++i) {
+      table.fill(topology.blocks[i]);
+      forQuads(blocks, topology, topology.blocks[i],
+               [&](std::uint64_t quad, const std::array<int, 3>& start, int axis, bool upward) {
+                 mesh.quads[quad] = quadAround(table, start, axis, upward == affine.mirrored());
+               });
+    }
   });
 }
 
-template void writeBaseQuads(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
-                             const base::Affine&, const std::vector<float>&, Mesh&, base::Job&);
-template void writeBaseQuads(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
-                             const base::Affine&, const std::vector<float>&, Mesh&, base::Job&);
+template <class TreeT>
+void chooseDiagonals(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
+                     const base::Affine& affine, const std::vector<float>& alongs,
+                     const creases::SideCounts& sides, Mesh& mesh, base::Job& job) {
+  job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = topology.blocks[i];
+      const openvdb::Coord& origin = blocks.origin(block.block);
+      forQuads(blocks, topology, block,
+               [&](std::uint64_t index, const std::array<int, 3>& start, int axis, bool upward) {
+                 Quad& quad = mesh.quads[index];
+                 std::array<double, 3> place = {static_cast<double>(start[0]),
+                                                static_cast<double>(start[1]),
+                                                static_cast<double>(start[2])};
+                 place[axis] += static_cast<double>(alongs[index]);
+                 const Position crossing =
+                     affine.position(origin, place[0], place[1], place[2]);
+                 const openvdb::Vec3d direction = affine.axis(axis) * (upward ? 1.0 : -1.0);
+                 if (secondDiagonalIsBetter(mesh, quad, sides, crossing, direction)) {
+                   const auto v = quad.vertices;
+                   quad = {v[1], v[2], v[3], v[0]};
+                 }
+               });
+    }
+  });
+}
+
+template void connectQuads(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
+                           const base::Affine&, Mesh&, base::Job&);
+template void connectQuads(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
+                           const base::Affine&, Mesh&, base::Job&);
+template void chooseDiagonals(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
+                              const base::Affine&, const std::vector<float>&,
+                              const creases::SideCounts&, Mesh&, base::Job&);
+template void chooseDiagonals(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
+                              const base::Affine&, const std::vector<float>&,
+                              const creases::SideCounts&, Mesh&, base::Job&);
 
 }  // namespace tufa::polygons

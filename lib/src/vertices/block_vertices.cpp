@@ -13,6 +13,14 @@ namespace {
 
 // Vertices keep this distance from the faces of their cell, so that no two of different cells meet.
 constexpr float kHalfCell = 0.499F;
+// A mean normal shorter than this is of more than one side (two of equal weight, 30 degrees apart).
+constexpr float kOneSide = 0.966F;
+
+// How many smooth sides the planes of a QEF seem to belong to: one or more than one.
+std::uint8_t sidesOf(const qef::Qef& qef) {
+  const float squared = qef::dot(qef.normals, qef.normals);
+  return squared < kOneSide * kOneSide * qef.count * qef.count ? 2 : 1;
+}
 
 }  // namespace
 
@@ -46,7 +54,7 @@ void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock&
     });
   }
   qefs_.assign(cells_.size(), {});
-  creases_.assign(cells_.size(), 0);
+  sides_.assign(cells_.size(), 0);
 }
 
 // Every crossed edge of the block's cells, those on its upper faces included. The edges that start
@@ -113,16 +121,30 @@ void BlockVertices::addCrossing(int axis, int x, int y, int z, bool owned) {
     point[u] = static_cast<float>(du) - 0.5F;
     point[v] = static_cast<float>(dv) - 0.5F;
     qefs_[vertex].add(point, crossing.normal);
-    creases_[vertex] |= crossing.crease ? 1 : 0;
+    sides_[vertex] |= crossing.crease ? 1 : 0;
   }
 }
 
 void BlockVertices::solveAll() {
   points_.resize(qefs_.size());
   normals_.resize(qefs_.size());
+  bool fresh = true;
   for (std::size_t i = 0; i < qefs_.size(); ++i) {
     points_[i] = qef::solve(qefs_[i], kHalfCell);
     normals_[i] = qefs_[i].normals;
+    if (sides_[i] == 0) continue;
+    if (fresh) creaseCell_.reset();
+    fresh = false;
+    const int cell = cells_[i];
+    const creases::CreasePlacement placement = creaseCell_.place(
+        cell >> 6, (cell >> 3) & 7, cell & 7, qefs_[i].massPoint());
+    if (placement.planes == 0) {
+      sides_[i] = sidesOf(qefs_[i]);
+      continue;
+    }
+    points_[i] = placement.point;
+    normals_[i] = placement.normal;
+    sides_[i] = static_cast<std::uint8_t>(placement.planes);
   }
 }
 

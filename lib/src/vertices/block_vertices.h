@@ -7,6 +7,7 @@
 #include "blocks/field.h"
 #include "blocks/samples.h"
 #include "components/topology.h"
+#include "creases/crease_cell.h"
 #include "crossings/crossings.h"
 #include "qef/qef.h"
 
@@ -17,7 +18,7 @@ namespace tufa::vertices {
 class BlockVertices {
  public:
   explicit BlockVertices(const blocks::FieldScale& scale)
-      : scale_(scale), finder_(samples_, scale) {}
+      : scale_(scale), finder_(samples_, scale), creaseCell_(samples_, scale) {}
 
   /// Fills the results below for one block.
   template <class TreeT>
@@ -33,8 +34,8 @@ class BlockVertices {
   [[nodiscard]] const std::vector<qef::Vector>& normals() const { return normals_; }
   /// For each quad of the block in its order, the place of the crossing on its edge, 0 to 1.
   [[nodiscard]] const std::vector<float>& alongs() const { return alongs_; }
-  /// Vertices that were placed on a crease or corner.
-  [[nodiscard]] std::size_t creaseVertices() const { return creaseVertices_; }
+  /// For each vertex, how many smooth sides meet there; see creases::SideCounts.
+  [[nodiscard]] const std::vector<std::uint8_t>& sides() const { return sides_; }
 
  private:
   void numberVertices(const components::Topology& topology,
@@ -48,17 +49,17 @@ class BlockVertices {
   const blocks::FieldScale& scale_;
   blocks::BlockSamples samples_;
   crossings::CrossingFinder finder_;
+  creases::CreaseCell creaseCell_;
   bool special_ = false;
   std::array<std::uint16_t, blocks::kBlockCells> firstVertexOf_;      ///< of surface cells
   std::array<components::Components, blocks::kBlockCells> componentsOf_;  ///< if special_
   std::array<std::uint16_t, blocks::kBlockCells> cutEdgesOf_;             ///< if special_
   std::vector<std::uint16_t> cells_;
   std::vector<qef::Qef> qefs_;
-  std::vector<std::uint8_t> creases_;  ///< a kink was seen at one of the vertex's crossings
+  std::vector<std::uint8_t> sides_;  ///< 1 from the first crossing with a kink on
   std::vector<qef::Vector> points_;
   std::vector<qef::Vector> normals_;
   std::vector<float> alongs_;
-  std::size_t creaseVertices_ = 0;
 };
 
 }  // namespace tufa::vertices

@@ -1,7 +1,6 @@
 #include "vertices/place_vertices.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "vertices/block_vertices.h"
 
@@ -13,9 +12,9 @@ Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldSca
                      bool normals, Mesh& mesh, base::Job& job) {
   Placed placed;
   placed.alongs.resize(topology.quadCount);
+  placed.sides.resize(topology.vertexCount);
   mesh.positions.resize(topology.vertexCount);
   if (normals) mesh.normals.resize(topology.vertexCount);
-  std::atomic<std::size_t> creases{0};
   job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
     typename blocks::Blocks<TreeT>::Accessor accessor(blocks.tree());
     BlockVertices work(scale);
@@ -34,12 +33,12 @@ Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldSca
         const qef::Vector& n = work.normals()[v];
         mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
       }
+      std::copy(work.sides().begin(), work.sides().end(),
+                placed.sides.begin() + static_cast<std::ptrdiff_t>(block.firstVertex));
       std::copy(work.alongs().begin(), work.alongs().end(),
                 placed.alongs.begin() + static_cast<std::ptrdiff_t>(block.firstQuad));
     }
-    creases += work.creaseVertices();
   });
-  placed.creaseVertices = creases;
   return placed;
 }
 

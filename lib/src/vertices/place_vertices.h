@@ -9,13 +9,14 @@
 #include "blocks/blocks.h"
 #include "blocks/field.h"
 #include "components/topology.h"
+#include "creases/promote.h"
 
 namespace tufa::vertices {
 
 /// What placeVertices() leaves beside the mesh.
 struct Placed {
-  std::vector<float> alongs;       ///< for each quad, the place of the crossing on its edge
-  std::size_t creaseVertices = 0;  ///< placed on a crease or corner
+  std::vector<float> alongs;  ///< for each quad, the place of the crossing on its edge
+  creases::SideCounts sides;  ///< for each vertex, how many smooth sides meet there
 };
 
 /// Sizes and fills the positions of the mesh and, if asked, its normals from the field's gradient.

@@ -1,0 +1,245 @@
+#include "creases/crease_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "components/case_table.h"
+
+namespace tufa::creases {
+
+using blocks::BlockSamples;
+using qef::dot;
+using qef::Vector;
+
+namespace {
+
+// Sides whose normals differ by less than this (18 degrees) are one.
+constexpr float kSameSide = 0.95F;
+// Planes farther than this from each other, at the foot of one, are two sheets.
+constexpr float kSameSheet = 0.25F;
+// A foot farther than this from the cell says nothing of it.
+constexpr float kReach = 1.25F;
+constexpr float kHalfCell = 0.5F;
+// How far a vertex may leave its cell, in voxels, where its crossings lie on two sides that meet
+// outside it.
+constexpr float kBeyond = 1.0F;
+// Slack of a crossing's place on its edge.
+constexpr float kEdgeSlack = 0.01F;
+// Slack of the empty-ball test, in voxels.
+constexpr float kBallSlack = 0.06F;
+constexpr int kMostSides = 4;
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector cornerPoint(int corner) {
+  return {static_cast<float>(corner >> 2) - 0.5F, static_cast<float>((corner >> 1) & 1) - 0.5F,
+          static_cast<float>(corner & 1) - 0.5F};
+}
+
+Vector plus(const Vector& a, const Vector& b, float scale) {
+  return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
+}
+
+float outside(const Vector& p) {
+  return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) - kHalfCell;
+}
+
+}  // namespace
+
+CreasePlacement CreaseCell::place(int x, int y, int z, const Vector& massPoint) {
+  CreasePlacement placement;
+  cell_ = {x, y, z};
+  collectPlanes();
+  sortIntoSides();
+  markCrossedSides();
+  if (placeOnCorner(massPoint, false, placement) || placeOnCrease(massPoint, false, placement) ||
+      placeOnCorner(massPoint, true, placement) || placeOnCrease(massPoint, true, placement) ||
+      placeOnSide(massPoint, placement)) {
+    return placement;
+  }
+  return {};
+}
+
+void CreaseCell::collectPlanes() {
+  near_.clear();
+  weights_.clear();
+  const auto [x, y, z] = cell_;
+  const Vector middle = {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F,
+                         static_cast<float>(z) + 0.5F};
+  for (int cube = 0; cube < 27; ++cube) {
+    const PatchPlane* plane = planes_.at(x + cube / 9 - 1, y + cube / 3 % 3 - 1, z + cube % 3 - 1);
+    if (plane == nullptr) continue;
+    PatchPlane local = *plane;
+    local.foot = plus(local.foot, middle, -1);
+    const float away = std::max(0.0F, outside(local.foot));
+    if (away > kReach) continue;
+    near_.push_back(local);
+    const float quality = local.residual * local.residual + 1e-4F;
+    weights_.push_back(1 / (quality * (1 + 16 * away * away)));
+  }
+}
+
+// Greedy: the best plane left starts a side, planes that agree with it join.
+void CreaseCell::sortIntoSides() {
+  sides_.clear();
+  while (static_cast<int>(sides_.size()) < kMostSides) {
+    const auto best = std::max_element(weights_.begin(), weights_.end());
+    if (best == weights_.end() || *best <= 0) break;
+    const PatchPlane seed = near_[static_cast<std::size_t>(best - weights_.begin())];
+    Side side;
+    Vector point{};
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      if (weights_[i] <= 0 || dot(near_[i].normal, seed.normal) < kSameSide) continue;
+      const Vector apart = plus(near_[i].foot, seed.foot, -1);
+      if (std::abs(dot(seed.normal, apart)) > kSameSheet) continue;
+      side.normal = plus(side.normal, near_[i].normal, weights_[i]);
+      point = plus(point, near_[i].foot, weights_[i]);
+      side.weight += weights_[i];
+      weights_[i] = 0;
+    }
+    const float length = std::sqrt(dot(side.normal, side.normal));
+    for (float& n : side.normal) n /= length;
+    side.offset = dot(side.normal, point) / side.weight;
+    sides_.push_back(side);
+  }
+}
+
+// A side is crossed where its plane meets a crossed edge of the cell in a point of the surface.
+void CreaseCell::markCrossedSides() {
+  for (int edge = 0; edge < components::kEdges; ++edge) {
+    const auto [lower, upper] = components::edgeCorners(edge);
+    if ((sampleAt(lower) < 0) == (sampleAt(upper) < 0)) continue;
+    const Vector from = cornerPoint(lower);
+    const int axis = edge / 4;
+    for (Side& side : sides_) {
+      if (side.crossed || std::abs(side.normal[axis]) < 1e-3F) continue;
+      const float along = (side.offset - dot(side.normal, from)) / side.normal[axis];
+      if (along < -kEdgeSlack || along > 1 + kEdgeSlack) continue;
+      Vector point = from;
+      point[axis] += along;
+      side.crossed = isOnSurface(point);
+    }
+  }
+}
+
+float CreaseCell::sampleAt(int corner) const {
+  return samples_[BlockSamples::index(cell_[0] + (corner >> 2), cell_[1] + ((corner >> 1) & 1),
+                                      cell_[2] + (corner & 1))];
+}
+
+bool CreaseCell::isOnSurface(const Vector& point) const {
+  const auto [x, y, z] = cell_;
+  for (int i = 0; i < 64; ++i) {
+    const int dx = i / 16 - 1, dy = i / 4 % 4 - 1, dz = i % 4 - 1;
+    const float value = std::abs(samples_[BlockSamples::index(x + dx, y + dy, z + dz)]);
+    const float radius = std::min(value, scale_.bandOutside) - kBallSlack;
+    if (radius <= 0) continue;
+    const Vector apart = {static_cast<float>(dx) - 0.5F - point[0],
+                          static_cast<float>(dy) - 0.5F - point[1],
+                          static_cast<float>(dz) - 0.5F - point[2]};
+    if (dot(apart, apart) < radius * radius) return false;
+  }
+  return true;
+}
+
+void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const {
+  Vector sum{};
+  for (const int side : sides) sum = plus(sum, sides_[side].normal, 1);
+  const float length = std::sqrt(dot(sum, sum));
+  for (int i = 0; i < 3; ++i) placement.normal[i] = length > 0 ? sum[i] / length : 0;
+  placement.planes = static_cast<int>(sides.size());
+}
+
+bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,
+                               CreasePlacement& placement) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  const int count = static_cast<int>(sides_.size());
+  for (int i = 0; i < count; ++i) {
+    for (int j = i + 1; j < count; ++j) {
+      const Vector ij = cross(sides_[i].normal, sides_[j].normal);
+      for (int k = j + 1; k < count; ++k) {
+        const float volume = dot(ij, sides_[k].normal);
+        if (std::abs(volume) < 0.1F) continue;
+        if (beyond && !(sides_[i].crossed && sides_[j].crossed && sides_[k].crossed)) continue;
+        const Vector jk = cross(sides_[j].normal, sides_[k].normal);
+        const Vector ki = cross(sides_[k].normal, sides_[i].normal);
+        Vector point{};
+        point = plus(point, jk, sides_[i].offset / volume);
+        point = plus(point, ki, sides_[j].offset / volume);
+        point = plus(point, ij, sides_[k].offset / volume);
+        if (outside(point) > (beyond ? kBeyond : 0)) continue;
+        const Vector apart = plus(point, massPoint, -1);
+        if (dot(apart, apart) >= nearest || !isOnSurface(point)) {
+          continue;
+        }
+        nearest = dot(apart, apart);
+        placement.point = point;
+        setNormal(placement, {i, j, k});
+      }
+    }
+  }
+  return placement.planes != 0;
+}
+
+bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
+                               CreasePlacement& placement) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  const int count = static_cast<int>(sides_.size());
+  for (int i = 0; i < count; ++i) {
+    for (int j = i + 1; j < count; ++j) {
+      const Side& a = sides_[i];
+      const Side& b = sides_[j];
+      const Vector direction = cross(a.normal, b.normal);
+      const float squared = dot(direction, direction);
+      if (squared < 0.05F || (beyond && !(a.crossed && b.crossed))) continue;
+      // The point of both planes nearest to the mass point.
+      const float cosine = dot(a.normal, b.normal);
+      const float da = a.offset - dot(a.normal, massPoint);
+      const float db = b.offset - dot(b.normal, massPoint);
+      Vector point = plus(massPoint, a.normal, (da - cosine * db) / squared);
+      point = plus(point, b.normal, (db - cosine * da) / squared);
+      // Along the crease into the cell.
+      const float half = kHalfCell + (beyond ? kBeyond : 0);
+      float from = -std::numeric_limits<float>::infinity(), to = -from;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(direction[axis]) < 1e-6F) {
+          if (std::abs(point[axis]) > half) from = to + 1;
+          continue;
+        }
+        const float s = (-half - point[axis]) / direction[axis];
+        const float t = (half - point[axis]) / direction[axis];
+        from = std::max(from, std::min(s, t));
+        to = std::min(to, std::max(s, t));
+      }
+      if (from > to) continue;
+      point = plus(point, direction, std::clamp(0.0F, from, to));
+      const Vector apart = plus(point, massPoint, -1);
+      if (dot(apart, apart) >= nearest || !isOnSurface(point)) {
+        continue;
+      }
+      nearest = dot(apart, apart);
+      placement.point = point;
+      setNormal(placement, {i, j});
+    }
+  }
+  return placement.planes != 0;
+}
+
+bool CreaseCell::placeOnSide(const Vector& massPoint, CreasePlacement& placement) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < static_cast<int>(sides_.size()); ++i) {
+    const float away = sides_[i].offset - dot(sides_[i].normal, massPoint);
+    const Vector point = plus(massPoint, sides_[i].normal, away);
+    if (std::abs(away) >= nearest || outside(point) > 0) continue;
+    if (!isOnSurface(point)) continue;
+    nearest = std::abs(away);
+    placement.point = point;
+    setNormal(placement, {i});
+  }
+  return placement.planes != 0;
+}
+
+}  // namespace tufa::creases

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <vector>
+
+#include "creases/patch_planes.h"
+#include "qef/qef.h"
+
+namespace tufa::creases {
+
+/// What the surface is like in a cell near a crease.
+struct CreasePlacement {
+  qef::Vector point{};    ///< in voxels from the middle of the cell
+  qef::Vector normal{};   ///< outward unit normal: of the plane, or the mean of those that meet
+  int planes = 0;         ///< 1: the cell lies on one smooth side; 2: a crease; 3: a corner; 0: unknown
+};
+
+/// Places the vertex of a cell near a crease from the tangent planes of the cubes around it.
+///
+/// The planes whose feet lie near the cell are sorted into smooth sides. If three sides meet in the
+/// cell the vertex is their corner; if two do, the point of their crease nearest to the mass point.
+/// If none meet in the cell but its crossings lie on two or three sides, the crease or corner just
+/// outside is taken, up to a voxel away: the cell there has no vertex of its own. Else the vertex
+/// lies on the one side that passes the mass point. A point counts only if no sample around it is
+/// farther from the surface than from the point: that proves that the planes meet there, and not
+/// only their continuations.
+class CreaseCell {
+ public:
+  CreaseCell(const blocks::BlockSamples& samples, const blocks::FieldScale& scale)
+      : samples_(samples), scale_(scale), planes_(samples, scale) {}
+
+  void reset() { planes_.reset(); }
+
+  /// `x`, `y`, `z` are the cell's place in the block, 0..7; `massPoint` is in voxels from the
+  /// middle of the cell.
+  [[nodiscard]] CreasePlacement place(int x, int y, int z, const qef::Vector& massPoint);
+
+ private:
+  /// A smooth side of the surface near the cell: the plane normal . p = offset.
+  struct Side {
+    qef::Vector normal{};
+    float offset = 0;
+    float weight = 0;
+    bool crossed = false;  ///< a crossing of the cell lies on it
+  };
+
+  void collectPlanes();
+  void sortIntoSides();
+  void markCrossedSides();
+  [[nodiscard]] float sampleAt(int corner) const;
+  [[nodiscard]] bool isOnSurface(const qef::Vector& point) const;
+  // Both search in the cell, or, if `beyond`, around it among the sides that the crossings lie on.
+  [[nodiscard]] bool placeOnCorner(const qef::Vector& massPoint, bool beyond,
+                                   CreasePlacement& placement) const;
+  [[nodiscard]] bool placeOnCrease(const qef::Vector& massPoint, bool beyond,
+                                   CreasePlacement& placement) const;
+  [[nodiscard]] bool placeOnSide(const qef::Vector& massPoint, CreasePlacement& placement) const;
+  void setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const;
+
+  const blocks::BlockSamples& samples_;
+  const blocks::FieldScale& scale_;
+  PatchPlanes planes_;
+  std::vector<PatchPlane> near_;   ///< feet in voxels from the middle of the cell
+  std::vector<float> weights_;     ///< of near_
+  std::vector<Side> sides_;
+  std::array<int, 3> cell_{};
+};
+
+}  // namespace tufa::creases

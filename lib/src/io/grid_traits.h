@@ -1,0 +1,12 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <string>
+
+namespace tufa::io {
+
+/// Why contour() would not take a grid of this type and transform, or nothing if it would.
+[[nodiscard]] std::string whyNotMeshable(const openvdb::GridBase& grid);
+
+}  // namespace tufa::io

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <tufa/io.h>
+#include <tufa/mesh.h>
+#include <filesystem>
+
+#include "io/output_file.h"
+
+namespace tufa::io {
+
+/// The mesh formats that Tufa reads and writes.
+enum class MeshFormat { Ply, Obj, Stl, Off, Glb };
+
+/// The format that a file name's ending says, in either case of letters. Throws
+/// Error(InvalidArgument).
+[[nodiscard]] MeshFormat formatOf(const std::filesystem::path& path);
+
+/// The corners of the box around all positions; both zero for an empty mesh.
+struct Bounds {
+  Position least{0, 0, 0};
+  Position greatest{0, 0, 0};
+};
+[[nodiscard]] Bounds boundsOf(const Mesh& mesh);
+
+/// Whether single precision would move some position by more than a millionth of the mesh's extent.
+[[nodiscard]] bool needsDoublePrecision(const Mesh& mesh);
+
+/// Throws Error(LimitExceeded) that names the format, what there is too much of, and the limit.
+void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, const char* format);
+
+/// Bytes on their way into a file, with the progress of the whole.
+class MeshSink {
+ public:
+  MeshSink(OutputFile& file, const Mesh& mesh, const WriteOptions& options);
+
+  void write(const void* data, std::size_t size) { file_.write(data, size); }
+
+  /// Says that `count` more positions, normals or faces are written. Throws Error(Cancelled).
+  void advance(std::size_t count);
+
+  /// Items to write between two calls of advance().
+  static constexpr std::size_t kStride = 65536;
+
+ private:
+  OutputFile& file_;
+  const Progress& progress_;
+  std::size_t done_ = 0;
+  std::size_t total_ = 0;
+};
+
+/// Calls body(item) for all items of an array, with progress in between.
+template <class Items, class Body>
+void forEachItem(MeshSink& sink, const Items& items, Body&& body) {
+  std::size_t done = 0;
+  for (const auto& item : items) {
+    body(item);
+    if (++done % MeshSink::kStride == 0) sink.advance(MeshSink::kStride);
+  }
+  sink.advance(done % MeshSink::kStride);
+}
+
+// One format each.
+void writePly(const Mesh& mesh, MeshSink& sink);
+void writeObj(const Mesh& mesh, MeshSink& sink, const std::string& name);
+void writeOff(const Mesh& mesh, MeshSink& sink);
+void writeStl(const Mesh& mesh, MeshSink& sink);
+void writeGlb(const Mesh& mesh, MeshSink& sink, const std::string& name);
+
+}  // namespace tufa::io

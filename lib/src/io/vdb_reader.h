@@ -1,0 +1,56 @@
+#pragma once
+
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/io.h>
+#include <openvdb/openvdb.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tufa::io {
+
+/// Reads grids of a .vdb file one by one. Used in place of openvdb::io::File because that class
+/// does not look at its stream's state: a truncated file then gives grids of whatever was in
+/// memory. Here every failed read throws. All members throw Error(UnreadableFile).
+class VdbReader : private openvdb::io::Archive {
+ public:
+  explicit VdbReader(const std::filesystem::path& path);
+
+  [[nodiscard]] std::size_t gridCount() const { return entries_.size(); }
+
+  /// The grid's name; grids of one name are told apart as "name[0]", "name[1]" and so on.
+  [[nodiscard]] std::string gridName(std::size_t index) const;
+  [[nodiscard]] bool isNamed(std::size_t index, const std::string& name) const;
+
+  /// An empty grid with the metadata and, for all but files of before 2012, the transform.
+  [[nodiscard]] openvdb::GridBase::Ptr readOutline(std::size_t index);
+
+  /// The grid with all its values.
+  [[nodiscard]] openvdb::GridBase::Ptr readGrid(std::size_t index);
+
+ private:
+  struct Entry {
+    openvdb::io::GridDescriptor descriptor;
+    openvdb::GridBase::Ptr whole;  ///< set for files without offsets, which are read in one go
+  };
+
+  void requireVdb();
+  void readHead();
+  void readSequentially(std::size_t index);
+  void requireInside(const openvdb::io::GridDescriptor& descriptor) const;
+  openvdb::GridBase::Ptr readTree(const openvdb::io::GridDescriptor& descriptor);
+  void guarded(const std::string& what, const std::function<void()>& work) const;
+  [[noreturn]] void fail(const std::string& cause) const;
+
+  std::filesystem::path path_;
+  openvdb::SharedPtr<openvdb::io::StreamMetadata> streamMetadata_;  ///< stream_ keeps its address
+  std::ifstream stream_;
+  std::uint64_t fileBytes_ = 0;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace tufa::io

@@ -1,0 +1,129 @@
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/util/NullInterrupter.h>
+#include <tufa/voxelize.h>
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <thread>
+
+#include "base/job.h"
+
+namespace tufa {
+namespace {
+
+/// The mesh as meshToVolume() wants it: index-space points and polygons.
+class IndexSpaceMesh {
+ public:
+  IndexSpaceMesh(const Mesh& mesh, double voxelSize) : mesh_(mesh), voxelSize_(voxelSize) {}
+
+  [[nodiscard]] std::size_t polygonCount() const {
+    return mesh_.triangles.size() + mesh_.quads.size();
+  }
+  [[nodiscard]] std::size_t pointCount() const { return mesh_.positions.size(); }
+  [[nodiscard]] std::size_t vertexCount(std::size_t polygon) const {
+    return polygon < mesh_.triangles.size() ? 3 : 4;
+  }
+  void getIndexSpacePoint(std::size_t polygon, std::size_t corner, openvdb::Vec3d& point) const {
+    const std::size_t triangles = mesh_.triangles.size();
+    const VertexIndex vertex = polygon < triangles
+                                   ? mesh_.triangles[polygon].vertices[corner]
+                                   : mesh_.quads[polygon - triangles].vertices[corner];
+    const Position& p = mesh_.positions[vertex];
+    point = openvdb::Vec3d(p.x, p.y, p.z) / voxelSize_;
+  }
+
+ private:
+  const Mesh& mesh_;
+  double voxelSize_;
+};
+
+/// Hands OpenVDB's questions on to a Progress. OpenVDB asks from any thread and tells the
+/// percentage only at times, so only the caller's thread passes it on.
+class ProgressInterrupter final : public openvdb::util::NullInterrupter {
+ public:
+  explicit ProgressInterrupter(const Progress& progress) : progress_(progress) {}
+
+  bool wasInterrupted(int percent = -1) override {
+    if (progress_ && std::this_thread::get_id() == caller_) {
+      fraction_ = std::max(fraction_, std::min(percent / 100.0, 1.0));
+      if (!progress_("voxelizing", fraction_)) cancelled_ = true;
+    }
+    return cancelled_;
+  }
+  [[nodiscard]] bool cancelled() const { return cancelled_; }
+
+ private:
+  const Progress& progress_;
+  std::thread::id caller_ = std::this_thread::get_id();
+  double fraction_ = 0;
+  std::atomic<bool> cancelled_{false};
+};
+
+void requireUsableFaces(const Mesh& mesh) {
+  const auto requireInside = [&](const auto& face) {
+    for (const VertexIndex vertex : face.vertices) {
+      if (vertex < mesh.positions.size()) continue;
+      throw Error(ErrorCode::InvalidArgument, "a face names vertex " + std::to_string(vertex) +
+                                                  " of " + std::to_string(mesh.positions.size()));
+    }
+  };
+  std::for_each(mesh.triangles.begin(), mesh.triangles.end(), requireInside);
+  std::for_each(mesh.quads.begin(), mesh.quads.end(), requireInside);
+}
+
+/// Refuses meshes that are not finite and voxels so small that the lattice cannot name them.
+void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
+  double largest = 0;
+  for (const Position& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      throw Error(ErrorCode::InvalidArgument, "the mesh has a vertex that is not finite");
+    }
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  constexpr double kLimit = 1 << 30;
+  const double voxels = largest / options.voxelSize + options.halfWidth;
+  if (voxels < kLimit) return;
+  throw Error(ErrorCode::InvalidArgument, "voxel size " + std::to_string(options.voxelSize) +
+                                              " puts the mesh " + std::to_string(voxels) +
+                                              " voxels from the origin, more than a grid's " +
+                                              std::to_string(kLimit));
+}
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
+  if (!std::isfinite(options.voxelSize) || options.voxelSize <= 0) {
+    throw Error(ErrorCode::InvalidArgument, "voxel size must be a finite number above 0, not " +
+                                                std::to_string(options.voxelSize));
+  }
+  if (!std::isfinite(options.halfWidth) || options.halfWidth < 1) {
+    throw Error(ErrorCode::InvalidArgument,
+                "half width must be a finite number of 1 or more voxels, not " +
+                    std::to_string(options.halfWidth));
+  }
+  if (mesh.triangleCount() == 0) {
+    throw Error(ErrorCode::InvalidArgument, "the mesh has no faces to voxelize");
+  }
+  requireUsableFaces(mesh);
+  requireUsableExtent(mesh, options);
+  openvdb::initialize();
+
+  ProgressInterrupter interrupter(options.progress);
+  const auto transform = openvdb::math::Transform::createLinearTransform(options.voxelSize);
+  const float halfWidth = static_cast<float>(options.halfWidth);
+  openvdb::FloatGrid::Ptr grid;
+  base::Job(options.threads, {}).run([&] {
+    grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+        interrupter, IndexSpaceMesh(mesh, options.voxelSize), *transform, halfWidth, halfWidth);
+  });
+  if (interrupter.cancelled()) throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setName("surface");
+  return grid;
+}
+
+}  // namespace tufa
