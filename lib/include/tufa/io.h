@@ -24,11 +24,18 @@ struct WriteOptions {
 /// .ply and .obj keep double precision where single precision would lose more than a millionth of
 /// the mesh's extent; .glb stores positions relative to the node's translation; .stl is single
 /// precision always. The file appears whole or not at all: it is written under a temporary name in
-/// the same folder and renamed.
+/// the same folder and renamed. A pipe or a device is written to as it is, as .ply if it has no ending.
 ///
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending), LimitExceeded (more than the
 /// format can hold), Cancelled.
 void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options = {});
+
+/// Throws Error(InvalidArgument) if write() knows no format of this ending.
+void requireMeshEnding(const std::filesystem::path& path);
+
+/// Throws Error(UnwritableFile) if it is plain now that write() or writeGrids() could not write there:
+/// for programs that work long before they do. A full disk shows only later.
+void requireWritable(const std::filesystem::path& path);
 
 /// Reads a mesh: .ply (text or binary), .obj, .stl (text or binary), .off or .glb. Polygons with more
 /// than four corners are fanned; .stl vertices at equal positions are shared. Throws Error:
@@ -55,6 +62,9 @@ struct GridInfo {
   bool meshable = false;            ///< contour() takes it
   std::string whyNot;               ///< if not, the reason
 };
+
+/// Describes a grid.
+[[nodiscard]] GridInfo describeGrid(const openvdb::GridBase& grid);
 
 /// Describes every grid of a .vdb file. Throws Error(UnreadableFile).
 [[nodiscard]] std::vector<GridInfo> describeGrids(const std::filesystem::path& path);

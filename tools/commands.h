@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace tufa::tools {
+
+/// What a subcommand does once the command line is read; gives the exit code.
+using Command = std::function<int()>;
+
+// Each declares one subcommand with its options, and puts its work into `chosen` when the command
+// line names it.
+void addMakeCommand(CLI::App& app, Command& chosen);
+void addVoxelizeCommand(CLI::App& app, Command& chosen);
+void addInfoCommand(CLI::App& app, Command& chosen);
+void addMeshCommand(CLI::App& app, Command& chosen);
+void addCheckCommand(CLI::App& app, Command& chosen);
+
+/// Exit codes of the command.
+inline constexpr int kDone = 0;
+inline constexpr int kPromiseBroken = 1;  ///< the mesh is not what it should be
+inline constexpr int kWrongUsage = 2;
+inline constexpr int kUnusableFile =
+    3;                                  ///< input that cannot be used or output that cannot be made
+inline constexpr int kCancelled = 130;  ///< as a shell reports a program that Ctrl-C ended
+
+}  // namespace tufa::tools

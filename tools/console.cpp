@@ -1,0 +1,66 @@
+#include "console.h"
+
+#include <sys/resource.h>
+
+#include <tufa/error.h>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <thread>
+
+namespace tufa::tools {
+namespace {
+
+// A signal handler may touch little else.
+volatile std::sig_atomic_t stopRequested = 0;
+
+void requestStop(int signal) {
+  stopRequested = 1;
+  // A second Ctrl-C ends the program at once, should the first not be heard.
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+void installSignalHandlers() {
+  std::signal(SIGINT, requestStop);
+  std::signal(SIGTERM, requestStop);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool interrupted() { return stopRequested != 0; }
+
+void print(const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (written && std::fflush(stdout) == 0) return;
+  throw Error(ErrorCode::UnwritableFile,
+              std::string("cannot write standard output: ") + std::strerror(errno));
+}
+
+void printNote(const std::string& text) { std::fprintf(stderr, "tufa: %s\n", text.c_str()); }
+
+std::string formatCount(std::size_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t n = digits.size(); n > 3; n -= 3) digits.insert(n - 3, 1, ',');
+  return digits;
+}
+
+std::string formatNumber(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+std::uint64_t peakMemoryBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+int resolveThreads(int threads) {
+  return threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
+}
+
+}  // namespace tufa::tools

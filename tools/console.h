@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace tufa::tools {
+
+/// Turns Ctrl-C and SIGTERM into a flag, and a broken pipe into an error of the write.
+void installSignalHandlers();
+
+/// Whether the user asked to stop.
+[[nodiscard]] bool interrupted();
+
+/// Writes to standard output. Throws Error(UnwritableFile) if it is full or closed.
+void print(const std::string& text);
+
+/// One line on standard error, prefixed by the command's name.
+void printNote(const std::string& text);
+
+/// A count with a comma every three digits.
+[[nodiscard]] std::string formatCount(std::size_t count);
+
+/// A number in at most six significant digits.
+[[nodiscard]] std::string formatNumber(double value);
+
+/// The most memory that the process ever held, in bytes.
+[[nodiscard]] std::uint64_t peakMemoryBytes();
+
+/// Threads that a call with this option may use; 0 stands for all there are.
+[[nodiscard]] int resolveThreads(int threads);
+
+}  // namespace tufa::tools

@@ -1,0 +1,100 @@
+#include <CLI/CLI.hpp>
+
+#include <tufa/io.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "console.h"
+
+namespace tufa::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoArguments {
+  std::string input;
+  bool json = false;
+};
+
+Json toJson(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json toJson(const GridInfo& info) {
+  Json json;
+  json["name"] = info.name;
+  json["value_type"] = info.valueType;
+  json["class"] = info.gridClass;
+  json["transform"] = info.transform;
+  json["voxel_size"] = info.voxelSize;
+  json["active_voxels"] = info.activeVoxels;
+  json["leaves"] = info.leaves;
+  json["tiles"] = info.tiles;
+  json["memory_bytes"] = info.memoryBytes;
+  json["bounds"] = {{"min", info.boundsMin}, {"max", info.boundsMax}};
+  json["background"] = info.background;
+  json["min_value"] = toJson(info.minValue);
+  json["max_value"] = toJson(info.maxValue);
+  json["non_finite_values"] = info.nonFiniteValues;
+  json["meshable"] = info.meshable;
+  json["why_not"] = info.meshable ? Json(nullptr) : Json(info.whyNot);
+  return json;
+}
+
+std::string describe(const GridInfo& info) {
+  const auto triple = [](const auto& v, const auto& format) {
+    return format(v[0]) + " " + format(v[1]) + " " + format(v[2]);
+  };
+  const auto integer = [](int value) { return std::to_string(value); };
+  std::string text = "grid \"" + info.name + "\"\n";
+  const auto line = [&text](const char* label, const std::string& value) {
+    text += "  " + std::string(label) + value + "\n";
+  };
+  line("class            ", info.gridClass + " of " + info.valueType);
+  line("transform        ", info.transform);
+  line("voxel size       ", triple(info.voxelSize, formatNumber));
+  line("active voxels    ", formatCount(info.activeVoxels));
+  line("leaves, tiles    ", formatCount(info.leaves) + ", " + formatCount(info.tiles));
+  line("memory           ", formatCount(info.memoryBytes) + " bytes");
+  if (info.activeVoxels > 0) {
+    line("bounds           ",
+         triple(info.boundsMin, integer) + " to " + triple(info.boundsMax, integer));
+  }
+  if (info.minValue) {
+    line("values           ", formatNumber(*info.minValue) + " to " + formatNumber(*info.maxValue) +
+                                  ", background " + formatNumber(info.background));
+  }
+  line("NaN or infinite  ", formatCount(info.nonFiniteValues));
+  line("can be meshed    ", info.meshable ? "yes" : "no: " + info.whyNot);
+  return text;
+}
+
+int runInfo(const InfoArguments& arguments) {
+  const std::vector<GridInfo> grids = describeGrids(arguments.input);
+  if (arguments.json) {
+    Json json;
+    json["file"] = arguments.input;
+    json["grids"] = Json::array();
+    for (const GridInfo& grid : grids) json["grids"].push_back(toJson(grid));
+    print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    return kDone;
+  }
+  std::string text = arguments.input + ": " + std::to_string(grids.size()) +
+                     (grids.size() == 1 ? " grid\n" : " grids\n");
+  for (const GridInfo& grid : grids) text += describe(grid);
+  print(text);
+  return kDone;
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* const info = app.add_subcommand("info", "Say what a .vdb file holds");
+  info->add_option("FILE", arguments->input, "a .vdb file")->required();
+  info->add_flag("--json", arguments->json, "one JSON object on standard output");
+  info->callback([arguments, &chosen] { chosen = [arguments] { return runInfo(*arguments); }; });
+}
+
+}  // namespace tufa::tools

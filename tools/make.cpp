@@ -1,0 +1,58 @@
+#include <CLI/CLI.hpp>
+
+#include <tufa/io.h>
+#include <tufa/shapes.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "console.h"
+#include "progress_bar.h"
+
+namespace tufa::tools {
+namespace {
+
+struct MakeArguments {
+  std::string shape;
+  std::string output;
+  ShapeOptions options;
+};
+
+int runMake(const MakeArguments& arguments) {
+  requireWritable(arguments.output);
+  openvdb::FloatGrid::Ptr grid;
+  {
+    ProgressBar bar(false);
+    ShapeOptions options = arguments.options;
+    options.progress = bar.callback();
+    grid = makeShape(*shapeByName(arguments.shape), options);
+  }
+  writeGrids({grid}, arguments.output);
+  print(arguments.output + ": " + arguments.shape + ", " + formatCount(grid->activeVoxelCount()) +
+        " active voxels of " + formatNumber(arguments.options.voxelSize) + "\n");
+  return kDone;
+}
+
+}  // namespace
+
+void addMakeCommand(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<MakeArguments>();
+  CLI::App* const make = app.add_subcommand("make", "Make a demonstration volume");
+  ShapeOptions& options = arguments->options;
+  make->add_option("SHAPE", arguments->shape, "what to make")
+      ->required()
+      ->check(CLI::IsMember(std::vector<std::string>(shapeNames().begin(), shapeNames().end())));
+  make->add_option("-o,--output", arguments->output, "the .vdb file to write")->required();
+  make->add_option("--voxel", options.voxelSize, "voxel size; a shape is about 2 units in size")
+      ->capture_default_str();
+  make->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")
+      ->capture_default_str();
+  make->add_option("--seed", options.seed, "of terrain, noise and fog")->capture_default_str();
+  make->add_option("--threads", options.threads, "most threads, 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  make->callback([arguments, &chosen] { chosen = [arguments] { return runMake(*arguments); }; });
+}
+
+}  // namespace tufa::tools
