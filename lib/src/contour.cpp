@@ -1,7 +1,6 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 
-#include <algorithm>
 #include <limits>
 
 #include "base/affine.h"
@@ -58,8 +57,7 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
   report.distanceField = scale.distance;
   report.nonFiniteValues = blocks.nonFiniteValues();
   report.surfaceCells = topology.cellCount;
-  report.creaseCells = static_cast<std::size_t>(
-      std::count_if(placed.sides.begin(), placed.sides.end(), [](auto n) { return n > 1; }));
+  report.creaseCells = placed.sides.sharpCount();
   report.faceFlips = topology.faceFlips;
   report.cutEdges = topology.cutEdges;
   return mesh;

@@ -24,11 +24,17 @@ constexpr float kHalfCell = 0.5F;
 // How far a vertex may leave its cell, in voxels, where its crossings lie on two sides that meet
 // outside it.
 constexpr float kBeyond = 1.0F;
+// A vertex on one side stays in its cell up to this.
+constexpr float kSideSlack = 0.02F;
+constexpr int kProjections = 8;
 // Slack of a crossing's place on its edge.
 constexpr float kEdgeSlack = 0.01F;
 // Slack of the empty-ball test, in voxels.
 constexpr float kBallSlack = 0.06F;
-constexpr int kMostSides = 4;
+constexpr int kMostSides = 5;
+// A side within this angle (radians) and distance (voxels) of lying between two others is a blend.
+constexpr float kBlendAngle = 0.15F;
+constexpr float kBlendDistance = 0.2F;
 
 Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -54,6 +60,7 @@ CreasePlacement CreaseCell::place(int x, int y, int z, const Vector& massPoint) 
   cell_ = {x, y, z};
   collectPlanes();
   sortIntoSides();
+  dropBlendedSides();
   markCrossedSides();
   if (placeOnCorner(massPoint, false, placement) || placeOnCrease(massPoint, false, placement) ||
       placeOnCorner(massPoint, true, placement) || placeOnCrease(massPoint, true, placement) ||
@@ -77,7 +84,7 @@ void CreaseCell::collectPlanes() {
     const float away = std::max(0.0F, outside(local.foot));
     if (away > kReach) continue;
     near_.push_back(local);
-    const float quality = local.residual * local.residual + 1e-4F;
+    const float quality = local.residual * local.residual + 1e-6F;
     weights_.push_back(1 / (quality * (1 + 16 * away * away)));
   }
 }
@@ -105,6 +112,39 @@ void CreaseCell::sortIntoSides() {
     side.offset = dot(side.normal, point) / side.weight;
     sides_.push_back(side);
   }
+}
+
+// Beyond a convex edge the nearest point of the surface is on the edge, and the planes seen there
+// touch it at angles between those of the two sides. They are no sides of their own.
+bool CreaseCell::isBlend(const Side& side, const Side& a, const Side& b) const {
+  if (side.weight > a.weight || side.weight > b.weight) return false;
+  // side.normal = s a.normal + t b.normal, with s and t positive, up to a few degrees.
+  const float cosine = dot(a.normal, b.normal);
+  const float squared = 1 - cosine * cosine;
+  if (squared < 0.05F) return false;
+  const float da = dot(side.normal, a.normal), db = dot(side.normal, b.normal);
+  const float s = (da - cosine * db) / squared, t = (db - cosine * da) / squared;
+  if (s < 0 || t < 0) return false;
+  const Vector between = plus(plus({}, a.normal, s), b.normal, t);
+  const Vector apart = plus(side.normal, between, -1);
+  return dot(apart, apart) < kBlendAngle * kBlendAngle &&
+         std::abs(side.offset - s * a.offset - t * b.offset) < kBlendDistance;
+}
+
+void CreaseCell::dropBlendedSides() {
+  std::array<bool, kMostSides> drop{};
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      for (std::size_t j = i + 1; j < sides_.size(); ++j) {
+        if (i != k && j != k && isBlend(sides_[k], sides_[i], sides_[j])) drop[k] = true;
+      }
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    if (!drop[k]) sides_[kept++] = sides_[k];
+  }
+  sides_.resize(kept);
 }
 
 // A side is crossed where its plane meets a crossed edge of the cell in a point of the surface.
@@ -147,7 +187,11 @@ bool CreaseCell::isOnSurface(const Vector& point) const {
 
 void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const {
   Vector sum{};
-  for (const int side : sides) sum = plus(sum, sides_[side].normal, 1);
+  int count = 0;
+  for (const int side : sides) {
+    sum = plus(sum, sides_[side].normal, 1);
+    placement.sides[count++] = sides_[side].normal;
+  }
   const float length = std::sqrt(dot(sum, sum));
   for (int i = 0; i < 3; ++i) placement.normal[i] = length > 0 ? sum[i] / length : 0;
   placement.planes = static_cast<int>(sides.size());
@@ -231,11 +275,16 @@ bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
 bool CreaseCell::placeOnSide(const Vector& massPoint, CreasePlacement& placement) const {
   float nearest = std::numeric_limits<float>::infinity();
   for (int i = 0; i < static_cast<int>(sides_.size()); ++i) {
-    const float away = sides_[i].offset - dot(sides_[i].normal, massPoint);
-    const Vector point = plus(massPoint, sides_[i].normal, away);
-    if (std::abs(away) >= nearest || outside(point) > 0) continue;
-    if (!isOnSurface(point)) continue;
-    nearest = std::abs(away);
+    const float away = std::abs(sides_[i].offset - dot(sides_[i].normal, massPoint));
+    if (away >= nearest) continue;
+    // Into the cell and onto the plane in turn: ends where the two meet, if they do.
+    Vector point = massPoint;
+    for (int step = 0; step < kProjections; ++step) {
+      for (float& p : point) p = std::clamp(p, -kHalfCell, kHalfCell);
+      point = plus(point, sides_[i].normal, sides_[i].offset - dot(sides_[i].normal, point));
+    }
+    if (outside(point) > kSideSlack || !isOnSurface(point)) continue;
+    nearest = away;
     placement.point = point;
     setNormal(placement, {i});
   }

@@ -11,7 +11,8 @@ namespace tufa::creases {
 struct CreasePlacement {
   qef::Vector point{};    ///< in voxels from the middle of the cell
   qef::Vector normal{};   ///< outward unit normal: of the plane, or the mean of those that meet
-  int planes = 0;         ///< 1: the cell lies on one smooth side; 2: a crease; 3: a corner; 0: unknown
+  std::array<qef::Vector, 3> sides{};  ///< normals of the planes that meet
+  int planes = 0;  ///< 1: the cell lies on one smooth side; 2: a crease; 3: a corner; 0: unknown
 };
 
 /// Places the vertex of a cell near a crease from the tangent planes of the cubes around it.
@@ -45,6 +46,8 @@ class CreaseCell {
 
   void collectPlanes();
   void sortIntoSides();
+  void dropBlendedSides();
+  [[nodiscard]] bool isBlend(const Side& side, const Side& a, const Side& b) const;
   void markCrossedSides();
   [[nodiscard]] float sampleAt(int corner) const;
   [[nodiscard]] bool isOnSurface(const qef::Vector& point) const;

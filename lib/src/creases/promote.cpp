@@ -4,70 +4,104 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 namespace tufa::creases {
 namespace {
 
 using openvdb::Vec3d;
 
-// Sides whose normals differ by less than this (18 degrees) are one.
-constexpr double kSameSide = 0.95;
 // The farthest a vertex may move, in voxels.
 constexpr double kFarthest = 1.0;
+// Two corners nearer than this, in voxels, are one.
+constexpr double kSameCorner = 0.5;
+// A move opens new defects around it; few places need more than one round.
+constexpr int kRounds = 4;
 
 struct Plane {
   Vec3d point;
   Vec3d normal;
 };
 
-// `mover` goes to where its side meets that of `other`.
 struct Move {
-  VertexIndex mover;
-  VertexIndex other;
-  friend auto operator<=>(const Move&, const Move&) = default;
+  double distance = std::numeric_limits<double>::infinity();
+  std::size_t quad = 0;
+  VertexIndex vertex = 0;
+  Vec3d point;
+  MeetingSides sides;
 };
+
+Normal toNormal(const Vec3d& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+// The point of two planes nearest to `from`; none if they are nearly parallel.
+std::optional<Vec3d> onBoth(const Plane& a, const Plane& b, const Vec3d& from) {
+  const double cosine = a.normal.dot(b.normal);
+  const double squared = 1 - cosine * cosine;
+  if (squared < 0.05) return {};
+  const double da = a.normal.dot(a.point - from), db = b.normal.dot(b.point - from);
+  return from + a.normal * ((da - cosine * db) / squared) +
+         b.normal * ((db - cosine * da) / squared);
+}
+
+std::optional<Vec3d> onAll(const Plane& a, const Plane& b, const Plane& c) {
+  const Vec3d bc = b.normal.cross(c.normal);
+  const double volume = a.normal.dot(bc);
+  if (std::abs(volume) < 0.1) return {};
+  return (bc * a.normal.dot(a.point) + c.normal.cross(a.normal) * b.normal.dot(b.point) +
+          a.normal.cross(b.normal) * c.normal.dot(c.point)) /
+         volume;
+}
 
 class Promoter {
  public:
-  Promoter(Mesh& mesh, SideCounts& sides, double voxelSize)
+  Promoter(Mesh& mesh, VertexSides& sides, double voxelSize)
       : mesh_(mesh), sides_(sides), voxelSize_(voxelSize) {}
 
   std::size_t run(base::Job& job) {
-    std::vector<Move> moves = findMoves(job);
-    std::sort(moves.begin(), moves.end());
-    moves.erase(std::unique(moves.begin(), moves.end()), moves.end());
-    // All targets first: they depend on where the others were.
-    std::vector<Target> targets;
-    for (std::size_t i = 0; i < moves.size();) {
-      std::size_t end = i;
-      while (end < moves.size() && moves[end].mover == moves[i].mover) ++end;
-      if (const auto target = targetOf(moves.data() + i, end - i)) targets.push_back(*target);
-      i = end;
+    collectCorners();
+    std::size_t moved = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<Move> moves = findMoves(job);
+      // Nearest first; each is looked at again, as the ones before may have mended its quad.
+      std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
+        return a.distance != b.distance ? a.distance < b.distance : a.quad < b.quad;
+      });
+      std::size_t inRound = 0;
+      for (const Move& move : moves) {
+        if (const auto now = moveFor(move.quad)) {
+          apply(*now);
+          ++inRound;
+        }
+      }
+      moved += inRound;
+      if (inRound == 0) break;
     }
-    for (const Target& target : targets) {
-      mesh_.positions[target.vertex] = {target.point[0], target.point[1], target.point[2]};
-      mesh_.normals[target.vertex] = {static_cast<float>(target.normal[0]),
-                                      static_cast<float>(target.normal[1]),
-                                      static_cast<float>(target.normal[2])};
-      sides_[target.vertex] = target.sides;
-    }
-    return targets.size();
+    return moved;
   }
 
  private:
-  struct Target {
-    VertexIndex vertex;
-    Vec3d point;
-    Vec3d normal;
-    std::uint8_t sides;
-  };
+  void collectCorners() {
+    for (std::size_t v = 0; v < mesh_.positions.size(); ++v) {
+      const auto vertex = static_cast<VertexIndex>(v);
+      if (sides_.kind(vertex) != VertexSides::Kind::Meeting) continue;
+      if (sides_.sides(mesh_, vertex).count > 2) corners_.push_back(pointOf(vertex));
+    }
+  }
 
-  [[nodiscard]] Plane planeOf(VertexIndex v) const {
-    const Position& p = mesh_.positions[v];
-    const Normal& n = mesh_.normals[v];
-    return {{p.x, p.y, p.z}, {n.x, n.y, n.z}};
+  [[nodiscard]] Vec3d pointOf(VertexIndex vertex) const {
+    const Position& p = mesh_.positions[vertex];
+    return {p.x, p.y, p.z};
+  }
+
+  [[nodiscard]] bool isCorner(const Vec3d& point) const {
+    return std::any_of(corners_.begin(), corners_.end(), [&](const Vec3d& corner) {
+      return (corner - point).lengthSqr() < std::pow(kSameCorner * voxelSize_, 2);
+    });
   }
 
   std::vector<Move> findMoves(base::Job& job) const {
@@ -75,12 +109,13 @@ class Promoter {
     std::mutex mutex;
     job.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
       std::vector<Move> found;
-      for (std::size_t q = begin; q < end; ++q) {
-        const auto& v = mesh_.quads[q].vertices;
-        if ((sides_[v[0]] | sides_[v[1]] | sides_[v[2]] | sides_[v[3]]) == 0) continue;
-        for (int i = 0; i < 4; ++i) {
-          if (const auto move = moveFor(v[i], v[(i + 1) % 4])) found.push_back(*move);
-        }
+      for (std::size_t quad = begin; quad < end; ++quad) {
+        const auto& v = mesh_.quads[quad].vertices;
+        const bool near = std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
+          return sides_.kind(vertex) != VertexSides::Kind::Smooth;
+        });
+        if (!near) continue;
+        if (auto move = moveFor(quad)) found.push_back(*move);
       }
       const std::scoped_lock lock(mutex);
       moves.insert(moves.end(), found.begin(), found.end());
@@ -88,61 +123,114 @@ class Promoter {
     return moves;
   }
 
-  // The same answer whichever way round the edge is given.
-  [[nodiscard]] std::optional<Move> moveFor(VertexIndex a, VertexIndex b) const {
-    if (a > b) std::swap(a, b);
-    if (sides_[a] > 1 || sides_[b] > 1 || (sides_[a] | sides_[b]) == 0) return {};
-    const Plane pa = planeOf(a), pb = planeOf(b);
-    if (pa.normal.dot(pb.normal) > kSameSide) return {};
-    const auto toA = onBoth(pa, pb, pa.point), toB = onBoth(pa, pb, pb.point);
-    if (!toA || !toB) return {};
-    const double da = (*toA - pa.point).length(), db = (*toB - pb.point).length();
-    if (std::min(da, db) > kFarthest * voxelSize_) return {};
-    return da <= db ? Move{a, b} : Move{b, a};
-  }
-
-  // The point of two planes nearest to `from`; none if they are nearly parallel.
-  static std::optional<Vec3d> onBoth(const Plane& a, const Plane& b, const Vec3d& from) {
-    const double cosine = a.normal.dot(b.normal);
-    const double squared = 1 - cosine * cosine;
-    if (squared < 0.05) return {};
-    const double da = a.normal.dot(a.point - from), db = b.normal.dot(b.point - from);
-    return from + a.normal * ((da - cosine * db) / squared) +
-           b.normal * ((db - cosine * da) / squared);
-  }
-
-  static std::optional<Vec3d> onAll(const Plane& a, const Plane& b, const Plane& c) {
-    const Vec3d bc = b.normal.cross(c.normal);
-    const double volume = a.normal.dot(bc);
-    if (std::abs(volume) < 0.1) return {};
-    return (bc * a.normal.dot(a.point) + c.normal.cross(a.normal) * b.normal.dot(b.point) +
-            a.normal.cross(b.normal) * c.normal.dot(c.point)) /
-           volume;
-  }
-
-  [[nodiscard]] std::optional<Target> targetOf(const Move* moves, std::size_t count) const {
-    const VertexIndex vertex = moves[0].mover;
-    const Plane own = planeOf(vertex);
-    const Plane first = planeOf(moves[0].other);
-    const auto crease = onBoth(own, first, own.point);
-    if (!crease) return {};
-    for (std::size_t i = 1; i < count; ++i) {
-      const Plane second = planeOf(moves[i].other);
-      const auto corner = onAll(own, first, second);
-      if (!corner || (*corner - own.point).length() > kFarthest * voxelSize_) continue;
-      return Target{vertex, *corner, (own.normal + first.normal + second.normal).unitSafe(), 3};
+  // The shortest move that mends a quad; none if it needs none or none is short enough.
+  [[nodiscard]] std::optional<Move> moveFor(std::size_t quad) const {
+    const Quad& q = mesh_.quads[quad];
+    const QuadSides around(mesh_, sides_, q);
+    if (around.fits(false) || around.fits(true)) return {};
+    Move best;
+    for (int corner = 0; corner < 4; ++corner) {
+      if (!around.known(corner)) continue;
+      proposeCorners(q, around, corner, best);
     }
-    return Target{vertex, *crease, (own.normal + first.normal).unitSafe(), 2};
+    if (!(best.distance < kFarthest * voxelSize_)) {
+      for (int corner = 0; corner < 4; ++corner) {
+        if (around.known(corner)) proposeCreases(q, around, corner, best);
+      }
+    }
+    if (!(best.distance < kFarthest * voxelSize_)) return {};
+    best.quad = quad;
+    return best;
+  }
+
+  // The plane of a side, through the vertex itself if it lies on it.
+  [[nodiscard]] std::optional<Plane> planeOf(const Quad& quad, const QuadSides& around, int side,
+                                             int corner) const {
+    for (int i = 0; i < 4; ++i) {
+      const int candidate = (corner + i) % 4;
+      if (!around.known(candidate) || !around.lies(candidate, side)) continue;
+      const MeetingSides own = sides_.sides(mesh_, quad.vertices[candidate]);
+      Plane plane{pointOf(quad.vertices[candidate]), around.normal(side)};
+      double nearest = -1;
+      for (int k = 0; k < own.count; ++k) {
+        const Vec3d normal(own.normals[k].x, own.normals[k].y, own.normals[k].z);
+        if (normal.dot(around.normal(side)) <= nearest) continue;
+        nearest = normal.dot(around.normal(side));
+        plane.normal = normal;
+      }
+      return plane;
+    }
+    return {};
+  }
+
+  void proposeCreases(const Quad& quad, const QuadSides& around, int corner, Move& best) const {
+    const VertexIndex vertex = quad.vertices[corner];
+    if (sides_.isSharp(vertex)) return;
+    const Vec3d from = pointOf(vertex);
+    for (int a = 0; a < around.count(); ++a) {
+      if (!around.lies(corner, a)) continue;
+      for (int b = 0; b < around.count(); ++b) {
+        if (b == a) continue;
+        const auto pa = planeOf(quad, around, a, corner), pb = planeOf(quad, around, b, corner);
+        if (!pa || !pb) continue;
+        const auto point = onBoth(*pa, *pb, from);
+        if (point) consider(vertex, from, *point, {*pa, *pb}, best);
+      }
+    }
+  }
+
+  void proposeCorners(const Quad& quad, const QuadSides& around, int corner, Move& best) const {
+    const VertexIndex vertex = quad.vertices[corner];
+    if (around.count() < 3 || sides_.sides(mesh_, vertex).count > 2) return;
+    const Vec3d from = pointOf(vertex);
+    for (int a = 0; a < around.count(); ++a) {
+      for (int b = a + 1; b < around.count(); ++b) {
+        for (int c = b + 1; c < around.count(); ++c) {
+          if (!around.lies(corner, a) && !around.lies(corner, b) && !around.lies(corner, c)) continue;
+          const auto pa = planeOf(quad, around, a, corner), pb = planeOf(quad, around, b, corner);
+          const auto pc = planeOf(quad, around, c, corner);
+          if (!pa || !pb || !pc) continue;
+          const auto point = onAll(*pa, *pb, *pc);
+          if (point && !isCorner(*point)) consider(vertex, from, *point, {*pa, *pb, *pc}, best);
+        }
+      }
+    }
+  }
+
+  static void consider(VertexIndex vertex, const Vec3d& from, const Vec3d& point,
+                       std::initializer_list<Plane> planes, Move& best) {
+    const double distance = (point - from).length();
+    if (distance >= best.distance) return;
+    best.distance = distance;
+    best.vertex = vertex;
+    best.point = point;
+    best.sides = {};
+    for (const Plane& plane : planes) {
+      best.sides.normals[best.sides.count++] = toNormal(plane.normal);
+    }
+  }
+
+  void apply(const Move& move) {
+    mesh_.positions[move.vertex] = {move.point[0], move.point[1], move.point[2]};
+    Vec3d sum(0);
+    for (int i = 0; i < move.sides.count; ++i) {
+      const Normal& n = move.sides.normals[i];
+      sum += Vec3d(n.x, n.y, n.z);
+    }
+    mesh_.normals[move.vertex] = toNormal(sum.unitSafe());
+    sides_.setMeeting(move.vertex, move.sides);
+    if (move.sides.count > 2) corners_.push_back(move.point);
   }
 
   Mesh& mesh_;
-  SideCounts& sides_;
+  VertexSides& sides_;
   double voxelSize_;
+  std::vector<Vec3d> corners_;
 };
 
 }  // namespace
 
-std::size_t promoteToCreases(Mesh& mesh, SideCounts& sides, double voxelSize, base::Job& job) {
+std::size_t promoteToCreases(Mesh& mesh, VertexSides& sides, double voxelSize, base::Job& job) {
   return Promoter(mesh, sides, voxelSize).run(job);
 }
 

@@ -147,7 +147,7 @@ void connectQuads(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
 template <class TreeT>
 void chooseDiagonals(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
                      const base::Affine& affine, const std::vector<float>& alongs,
-                     const creases::SideCounts& sides, Mesh& mesh, base::Job& job) {
+                     const creases::VertexSides& sides, Mesh& mesh, base::Job& job) {
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = topology.blocks[i];
@@ -177,9 +177,9 @@ template void connectQuads(const blocks::Blocks<openvdb::DoubleTree>&, const Top
                            const base::Affine&, Mesh&, base::Job&);
 template void chooseDiagonals(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
                               const base::Affine&, const std::vector<float>&,
-                              const creases::SideCounts&, Mesh&, base::Job&);
+                              const creases::VertexSides&, Mesh&, base::Job&);
 template void chooseDiagonals(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
                               const base::Affine&, const std::vector<float>&,
-                              const creases::SideCounts&, Mesh&, base::Job&);
+                              const creases::VertexSides&, Mesh&, base::Job&);
 
 }  // namespace tufa::polygons

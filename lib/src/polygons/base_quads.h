@@ -7,7 +7,7 @@
 #include "base/job.h"
 #include "blocks/blocks.h"
 #include "components/topology.h"
-#include "creases/promote.h"
+#include "creases/vertex_sides.h"
 
 namespace tufa::polygons {
 
@@ -22,10 +22,10 @@ void connectQuads(const blocks::Blocks<TreeT>& blocks, const components::Topolog
 /// Beside a crease the better diagonal is the one whose triangles lie in the planes of the vertices
 /// beside it. Elsewhere it is the one that passes nearer to the crossing, where the surface is known
 /// to be; where both do, the one with the larger smallest angle. `alongs` holds the place of each
-/// quad's crossing on its edge, `sides` how many smooth sides meet at each vertex.
+/// quad's crossing on its edge, `sides` says which vertices lie on creases.
 template <class TreeT>
 void chooseDiagonals(const blocks::Blocks<TreeT>& blocks, const components::Topology& topology,
                      const base::Affine& affine, const std::vector<float>& alongs,
-                     const creases::SideCounts& sides, Mesh& mesh, base::Job& job);
+                     const creases::VertexSides& sides, Mesh& mesh, base::Job& job);
 
 }  // namespace tufa::polygons

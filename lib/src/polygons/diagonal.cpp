@@ -69,23 +69,26 @@ std::array<Vec3d, 4> turned(const std::array<Vec3d, 4>& c) { return {c[1], c[2],
 
 }  // namespace
 
-bool secondDiagonalIsBetter(const Mesh& mesh, const Quad& quad, const creases::SideCounts& sides,
+bool secondDiagonalIsBetter(const Mesh& mesh, const Quad& quad, const creases::VertexSides& sides,
                             const Position& crossing, const Vec3d& direction) {
   std::array<Vec3d, 4> corners;
   bool crease = false;
   for (int i = 0; i < 4; ++i) {
     const Position& p = mesh.positions[quad.vertices[i]];
     corners[i] = {p.x, p.y, p.z};
-    crease |= sides[quad.vertices[i]] > 1;
+    crease |= sides.isSharp(quad.vertices[i]);
   }
   const Split even(corners), odd(turned(corners));
   if (crease) {
+    const creases::QuadSides around(mesh, sides, quad);
+    const bool fits[2] = {around.fits(false), around.fits(true)};
+    if (fits[0] != fits[1]) return fits[1];
     std::array<Vec3d, 4> normals;
     std::array<bool, 4> oneSided{};
     for (int i = 0; i < 4; ++i) {
       const Normal& n = mesh.normals[quad.vertices[i]];
       normals[i] = {n.x, n.y, n.z};
-      oneSided[i] = sides[quad.vertices[i]] < 2;
+      oneSided[i] = !sides.isSharp(quad.vertices[i]);
     }
     const double bends[2] = {
         bendAt(even, normals, oneSided),

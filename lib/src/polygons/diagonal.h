@@ -4,7 +4,7 @@
 
 #include <tufa/mesh.h>
 
-#include "creases/promote.h"
+#include "creases/vertex_sides.h"
 
 namespace tufa::polygons {
 
@@ -12,7 +12,7 @@ namespace tufa::polygons {
 /// `crossing` is a point of the surface that the quad stands around, `direction` the outward
 /// direction of the lattice edge there, of the length of a voxel.
 [[nodiscard]] bool secondDiagonalIsBetter(const Mesh& mesh, const Quad& quad,
-                                          const creases::SideCounts& sides,
+                                          const creases::VertexSides& sides,
                                           const Position& crossing,
                                           const openvdb::Vec3d& direction);
 

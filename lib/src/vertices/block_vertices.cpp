@@ -16,10 +16,12 @@ constexpr float kHalfCell = 0.499F;
 // A mean normal shorter than this is of more than one side (two of equal weight, 30 degrees apart).
 constexpr float kOneSide = 0.966F;
 
-// How many smooth sides the planes of a QEF seem to belong to: one or more than one.
-std::uint8_t sidesOf(const qef::Qef& qef) {
+using Kind = creases::VertexSides::Kind;
+
+// Whether the planes of a QEF seem to belong to one smooth side.
+Kind kindOf(const qef::Qef& qef) {
   const float squared = qef::dot(qef.normals, qef.normals);
-  return squared < kOneSide * kOneSide * qef.count * qef.count ? 2 : 1;
+  return squared < kOneSide * kOneSide * qef.count * qef.count ? Kind::Unknown : Kind::Near;
 }
 
 }  // namespace
@@ -54,7 +56,8 @@ void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock&
     });
   }
   qefs_.assign(cells_.size(), {});
-  sides_.assign(cells_.size(), 0);
+  kinds_.assign(cells_.size(), Kind::Smooth);
+  meetings_.clear();
 }
 
 // Every crossed edge of the block's cells, those on its upper faces included. The edges that start
@@ -121,7 +124,7 @@ void BlockVertices::addCrossing(int axis, int x, int y, int z, bool owned) {
     point[u] = static_cast<float>(du) - 0.5F;
     point[v] = static_cast<float>(dv) - 0.5F;
     qefs_[vertex].add(point, crossing.normal);
-    sides_[vertex] |= crossing.crease ? 1 : 0;
+    if (crossing.crease) kinds_[vertex] = Kind::Near;
   }
 }
 
@@ -132,19 +135,21 @@ void BlockVertices::solveAll() {
   for (std::size_t i = 0; i < qefs_.size(); ++i) {
     points_[i] = qef::solve(qefs_[i], kHalfCell);
     normals_[i] = qefs_[i].normals;
-    if (sides_[i] == 0) continue;
+    if (kinds_[i] == Kind::Smooth) continue;
     if (fresh) creaseCell_.reset();
     fresh = false;
     const int cell = cells_[i];
     const creases::CreasePlacement placement = creaseCell_.place(
         cell >> 6, (cell >> 3) & 7, cell & 7, qefs_[i].massPoint());
     if (placement.planes == 0) {
-      sides_[i] = sidesOf(qefs_[i]);
+      kinds_[i] = kindOf(qefs_[i]);
       continue;
     }
     points_[i] = placement.point;
     normals_[i] = placement.normal;
-    sides_[i] = static_cast<std::uint8_t>(placement.planes);
+    if (placement.planes == 1) continue;
+    kinds_[i] = Kind::Meeting;
+    meetings_.push_back({static_cast<std::uint32_t>(i), placement.planes, placement.sides});
   }
 }
 

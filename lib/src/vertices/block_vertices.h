@@ -8,6 +8,7 @@
 #include "blocks/samples.h"
 #include "components/topology.h"
 #include "creases/crease_cell.h"
+#include "creases/vertex_sides.h"
 #include "crossings/crossings.h"
 #include "qef/qef.h"
 
@@ -34,8 +35,15 @@ class BlockVertices {
   [[nodiscard]] const std::vector<qef::Vector>& normals() const { return normals_; }
   /// For each quad of the block in its order, the place of the crossing on its edge, 0 to 1.
   [[nodiscard]] const std::vector<float>& alongs() const { return alongs_; }
-  /// For each vertex, how many smooth sides meet there; see creases::SideCounts.
-  [[nodiscard]] const std::vector<std::uint8_t>& sides() const { return sides_; }
+  /// A vertex on a crease or corner, and the normals of the sides that meet there, in index space.
+  struct Meeting {
+    std::uint32_t vertex;
+    int count;
+    std::array<qef::Vector, 3> normals;
+  };
+  [[nodiscard]] const std::vector<Meeting>& meetings() const { return meetings_; }
+  /// Each vertex's relation to creases.
+  [[nodiscard]] const std::vector<creases::VertexSides::Kind>& kinds() const { return kinds_; }
 
  private:
   void numberVertices(const components::Topology& topology,
@@ -56,7 +64,8 @@ class BlockVertices {
   std::array<std::uint16_t, blocks::kBlockCells> cutEdgesOf_;             ///< if special_
   std::vector<std::uint16_t> cells_;
   std::vector<qef::Qef> qefs_;
-  std::vector<std::uint8_t> sides_;  ///< 1 from the first crossing with a kink on
+  std::vector<creases::VertexSides::Kind> kinds_;
+  std::vector<Meeting> meetings_;
   std::vector<qef::Vector> points_;
   std::vector<qef::Vector> normals_;
   std::vector<float> alongs_;

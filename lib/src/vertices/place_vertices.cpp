@@ -1,10 +1,25 @@
 #include "vertices/place_vertices.h"
 
 #include <algorithm>
+#include <mutex>
 
 #include "vertices/block_vertices.h"
 
 namespace tufa::vertices {
+namespace {
+
+creases::MeetingSides worldSides(const BlockVertices::Meeting& meeting,
+                                 const base::Affine& affine) {
+  creases::MeetingSides sides;
+  sides.count = static_cast<std::uint8_t>(meeting.count);
+  for (int i = 0; i < meeting.count; ++i) {
+    const qef::Vector& n = meeting.normals[i];
+    sides.normals[i] = affine.normal(n[0], n[1], n[2]);
+  }
+  return sides;
+}
+
+}  // namespace
 
 template <class TreeT>
 Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldScale& scale,
@@ -12,7 +27,8 @@ Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldSca
                      bool normals, Mesh& mesh, base::Job& job) {
   Placed placed;
   placed.alongs.resize(topology.quadCount);
-  placed.sides.resize(topology.vertexCount);
+  placed.sides = creases::VertexSides(topology.vertexCount);
+  std::mutex mutex;
   mesh.positions.resize(topology.vertexCount);
   if (normals) mesh.normals.resize(topology.vertexCount);
   job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -33,8 +49,16 @@ Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldSca
         const qef::Vector& n = work.normals()[v];
         mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
       }
-      std::copy(work.sides().begin(), work.sides().end(),
-                placed.sides.begin() + static_cast<std::ptrdiff_t>(block.firstVertex));
+      for (std::size_t v = 0; v < work.kinds().size(); ++v) {
+        placed.sides.setKind(static_cast<VertexIndex>(block.firstVertex + v), work.kinds()[v]);
+      }
+      if (!work.meetings().empty()) {
+        const std::scoped_lock lock(mutex);
+        for (const BlockVertices::Meeting& meeting : work.meetings()) {
+          placed.sides.setMeeting(static_cast<VertexIndex>(block.firstVertex + meeting.vertex),
+                                  worldSides(meeting, affine));
+        }
+      }
       std::copy(work.alongs().begin(), work.alongs().end(),
                 placed.alongs.begin() + static_cast<std::ptrdiff_t>(block.firstQuad));
     }

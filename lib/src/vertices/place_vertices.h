@@ -9,14 +9,14 @@
 #include "blocks/blocks.h"
 #include "blocks/field.h"
 #include "components/topology.h"
-#include "creases/promote.h"
+#include "creases/vertex_sides.h"
 
 namespace tufa::vertices {
 
 /// What placeVertices() leaves beside the mesh.
 struct Placed {
-  std::vector<float> alongs;  ///< for each quad, the place of the crossing on its edge
-  creases::SideCounts sides;  ///< for each vertex, how many smooth sides meet there
+  std::vector<float> alongs;   ///< for each quad, the place of the crossing on its edge
+  creases::VertexSides sides;  ///< which vertices lie on creases
 };
 
 /// Sizes and fills the positions of the mesh and, if asked, its normals from the field's gradient.

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tufa/mesh.h>
+#include <unordered_map>
+#include <vector>
+
+namespace tufa::creases {
+
+/// The smooth sides of the surface that meet at one vertex on a crease (2) or corner (3).
+struct MeetingSides {
+  std::uint8_t count = 0;
+  std::array<Normal, 3> normals{};  ///< outward, world space
+};
+
+/// Which smooth sides of the surface each vertex of a mesh lies on.
+///
+/// Almost every vertex lies on one, whose normal is the vertex's own; only vertices on creases and
+/// corners have an entry of their own.
+class VertexSides {
+ public:
+  /// A crease runs near, or through, the vertex.
+  enum class Kind : std::uint8_t {
+    Smooth,    ///< no kink of the field was seen
+    Near,      ///< on one side, with a crease nearby
+    Meeting,   ///< on a crease or corner; sides() says which
+    Unknown,   ///< on several sides that could not be told apart
+  };
+
+  explicit VertexSides(std::size_t vertices = 0) : kinds_(vertices, Kind::Smooth) {}
+
+  [[nodiscard]] Kind kind(VertexIndex vertex) const { return kinds_[vertex]; }
+  [[nodiscard]] bool isSharp(VertexIndex vertex) const { return kinds_[vertex] >= Kind::Meeting; }
+  /// For vertices of different ranges this may be called from several threads.
+  void setKind(VertexIndex vertex, Kind kind) { kinds_[vertex] = kind; }
+  void setMeeting(VertexIndex vertex, const MeetingSides& sides) {
+    kinds_[vertex] = Kind::Meeting;
+    meeting_[vertex] = sides;
+  }
+  /// The sides of a vertex; count 0 if they are unknown.
+  [[nodiscard]] MeetingSides sides(const Mesh& mesh, VertexIndex vertex) const;
+  /// Number of vertices on creases and corners.
+  [[nodiscard]] std::size_t sharpCount() const;
+
+ private:
+  std::vector<Kind> kinds_;
+  std::unordered_map<VertexIndex, MeetingSides> meeting_;
+};
+
+/// The sides around one quad: its corners' sides, equal ones merged.
+class QuadSides {
+ public:
+  QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& quad);
+
+  /// Whether both triangles of the split at diagonal 0-2 (or 1-3) lie on one side each. A triangle
+  /// that does not cuts off a crease or corner.
+  [[nodiscard]] bool fits(bool secondDiagonal) const;
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] const openvdb::Vec3d& normal(int side) const { return normals_[side]; }
+  /// Whether corner `corner` of the quad lies on `side`.
+  [[nodiscard]] bool lies(int corner, int side) const { return ((masks_[corner] >> side) & 1) != 0; }
+  /// Whether the sides of the corner are known.
+  [[nodiscard]] bool known(int corner) const { return masks_[corner] != kAll; }
+
+ private:
+  static constexpr unsigned kAll = ~0U;
+  std::array<unsigned, 4> masks_{};
+  std::array<openvdb::Vec3d, 12> normals_;
+  int count_ = 0;
+};
+
+}  // namespace tufa::creases
