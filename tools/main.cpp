@@ -58,7 +58,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   Command chosen;
   addMakeCommand(app, chosen);
+  addVoxelizeCommand(app, chosen);
   addInfoCommand(app, chosen);
+  addMeshCommand(app, chosen);
+  addCheckCommand(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -1,0 +1,170 @@
+#include "io/input_bytes.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace tufa::io {
+namespace {
+
+/// Closes a file descriptor at the end of its scope.
+struct Descriptor {
+  int number;
+  explicit Descriptor(int opened) : number(opened) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+constexpr std::string_view kBlanks = " \t\r\v\f";
+
+/// A word as it may be shown in a message: short, and printable.
+std::string shown(std::string_view word) {
+  constexpr std::size_t kLongest = 40;
+  std::string text(word.substr(0, kLongest));
+  for (char& c : text) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return "\"" + text + (word.size() > kLongest ? "...\"" : "\"");
+}
+
+std::string_view withoutPlus(std::string_view word) {
+  return word.size() > 1 && word.front() == '+' ? word.substr(1) : word;
+}
+
+}  // namespace
+
+InputBytes::InputBytes(const std::filesystem::path& path) : path_(path) {
+  // O_NONBLOCK: a pipe without a writer is refused, not waited for.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.number < 0) fail(std::strerror(errno));
+  struct stat status {};
+  if (::fstat(file.number, &status) != 0) fail(std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) fail("it is a folder");
+  if (!S_ISREG(status.st_mode)) fail("it is not a regular file");
+  size_ = static_cast<std::size_t>(status.st_size);
+  if (size_ == 0) fail("the file is empty");
+  bytes_ = std::make_unique_for_overwrite<char[]>(size_);
+  for (std::size_t done = 0; done < size_;) {
+    const ssize_t count = ::read(file.number, bytes_.get() + done, size_ - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(std::strerror(errno));
+    if (count == 0) fail("the file became shorter while it was read");
+    done += static_cast<std::size_t>(count);
+  }
+}
+
+void InputBytes::fail(const std::string& cause) const {
+  throw Error(ErrorCode::UnreadableFile, "cannot read " + path_.string() + ": " + cause);
+}
+
+void InputBytes::failAtByte(std::size_t offset, const std::string& cause) const {
+  fail("byte " + std::to_string(offset) + ": " + cause);
+}
+
+void InputBytes::failAtLine(std::size_t line, const std::string& cause) const {
+  fail("line " + std::to_string(line) + ": " + cause);
+}
+
+bool TextCursor::nextLine(bool continued) {
+  if (rest_.empty()) {
+    words_ = {};
+    return false;
+  }
+  line_ = nextLine_;
+  joined_.clear();
+  while (true) {
+    const std::size_t length = std::min(rest_.find('\n'), rest_.size());
+    std::string_view line = rest_.substr(0, length);
+    rest_.remove_prefix(std::min(length + 1, rest_.size()));
+    ++nextLine_;
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (continued && !line.empty() && line.back() == '\\' && !rest_.empty()) {
+      line.remove_suffix(1);
+      joined_.append(line).append(" ");
+      continue;
+    }
+    if (joined_.empty()) {
+      words_ = line;
+    } else {
+      joined_.append(line);
+      words_ = joined_;
+    }
+    return true;
+  }
+}
+
+bool TextCursor::nextContentLine() {
+  while (nextLine()) {
+    words_ = words_.substr(0, words_.find('#'));
+    if (words_.find_first_not_of(kBlanks) != std::string_view::npos) return true;
+  }
+  return false;
+}
+
+std::string_view TextCursor::nextWord() {
+  const std::size_t start = words_.find_first_not_of(kBlanks);
+  if (start == std::string_view::npos) {
+    words_ = {};
+    return {};
+  }
+  words_.remove_prefix(start);
+  const std::string_view word = words_.substr(0, words_.find_first_of(kBlanks));
+  words_.remove_prefix(word.size());
+  return word;
+}
+
+std::string_view TextCursor::nextWordAnywhere() {
+  while (true) {
+    const std::string_view word = nextWord();
+    if (!word.empty()) return word;
+    if (!nextLine()) fail("the file ends too early");
+  }
+}
+
+double TextCursor::parseNumber(std::string_view word) const {
+  if (word.empty()) fail("a number is missing");
+  const std::string_view digits = withoutPlus(word);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range) {
+    value = std::strtod(std::string(digits).c_str(), nullptr);  // tells 0 from infinity
+  } else if (error != std::errc() || end != digits.data() + digits.size()) {
+    fail(shown(word) + " is not a number");
+  }
+  if (!std::isfinite(value)) fail(shown(word) + " is not finite");
+  return value;
+}
+
+std::int64_t TextCursor::parseInteger(std::string_view word) const {
+  if (word.empty()) fail("an integer is missing");
+  const std::string_view digits = withoutPlus(word);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) {
+    fail(shown(word) + " is not an integer");
+  }
+  return value;
+}
+
+double TextCursor::nextNumber() { return parseNumber(nextWord()); }
+
+std::int64_t TextCursor::nextInteger() { return parseInteger(nextWord()); }
+
+bool sameWord(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+}  // namespace tufa::io

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tufa::io {
+
+/// A whole file in memory.
+class InputBytes {
+ public:
+  /// Throws Error(UnreadableFile) for all but regular files that can be read.
+  explicit InputBytes(const std::filesystem::path& path);
+
+  [[nodiscard]] std::string_view view() const { return {bytes_.get(), size_}; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// Throws Error(UnreadableFile) that names the file and the cause.
+  [[noreturn]] void fail(const std::string& cause) const;
+  [[noreturn]] void failAtByte(std::size_t offset, const std::string& cause) const;
+  [[noreturn]] void failAtLine(std::size_t line, const std::string& cause) const;
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<char[]> bytes_;
+  std::size_t size_ = 0;
+};
+
+/// Goes through text line by line and word by word, and knows the number of the line.
+class TextCursor {
+ public:
+  TextCursor(const InputBytes& input, std::size_t offset, std::size_t firstLine)
+      : input_(input), rest_(input.view().substr(offset)), nextLine_(firstLine) {}
+
+  /// Moves to the next line; false at the end of the file. `continued` joins lines that end in a
+  /// backslash with the ones below.
+  bool nextLine(bool continued = false);
+
+  /// Moves to the next line that has words before any '#'.
+  bool nextContentLine();
+
+  /// The next word of the line, empty at its end.
+  std::string_view nextWord();
+
+  /// The next word of this line or, if it has no more, of the lines below; fails at the end of
+  /// file.
+  std::string_view nextWordAnywhere();
+
+  /// Words as numbers. Fail where there is none, and numbers that are not finite.
+  double parseNumber(std::string_view word) const;
+  std::int64_t parseInteger(std::string_view word) const;
+  double nextNumber();
+  std::int64_t nextInteger();
+
+  [[nodiscard]] std::size_t line() const { return line_; }
+  [[nodiscard]] std::size_t bytesLeft() const { return rest_.size() + words_.size(); }
+  [[noreturn]] void fail(const std::string& cause) const { input_.failAtLine(line_, cause); }
+
+ private:
+  const InputBytes& input_;
+  std::string_view rest_;   ///< below the current line
+  std::string_view words_;  ///< of the current line, not read yet
+  std::string joined_;      ///< holds a line that was continued
+  std::size_t nextLine_;
+  std::size_t line_ = 0;
+};
+
+/// Whether two words are the same but for the case of ASCII letters.
+[[nodiscard]] bool sameWord(std::string_view a, std::string_view b);
+
+}  // namespace tufa::io

@@ -1,0 +1,255 @@
+#include <CLI/CLI.hpp>
+
+#include <tufa/check.h>
+#include <tufa/contour.h>
+#include <tufa/error.h>
+#include <tufa/io.h>
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "console.h"
+#include "progress_bar.h"
+#include "report.h"
+
+namespace tufa::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MeshArguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> grid;
+  ContourOptions contour;
+  bool check = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// What one run found and how long its parts took.
+struct MeshRun {
+  std::string gridName;
+  Mesh mesh;
+  ContourReport contour;
+  std::optional<CheckReport> check;
+  double readSeconds = 0;
+  double contourSeconds = 0;
+  double checkSeconds = 0;
+  double writeSeconds = 0;
+};
+
+/// Seconds that a piece of work takes.
+template <class Work>
+double timed(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
+  if (!grid.empty()) return;
+  throw Error(ErrorCode::UnsupportedGrid,
+              "grid \"" + grid.getName() + "\" in " + file + " has no active voxels");
+}
+
+void requireSurface(const MeshRun& run, const openvdb::GridBase& grid, const std::string& file) {
+  if (run.mesh.triangleCount() > 0) return;
+  const GridInfo info = describeGrid(grid);
+  std::string range = "has no finite value";
+  if (info.minValue) {
+    range = "has values from " + formatNumber(*info.minValue) + " to " +
+            formatNumber(*info.maxValue) + " and background " + formatNumber(info.background);
+  }
+  throw Error(ErrorCode::UnsupportedGrid, "no surface at isovalue " +
+                                              formatNumber(run.contour.isovalue) + ": grid \"" +
+                                              grid.getName() + "\" in " + file + " " + range);
+}
+
+MeshRun runStages(const MeshArguments& arguments) {
+  ProgressBar bar(arguments.quiet);
+  MeshRun run;
+  openvdb::GridBase::Ptr grid;
+  run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
+  run.gridName = grid->getName();
+  requireVoxels(*grid, arguments.input);
+
+  ContourOptions contourOptions = arguments.contour;
+  contourOptions.progress = bar.callback();
+  run.contourSeconds = timed([&] { run.mesh = contour(*grid, contourOptions, &run.contour); });
+  requireSurface(run, *grid, arguments.input);
+  grid.reset();
+
+  if (arguments.check) {
+    CheckOptions checkOptions;
+    checkOptions.threads = arguments.contour.threads;
+    checkOptions.progress = bar.callback();
+    run.checkSeconds = timed([&] { run.check = check(run.mesh, checkOptions); });
+  }
+  WriteOptions writeOptions;
+  if (!run.gridName.empty()) writeOptions.name = run.gridName;
+  writeOptions.progress = bar.callback();
+  run.writeSeconds = timed([&] { write(run.mesh, arguments.output, writeOptions); });
+  return run;
+}
+
+Json runToJson(const MeshRun& run, const MeshArguments& arguments) {
+  Json json;
+  json["file"] = arguments.input;
+  json["grid"] = run.gridName;
+  json["output"] = arguments.output;
+  json["isovalue"] = run.contour.isovalue;
+  json["inside"] = run.contour.insideIsBelow ? "below" : "above";
+  json["distance_field"] = run.contour.distanceField;
+  json["active_voxels"] = run.contour.activeVoxels;
+  json["non_finite_values"] = run.contour.nonFiniteValues;
+  json["surface_cells"] = run.contour.surfaceCells;
+  json["crease_cells"] = run.contour.creaseCells;
+  json["cut_edges"] = run.contour.cutEdges;
+  json["face_flips"] = run.contour.faceFlips;
+  json["vertices"] = run.mesh.positions.size();
+  json["triangles"] = run.mesh.triangleCount();
+  json["quads"] = run.mesh.quads.size();
+  Json stages = Json::object();
+  for (const StageTime& stage : run.contour.stages) stages[stage.stage] = stage.seconds;
+  json["seconds"] = {{"read", run.readSeconds},
+                     {"contour", run.contourSeconds},
+                     {"check", run.checkSeconds},
+                     {"write", run.writeSeconds},
+                     {"stages", stages}};
+  json["peak_memory_bytes"] = peakMemoryBytes();
+  json["threads"] = resolveThreads(arguments.contour.threads);
+  if (run.check) json["check"] = toJson(*run.check);
+  return json;
+}
+
+std::string summary(const MeshRun& run, const MeshArguments& arguments) {
+  const double total = run.readSeconds + run.contourSeconds + run.checkSeconds + run.writeSeconds;
+  std::string text = arguments.output + ": " + formatCount(run.mesh.triangleCount()) +
+                     " triangles (" + formatCount(run.mesh.quads.size()) + " quads), " +
+                     formatCount(run.mesh.positions.size()) + " vertices from " +
+                     formatCount(run.contour.activeVoxels) + " active voxels\n";
+  text += "isovalue " + formatNumber(run.contour.isovalue) + ", inside is " +
+          (run.contour.insideIsBelow ? "below" : "above") + "\n";
+  text += formatNumber(total) + " s: read " + formatNumber(run.readSeconds) + ", contour " +
+          formatNumber(run.contourSeconds) + ", check " + formatNumber(run.checkSeconds) +
+          ", write " + formatNumber(run.writeSeconds) + "\n";
+  if (run.check) text += describe(*run.check);
+  return text;
+}
+
+/// The promises that a mesh breaks, for a message.
+std::string brokenPromises(const CheckReport& report) {
+  std::string text;
+  const auto add = [&](bool broken, const char* promise) {
+    if (broken) text += (text.empty() ? "not " : ", not ") + std::string(promise);
+  };
+  add(!report.closed, "closed");
+  add(!report.manifold, "manifold");
+  add(!report.oriented, "oriented");
+  add(report.closed && report.oriented && !report.outward, "outward");
+  add(report.invalidFaces + report.duplicateFaces > 0, "free of invalid or duplicate faces");
+  return text.empty() ? "it holds degenerate faces" : text;
+}
+
+/// Whether a mesh breaks no promise but to be closed, and that because the data ends.
+bool openOnlyWhereDataEnds(const MeshRun& run) {
+  const CheckReport& report = *run.check;
+  return run.contour.cutEdges > 0 && report.boundaryEdges > 0 && report.manifold &&
+         report.oriented && report.invalidFaces + report.duplicateFaces == 0;
+}
+
+/// Says on standard error what the user should know about the mesh; gives the exit code.
+int judge(const MeshRun& run) {
+  if (run.contour.nonFiniteValues > 0) {
+    printNote("note: " + formatCount(run.contour.nonFiniteValues) +
+              " NaN or infinite values were taken as outside");
+  }
+  if (run.contour.cutEdges > 0) {
+    printNote("note: the surface runs out of the data at " + formatCount(run.contour.cutEdges) +
+              " lattice edges and is open there; --cap closes it");
+  }
+  if (!run.check || run.check->watertight()) return kDone;
+  if (openOnlyWhereDataEnds(run)) {
+    printNote("note: the mesh has " + formatCount(run.check->boundaryEdges) +
+              " boundary edges where the data ends");
+  } else {
+    printNote("the mesh is not watertight: " + brokenPromises(*run.check));
+  }
+  return kPromiseBroken;
+}
+
+int runMesh(const MeshArguments& arguments) {
+  // What is plain now need not wait for the work to be done.
+  requireMeshEnding(arguments.output);
+  requireWritable(arguments.output);
+  const MeshRun run = runStages(arguments);
+  const int exitCode = judge(run);
+  if (arguments.json) {
+    print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  } else if (!arguments.quiet) {
+    print(summary(run, arguments));
+  }
+  return exitCode;
+}
+
+/// An option whose value is one of some names.
+template <class Enum>
+void addChoice(CLI::App& app, const std::string& name, Enum& value,
+               const std::map<std::string, Enum>& choices, const std::string& help) {
+  std::string names;
+  for (const auto& [choice, number] : choices) names += (names.empty() ? "" : "|") + choice;
+  app.add_option(name, value, help)
+      ->transform(CLI::Transformer(choices).description(""))
+      ->type_name(names);
+}
+
+void addContourOptions(CLI::App& app, ContourOptions& options) {
+  app.add_option("--iso", options.isovalue,
+                 "value on the surface; default: 0 for level sets, else half way between the "
+                 "least and the greatest value");
+  addChoice<Inside>(app, "--inside", options.inside,
+                    {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
+                    "which side of the isovalue is solid (default auto)");
+  addChoice<Ambiguity>(app, "--ambiguity", options.ambiguity,
+                       {{"separate", Ambiguity::Separate},
+                        {"join", Ambiguity::Join},
+                        {"asymptotic", Ambiguity::Asymptotic},
+                        {"chord", Ambiguity::Chord}},
+                       "rule for ambiguous cell faces (default separate)");
+  addChoice<Normals>(
+      app, "--normals", options.normals,
+      {{"gradient", Normals::Gradient}, {"faces", Normals::Faces}, {"none", Normals::None}},
+      "where the normals come from (default gradient)");
+  addChoice<NonFinite>(app, "--nan", options.nonFinite,
+                       {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
+                       "what to do with NaN and infinite values (default refuse)");
+  app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
+  app.add_option("--threads", options.threads, "most threads, 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void addMeshCommand(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<MeshArguments>();
+  CLI::App* const mesh = app.add_subcommand("mesh", "Mesh the surface of a volume");
+  mesh->add_option("FILE", arguments->input, "a .vdb file")->required();
+  mesh->add_option("-o,--output", arguments->output,
+                   "the mesh to write: .ply (binary), .obj, .stl, .off or .glb")
+      ->required();
+  mesh->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
+  addContourOptions(*mesh, arguments->contour);
+  mesh->add_flag("--check", arguments->check, "check the mesh; exit 1 if it is not watertight");
+  mesh->add_flag("--json", arguments->json, "one JSON object on standard output");
+  mesh->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
+  mesh->callback([arguments, &chosen] { chosen = [arguments] { return runMesh(*arguments); }; });
+}
+
+}  // namespace tufa::tools
