@@ -39,22 +39,22 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
   vertices::Placed placed =
       vertices::placeVertices(blocks, scale, topology, affine, normals, mesh, job);
 
-  job.beginStage("polygons", 0.9);
-  polygons::connectQuads(blocks, topology, affine, mesh, job);
+  job.beginStage("polygons", 0.95);
+  const polygons::QuadContext<TreeT> quads{blocks, topology, affine, placed.alongs, placed.sides};
+  polygons::connectQuads(quads, mesh, job);
 
-  job.beginStage("creases", 0.92);
+  job.beginStage("creases", 1.0);
   if (scale.distance) {
     creases::promoteToCreases(mesh, placed.sides, affine.voxelSize(), job);
+    polygons::splitAtCreases(quads, mesh, job);
   }
-
-  job.beginStage("diagonals", 1.0);
-  polygons::chooseDiagonals(blocks, topology, affine, placed.alongs, placed.sides, mesh, job);
   if (options.normals == Normals::Faces) vertices::setFaceNormals(mesh, job);
   if (options.normals == Normals::None) mesh.normals = {};
 
   report.isovalue = iso.isovalue;
   report.insideIsBelow = iso.insideIsBelow;
   report.distanceField = scale.distance;
+  report.activeVoxels = blocks.activeVoxels();
   report.nonFiniteValues = blocks.nonFiniteValues();
   report.surfaceCells = topology.cellCount;
   report.creaseCells = placed.sides.sharpCount();
@@ -74,7 +74,6 @@ Mesh runContour(const GridT& grid, const ContourOptions& options, ContourReport*
     mesh = contourGrid(grid, options, out, job);
     out.stages = job.finish();
   });
-  if (report != nullptr) out.activeVoxels = grid.activeVoxelCount();
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 #include "blocks/blocks.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -83,7 +84,7 @@ Blocks<TreeT>::Blocks(const TreeT& tree, const IsoChoice& iso, NonFinite nonFini
     for (std::size_t i = begin; i < end; ++i) values_[i] = leaves[i]->buffer().data();
   });
   readSigns(job);
-  countNonFiniteTiles();
+  readTiles();
   if (nonFiniteValues_ > 0 && nonFinite == NonFinite::Refuse) refuseNonFinite();
   buildTable();
   addTileBlocks(job);
@@ -101,9 +102,12 @@ void Blocks<TreeT>::readSigns(base::Job& job) {
   const Value limit = threshold<Value>(iso_);
   std::mutex mutex;
   std::size_t firstBad = values_.size();
+  std::atomic<std::size_t> active{0};
   job.forRanges(values_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::size_t activeHere = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Value* values = values_[i];
+      activeHere += masks_[i]->countOn();
       if (iso_.insideIsBelow) {
         packSides<true>(values, limit, inside_[i]);
       } else {
@@ -121,11 +125,13 @@ void Blocks<TreeT>::readSigns(base::Job& job) {
         }
       }
     }
+    active += activeHere;
   });
+  activeVoxels_ = active;
 }
 
 template <class TreeT>
-void Blocks<TreeT>::countNonFiniteTiles() {
+void Blocks<TreeT>::readTiles() {
   if (!std::isfinite(tree_->background())) {
     throw Error(ErrorCode::NonFiniteValues,
                 "the grid's background is not a finite number; set a finite background");
@@ -133,6 +139,7 @@ void Blocks<TreeT>::countNonFiniteTiles() {
   auto tile = tree_->cbeginValueAll();
   tile.setMaxDepth(tile.getLeafDepth() - 1);
   for (; tile; ++tile) {
+    if (tile.isValueOn()) activeVoxels_ += tile.getVoxelCount();
     if (std::isfinite(*tile)) continue;
     if (nonFiniteValues_++ == 0) firstNonFinite_ = tile.getCoord();
   }

@@ -55,12 +55,14 @@ class Blocks {
   [[nodiscard]] const TreeT& tree() const { return *tree_; }
   [[nodiscard]] const IsoChoice& iso() const { return iso_; }
   [[nodiscard]] std::size_t nonFiniteValues() const { return nonFiniteValues_; }
+  /// Active voxels of the grid, those of tiles included.
+  [[nodiscard]] std::size_t activeVoxels() const { return activeVoxels_; }
 
  private:
   using Leaf = typename TreeT::LeafNodeType;
 
   void readSigns(base::Job& job);
-  void countNonFiniteTiles();
+  void readTiles();
   [[noreturn]] void refuseNonFinite() const;
   void addTileBlocks(base::Job& job);
   void tilesBelowLeaf(BlockRef block, Accessor& accessor, std::vector<openvdb::Coord>& found) const;
@@ -69,6 +71,7 @@ class Blocks {
   const TreeT* tree_;
   IsoChoice iso_;
   std::size_t nonFiniteValues_ = 0;
+  std::size_t activeVoxels_ = 0;
   openvdb::Coord firstNonFinite_;
   std::vector<openvdb::Coord> origins_;
   std::vector<const Value*> values_;

@@ -1,5 +1,7 @@
 #include "polygons/base_quads.h"
 
+#include <algorithm>
+
 #include "base/bits.h"
 #include "polygons/diagonal.h"
 
@@ -89,97 +91,126 @@ class VertexTable {
 // axis and the one after it, in cyclic order of the axes.
 constexpr int kAround[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
 
-// Calls body(quad, lattice point in the block, axis, whether the lower end is inside) for each quad
-// of a block, in their order.
+// A quad and the lattice edge it stands around.
+struct QuadPlace {
+  std::uint64_t quad;
+  std::array<int, 3> start;  // the edge's lower end, in the block
+  int axis;
+  bool upward;  // the lower end is inside
+};
+
+// Calls body(place) for each quad of a block, in their order.
 template <class TreeT, class Body>
-void forQuads(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
-              const SurfaceBlock& block, const Body& body) {
-  const CornerWords corners = blocks.cornerWords(block.neighbours);
+void forQuads(const QuadContext<TreeT>& context, const SurfaceBlock& block, const Body& body) {
+  const CornerWords corners = context.blocks.cornerWords(block.neighbours);
   std::uint64_t quad = block.firstQuad;
   for (int axis = 0; axis < 3; ++axis) {
     for (int x = 0; x < kBlockSize; ++x) {
       const std::uint64_t cut =
-          block.special < 0 ? 0 : topology.specials[block.special].cut[axis].slabs[x];
+          block.special < 0 ? 0 : context.topology.specials[block.special].cut[axis].slabs[x];
       const std::uint64_t inside = corners.words[x][0];
       base::forEachBit(components::crossedEdges(corners, x)[axis] & ~cut, [&](int bit) {
-        body(quad++, std::array<int, 3>{x, bit >> 3, bit & 7}, axis, ((inside >> bit) & 1) != 0);
+        body({quad++, {x, bit >> 3, bit & 7}, axis, ((inside >> bit) & 1) != 0});
       });
     }
   }
 }
 
 template <class TreeT>
-Quad quadAround(const VertexTable<TreeT>& table, const std::array<int, 3>& start, int axis,
-                bool clockwise) {
+Quad quadAround(const VertexTable<TreeT>& table, const QuadPlace& place, bool mirrored) {
+  const int axis = place.axis;
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const bool swapped = u > v;  // the edge numbers count the other axes in rising order
   Quad quad;
   for (int i = 0; i < 4; ++i) {
     const auto [du, dv] = kAround[i];
-    std::array<int, 3> cell = start;
+    std::array<int, 3> cell = place.start;
     cell[u] -= du;
     cell[v] -= dv;
     const int edge = axis * 4 + (swapped ? dv * 2 + du : du * 2 + dv);
     quad.vertices[i] = table.at(cell[0], cell[1], cell[2], edge);
   }
-  if (clockwise) std::swap(quad.vertices[1], quad.vertices[3]);
+  if (place.upward == mirrored) std::swap(quad.vertices[1], quad.vertices[3]);
   return quad;
+}
+
+bool isNearCrease(const creases::VertexSides& sides, const Quad& quad) {
+  return std::any_of(quad.vertices.begin(), quad.vertices.end(), [&](VertexIndex vertex) {
+    return sides.kind(vertex) != creases::VertexSides::Kind::Smooth;
+  });
+}
+
+void turn(Quad& quad) {
+  std::rotate(quad.vertices.begin(), quad.vertices.begin() + 1, quad.vertices.end());
+}
+
+// Where a quad's crossing is in the world, and which way is out.
+template <class TreeT>
+LatticeCrossing crossingOf(const QuadContext<TreeT>& context, const SurfaceBlock& block,
+                           const QuadPlace& place) {
+  std::array<double, 3> at = {static_cast<double>(place.start[0]),
+                              static_cast<double>(place.start[1]),
+                              static_cast<double>(place.start[2])};
+  at[place.axis] += static_cast<double>(context.alongs[place.quad]);
+  const Position point =
+      context.affine.position(context.blocks.origin(block.block), at[0], at[1], at[2]);
+  return {{point.x, point.y, point.z},
+          context.affine.axis(place.axis) * (place.upward ? 1.0 : -1.0)};
 }
 
 }  // namespace
 
 template <class TreeT>
-void connectQuads(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
-                  const base::Affine& affine, Mesh& mesh, base::Job& job) {
+void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job) {
+  const Topology& topology = context.topology;
   mesh.quads.resize(topology.quadCount);
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-    VertexTable<TreeT> table(blocks, topology);
+    VertexTable<TreeT> table(context.blocks, topology);
     for (std::size_t i = begin; i < end; ++i) {
-      table.fill(topology.blocks[i]);
-      forQuads(blocks, topology, topology.blocks[i],
-               [&](std::uint64_t quad, const std::array<int, 3>& start, int axis, bool upward) {
-                 mesh.quads[quad] = quadAround(table, start, axis, upward == affine.mirrored());
-               });
+      const SurfaceBlock& block = topology.blocks[i];
+      table.fill(block);
+      forQuads(context, block, [&](const QuadPlace& place) {
+        Quad quad = quadAround(table, place, context.affine.mirrored());
+        if (!isNearCrease(context.sides, quad)) {
+          const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
+          if (chooser.isSecondDiagonalBetter(
+                  [&] { return crossingOf(context, block, place); })) {
+            turn(quad);
+          }
+        }
+        mesh.quads[place.quad] = quad;
+      });
     }
   });
 }
 
 template <class TreeT>
-void chooseDiagonals(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
-                     const base::Affine& affine, const std::vector<float>& alongs,
-                     const creases::VertexSides& sides, Mesh& mesh, base::Job& job) {
+void splitAtCreases(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job) {
+  const Topology& topology = context.topology;
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = topology.blocks[i];
-      const openvdb::Coord& origin = blocks.origin(block.block);
-      forQuads(blocks, topology, block,
-               [&](std::uint64_t index, const std::array<int, 3>& start, int axis, bool upward) {
-                 Quad& quad = mesh.quads[index];
-                 std::array<double, 3> place = {static_cast<double>(start[0]),
-                                                static_cast<double>(start[1]),
-                                                static_cast<double>(start[2])};
-                 place[axis] += static_cast<double>(alongs[index]);
-                 const Position crossing =
-                     affine.position(origin, place[0], place[1], place[2]);
-                 const openvdb::Vec3d direction = affine.axis(axis) * (upward ? 1.0 : -1.0);
-                 if (secondDiagonalIsBetter(mesh, quad, sides, crossing, direction)) {
-                   const auto v = quad.vertices;
-                   quad = {v[1], v[2], v[3], v[0]};
-                 }
-               });
+      const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
+      if (std::none_of(first, first + block.quadCount,
+                       [&](const Quad& quad) { return isNearCrease(context.sides, quad); })) {
+        continue;
+      }
+      forQuads(context, block, [&](const QuadPlace& place) {
+        Quad& quad = mesh.quads[place.quad];
+        if (!isNearCrease(context.sides, quad)) return;
+        const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
+        if (chooser.isSecondDiagonalBetterAtCrease(
+                context.sides, [&] { return crossingOf(context, block, place); })) {
+          turn(quad);
+        }
+      });
     }
   });
 }
 
-template void connectQuads(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
-                           const base::Affine&, Mesh&, base::Job&);
-template void connectQuads(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
-                           const base::Affine&, Mesh&, base::Job&);
-template void chooseDiagonals(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
-                              const base::Affine&, const std::vector<float>&,
-                              const creases::VertexSides&, Mesh&, base::Job&);
-template void chooseDiagonals(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
-                              const base::Affine&, const std::vector<float>&,
-                              const creases::VertexSides&, Mesh&, base::Job&);
+template void connectQuads(const QuadContext<openvdb::FloatTree>&, Mesh&, base::Job&);
+template void connectQuads(const QuadContext<openvdb::DoubleTree>&, Mesh&, base::Job&);
+template void splitAtCreases(const QuadContext<openvdb::FloatTree>&, Mesh&, base::Job&);
+template void splitAtCreases(const QuadContext<openvdb::DoubleTree>&, Mesh&, base::Job&);
 
 }  // namespace tufa::polygons

@@ -11,21 +11,25 @@
 
 namespace tufa::polygons {
 
-/// Writes the level-0 quads: one for each crossed lattice edge, joining the vertices that own the
-/// crossing in the four cells around it, counter-clockwise seen from outside.
+/// What the quads are made from.
 template <class TreeT>
-void connectQuads(const blocks::Blocks<TreeT>& blocks, const components::Topology& topology,
-                  const base::Affine& affine, Mesh& mesh, base::Job& job);
+struct QuadContext {
+  const blocks::Blocks<TreeT>& blocks;
+  const components::Topology& topology;
+  const base::Affine& affine;
+  const std::vector<float>& alongs;      ///< for each quad, the place of the crossing on its edge
+  const creases::VertexSides& sides;     ///< which vertices lie near or on creases
+};
 
-/// Turns each quad so that it starts where its better diagonal does.
-///
-/// Beside a crease the better diagonal is the one whose triangles lie in the planes of the vertices
-/// beside it. Elsewhere it is the one that passes nearer to the crossing, where the surface is known
-/// to be; where both do, the one with the larger smallest angle. `alongs` holds the place of each
-/// quad's crossing on its edge, `sides` says which vertices lie on creases.
+/// Writes the level-0 quads: one for each crossed lattice edge, joining the vertices that own the
+/// crossing in the four cells around it, counter-clockwise seen from outside. Away from creases each
+/// starts where its better diagonal does; see isSecondDiagonalBetter().
 template <class TreeT>
-void chooseDiagonals(const blocks::Blocks<TreeT>& blocks, const components::Topology& topology,
-                     const base::Affine& affine, const std::vector<float>& alongs,
-                     const creases::VertexSides& sides, Mesh& mesh, base::Job& job);
+void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job);
+
+/// Turns the quads near creases so that they start where their better diagonal does. Their vertices
+/// must be where they will stay.
+template <class TreeT>
+void splitAtCreases(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job);
 
 }  // namespace tufa::polygons

@@ -103,14 +103,16 @@ void BlockVertices::addCrossing(int axis, int x, int y, int z, bool owned) {
   const crossings::Crossing crossing =
       finder_.at(blocks::BlockSamples::index(x, y, z), axis);
   if (owned) alongs_.push_back(crossing.along);
+  qef::Vector point = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+  point[axis] += crossing.along;
+  const qef::Qef plane(point, crossing.normal);
   const auto [u, v] = components::otherAxes(axis);
   const std::array<int, 3> start = {x, y, z};
   for (int side = 0; side < 4; ++side) {
     // The edge is number `side` of this cell: at the cell's upper end of u if bit 1 is set.
-    const int du = side >> 1, dv = side & 1;
     std::array<int, 3> at = start;
-    at[u] -= du;
-    at[v] -= dv;
+    at[u] -= side >> 1;
+    at[v] -= side & 1;
     if (((at[0] | at[1] | at[2]) & ~7) != 0) continue;
     const int cell = blocks::cellIndex(at[0], at[1], at[2]);
     int vertex = firstVertexOf_[cell];
@@ -119,11 +121,7 @@ void BlockVertices::addCrossing(int axis, int x, int y, int z, bool owned) {
       if (((cutEdgesOf_[cell] >> edge) & 1) != 0) continue;
       vertex += componentsOf_[cell].of(edge);
     }
-    qef::Vector point;
-    point[axis] = crossing.along - 0.5F;
-    point[u] = static_cast<float>(du) - 0.5F;
-    point[v] = static_cast<float>(dv) - 0.5F;
-    qefs_[vertex].add(point, crossing.normal);
+    qefs_[vertex] += plane;
     if (crossing.crease) kinds_[vertex] = Kind::Near;
   }
 }
@@ -133,16 +131,19 @@ void BlockVertices::solveAll() {
   normals_.resize(qefs_.size());
   bool fresh = true;
   for (std::size_t i = 0; i < qefs_.size(); ++i) {
-    points_[i] = qef::solve(qefs_[i], kHalfCell);
-    normals_[i] = qefs_[i].normals;
+    const int cell = cells_[i];
+    const int x = cell >> 6, y = (cell >> 3) & 7, z = cell & 7;
+    const qef::Qef local = qefs_[i].seenFrom({static_cast<float>(x) + 0.5F,
+                                              static_cast<float>(y) + 0.5F,
+                                              static_cast<float>(z) + 0.5F});
+    points_[i] = qef::solve(local, kHalfCell);
+    normals_[i] = local.normals;
     if (kinds_[i] == Kind::Smooth) continue;
     if (fresh) creaseCell_.reset();
     fresh = false;
-    const int cell = cells_[i];
-    const creases::CreasePlacement placement = creaseCell_.place(
-        cell >> 6, (cell >> 3) & 7, cell & 7, qefs_[i].massPoint());
+    const creases::CreasePlacement placement = creaseCell_.place(x, y, z, local.massPoint());
     if (placement.planes == 0) {
-      kinds_[i] = kindOf(qefs_[i]);
+      kinds_[i] = kindOf(local);
       continue;
     }
     points_[i] = placement.point;
