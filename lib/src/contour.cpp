@@ -36,16 +36,16 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
   Mesh mesh;
   const base::Affine affine(grid.transform());
   const bool normals = options.normals == Normals::Gradient || scale.distance;
-  vertices::Placed placed =
+  creases::VertexSides sides =
       vertices::placeVertices(blocks, scale, topology, affine, normals, mesh, job);
 
   job.beginStage("polygons", 0.95);
-  const polygons::QuadContext<TreeT> quads{blocks, topology, affine, placed.alongs, placed.sides};
+  const polygons::QuadContext<TreeT> quads{blocks, topology, scale, affine, sides};
   polygons::connectQuads(quads, mesh, job);
 
   job.beginStage("creases", 1.0);
   if (scale.distance) {
-    creases::promoteToCreases(mesh, placed.sides, affine.voxelSize(), job);
+    creases::promoteToCreases(mesh, sides, affine.voxelSize(), job);
     polygons::splitAtCreases(quads, mesh, job);
   }
   if (options.normals == Normals::Faces) vertices::setFaceNormals(mesh, job);
@@ -57,7 +57,7 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
   report.activeVoxels = blocks.activeVoxels();
   report.nonFiniteValues = blocks.nonFiniteValues();
   report.surfaceCells = topology.cellCount;
-  report.creaseCells = placed.sides.sharpCount();
+  report.creaseCells = sides.sharpCount();
   report.faceFlips = topology.faceFlips;
   report.cutEdges = topology.cutEdges;
   return mesh;

@@ -172,6 +172,7 @@ class TopologyBuilder {
     std::vector<std::uint8_t> hasCut(cut ? count : 0, 0);
     forBlocks([&](SurfaceBlock& block, std::size_t i, Accessor& accessor) {
       const CornerWords corners = blocks_.cornerWords(block.neighbours);
+      block.quadCount = countCrossedEdges(corners);
       special[i] = hasAmbiguousFace(corners) ? 1 : 0;
       if (cut) hasCut[i] = findCutEdges(block, corners, accessor, cuts[i]) ? 1 : 0;
     });
@@ -187,7 +188,10 @@ class TopologyBuilder {
       topology_.specials.emplace_back();
       if (!cut) continue;
       topology_.specials.back().cut = cuts[i];
-      for (const BlockBits& bits : cuts[i]) topology_.cutEdges += countAll(bits);
+      for (const BlockBits& bits : cuts[i]) {
+        topology_.cutEdges += countAll(bits);
+        block.quadCount -= static_cast<std::uint32_t>(countAll(bits));
+      }
     }
   }
 
@@ -345,17 +349,14 @@ class TopologyBuilder {
         });
       }
     });
-    forBlocks([&](SurfaceBlock& block, std::size_t, Accessor&) {
-      const CornerWords corners = blocks_.cornerWords(block.neighbours);
-      for (int x = 0; x < kBlockSize; ++x) {
-        const auto crossed = crossedEdges(corners, x);
-        for (int axis = 0; axis < 3; ++axis) {
-          const std::uint64_t cut =
-              block.special < 0 ? 0 : topology_.specials[block.special].cut[axis].slabs[x];
-          block.quadCount += static_cast<std::uint32_t>(base::countBits(crossed[axis] & ~cut));
-        }
-      }
-    });
+  }
+
+  static std::uint32_t countCrossedEdges(const CornerWords& corners) {
+    int count = 0;
+    for (int x = 0; x < kBlockSize; ++x) {
+      for (const std::uint64_t crossed : crossedEdges(corners, x)) count += base::countBits(crossed);
+    }
+    return static_cast<std::uint32_t>(count);
   }
 
   void number() {

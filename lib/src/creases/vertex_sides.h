@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,8 +36,11 @@ class VertexSides {
 
   [[nodiscard]] Kind kind(VertexIndex vertex) const { return kinds_[vertex]; }
   [[nodiscard]] bool isSharp(VertexIndex vertex) const { return kinds_[vertex] >= Kind::Meeting; }
-  /// For vertices of different ranges this may be called from several threads.
-  void setKind(VertexIndex vertex, Kind kind) { kinds_[vertex] = kind; }
+  /// Sets the kinds of consecutive vertices. May be called from several threads for vertices of
+  /// their own.
+  void setKinds(std::size_t first, const std::vector<Kind>& kinds) {
+    std::copy(kinds.begin(), kinds.end(), kinds_.begin() + static_cast<std::ptrdiff_t>(first));
+  }
   void setMeeting(VertexIndex vertex, const MeetingSides& sides) {
     kinds_[vertex] = Kind::Meeting;
     meeting_[vertex] = sides;

@@ -1,7 +1,5 @@
 #include "crossings/crossings.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace tufa::crossings {
@@ -9,56 +7,13 @@ namespace tufa::crossings {
 using blocks::BlockSamples;
 using qef::Vector;
 
-namespace {
-
-// A squared gradient length off 1 by more than this is a kink (two normals 16 degrees apart, blended
-// half and half) or a sample beyond the band. Central differences on a sphere of radius 3 voxels are
-// off by 0.02.
-constexpr float kLengthTolerance = 0.03F;
-// Slopes along an edge that differ by more than this from one sample to the next: a curvature radius
-// of five voxels gives 0.1.
-constexpr float kSlopeTolerance = 0.1F;
-
-// Where a linear change from a to b is zero, half way if neither says.
-float linearRoot(float a, float b) { return a == b ? 0.5F : a / (a - b); }
-
-}  // namespace
-
-Vector CrossingFinder::centralDifference(int at) const {
-  const float* s = samples_.data() + at;
-  return {0.5F * (s[BlockSamples::kStrideX] - s[-BlockSamples::kStrideX]),
-          0.5F * (s[BlockSamples::kStrideY] - s[-BlockSamples::kStrideY]), 0.5F * (s[1] - s[-1])};
-}
-
-bool CrossingFinder::isKinked(float a, float b, float slopeA, float slopeB, int axis,
-                              const Vector& g) const {
-  const float squared = scale_.squaredLength(g[0], g[1], g[2]);
-  const float tolerance = kSlopeTolerance * static_cast<float>(scale_.axisLength[axis]);
-  return std::abs(squared - 1) > kLengthTolerance || std::abs(slopeA - (b - a)) > tolerance ||
-         std::abs(slopeB - (b - a)) > tolerance;
-}
-
-Crossing CrossingFinder::at(int lower, int axis) const {
+Crossing CrossingFinder::atKink(int lower, int axis) const {
   const int stride = BlockSamples::stride(axis);
-  const float a = samples_[lower], b = samples_[lower + stride];
-  const Vector ga = centralDifference(lower), gb = centralDifference(lower + stride);
   Crossing crossing;
-  crossing.along = linearRoot(a, b);
-  Vector g;
-  for (int i = 0; i < 3; ++i) g[i] = ga[i] + crossing.along * (gb[i] - ga[i]);
-  if (scale_.distance && isKinked(a, b, ga[axis], gb[axis], axis, g)) {
-    crossing.crease = true;
-    crossing.along = subcellRoot(lower, axis);
-    g = oneSidedGradient(crossing.along < 0.5F ? lower : lower + stride);
-  }
-  crossing.along = std::clamp(crossing.along, kEndMargin, 1 - kEndMargin);
-  const float squared = qef::dot(g, g);
-  if (squared > 1e-12F) {
-    const float scale = 1 / std::sqrt(squared);
-    crossing.normal = {g[0] * scale, g[1] * scale, g[2] * scale};
-  } else {
-    crossing.normal[axis] = b > a ? 1.0F : -1.0F;
-  }
+  crossing.crease = true;
+  crossing.along = subcellRoot(lower, axis);
+  const Vector g = oneSidedGradient(crossing.along < 0.5F ? lower : lower + stride);
+  finish(crossing, g, axis, samples_[lower + stride] > samples_[lower]);
   return crossing;
 }
 

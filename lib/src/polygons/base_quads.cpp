@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/bits.h"
+#include "blocks/samples.h"
 #include "polygons/diagonal.h"
 
 namespace tufa::polygons {
@@ -144,18 +145,23 @@ void turn(Quad& quad) {
   std::rotate(quad.vertices.begin(), quad.vertices.begin() + 1, quad.vertices.end());
 }
 
-// Where a quad's crossing is in the world, and which way is out.
+// Where a quad's crossing is in the world, by linear interpolation, and which way is out.
 template <class TreeT>
 LatticeCrossing crossingOf(const QuadContext<TreeT>& context, const SurfaceBlock& block,
                            const QuadPlace& place) {
-  std::array<double, 3> at = {static_cast<double>(place.start[0]),
-                              static_cast<double>(place.start[1]),
-                              static_cast<double>(place.start[2])};
-  at[place.axis] += static_cast<double>(context.alongs[place.quad]);
+  typename blocks::Blocks<TreeT>::Accessor accessor(context.blocks.tree());
+  const blocks::SampleReader<TreeT> samples(context.blocks, context.scale, block.block,
+                                            block.neighbours, accessor);
+  const auto [x, y, z] = place.start;
+  const int axis = place.axis;
+  const double a = samples.at(x, y, z);
+  const double b = samples.at(x + (axis == 0), y + (axis == 1), z + (axis == 2));
+  std::array<double, 3> at = {static_cast<double>(x), static_cast<double>(y),
+                              static_cast<double>(z)};
+  at[axis] += a == b ? 0.5 : a / (a - b);
   const Position point =
       context.affine.position(context.blocks.origin(block.block), at[0], at[1], at[2]);
-  return {{point.x, point.y, point.z},
-          context.affine.axis(place.axis) * (place.upward ? 1.0 : -1.0)};
+  return {{point.x, point.y, point.z}, context.affine.axis(axis) * (place.upward ? 1.0 : -1.0)};
 }
 
 }  // namespace

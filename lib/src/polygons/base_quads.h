@@ -1,11 +1,11 @@
 #pragma once
 
 #include <tufa/mesh.h>
-#include <vector>
 
 #include "base/affine.h"
 #include "base/job.h"
 #include "blocks/blocks.h"
+#include "blocks/field.h"
 #include "components/topology.h"
 #include "creases/vertex_sides.h"
 
@@ -16,14 +16,14 @@ template <class TreeT>
 struct QuadContext {
   const blocks::Blocks<TreeT>& blocks;
   const components::Topology& topology;
+  const blocks::FieldScale& scale;
   const base::Affine& affine;
-  const std::vector<float>& alongs;      ///< for each quad, the place of the crossing on its edge
-  const creases::VertexSides& sides;     ///< which vertices lie near or on creases
+  const creases::VertexSides& sides;  ///< which vertices lie near or on creases
 };
 
 /// Writes the level-0 quads: one for each crossed lattice edge, joining the vertices that own the
 /// crossing in the four cells around it, counter-clockwise seen from outside. Away from creases each
-/// starts where its better diagonal does; see isSecondDiagonalBetter().
+/// starts where its better diagonal does; see SplitChooser.
 template <class TreeT>
 void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job);
 

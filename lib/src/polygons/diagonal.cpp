@@ -7,9 +7,6 @@ namespace {
 
 using openvdb::Vec3d;
 
-// Diagonals that pass each other at less than this, in voxels, are equally near to the surface.
-constexpr double kSameDistance = 0.02;
-
 // One way to split a quad, its diagonal from a to c.
 struct Split {
   Vec3d a, c;
@@ -42,26 +39,6 @@ SplitChooser::SplitChooser(const Mesh& mesh, const Quad& quad, double voxelSize)
     const Position& p = mesh.positions[quad.vertices[i]];
     corners_[i] = {p.x, p.y, p.z};
   }
-}
-
-bool SplitChooser::isSecondShorter() const {
-  return (corners_[3] - corners_[1]).lengthSqr() < (corners_[2] - corners_[0]).lengthSqr();
-}
-
-// The distance between the two diagonals as lines.
-bool SplitChooser::isNearlyFlat() const {
-  const Vec3d across = (corners_[2] - corners_[0]).cross(corners_[3] - corners_[1]);
-  const double gap = across.dot(corners_[1] - corners_[0]);
-  const double limit = kSameDistance * voxelSize_;
-  return gap * gap < limit * limit * across.lengthSqr();
-}
-
-bool SplitChooser::isFolded(bool second) const {
-  const Vec3d out = (corners_[2] - corners_[0]).cross(corners_[3] - corners_[1]);
-  const int first = second ? 1 : 0;
-  const Split split(corners_[first], corners_[first + 1], corners_[first + 2],
-                    corners_[(first + 3) % 4]);
-  return split.folded(out);
 }
 
 bool SplitChooser::compareAt(const LatticeCrossing& crossing) const {

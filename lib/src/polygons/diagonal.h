@@ -30,8 +30,7 @@ class SplitChooser {
   template <class Crossing>
   [[nodiscard]] bool isSecondDiagonalBetter(const Crossing& crossing) const {
     const bool second = isSecondShorter();
-    if (isNearlyFlat() && !isFolded(second)) return second;
-    return compareAt(crossing());
+    return isFlatAndConvex(second) ? second : compareAt(crossing());
   }
 
   template <class Crossing>
@@ -44,9 +43,29 @@ class SplitChooser {
   }
 
  private:
-  [[nodiscard]] bool isSecondShorter() const;
-  [[nodiscard]] bool isNearlyFlat() const;
-  [[nodiscard]] bool isFolded(bool second) const;
+  // Diagonals that pass each other at less than this, in voxels, are equally near to the surface.
+  static constexpr double kSameDistance = 0.02;
+
+  [[nodiscard]] bool isSecondShorter() const {
+    return (corners_[3] - corners_[1]).lengthSqr() < (corners_[2] - corners_[0]).lengthSqr();
+  }
+  // Whether the two diagonals, as lines, pass at less than kSameDistance, and the one asked for has
+  // a triangle on either side.
+  [[nodiscard]] bool isFlatAndConvex(bool second) const {
+    const openvdb::Vec3d diagonals[2] = {corners_[2] - corners_[0], corners_[3] - corners_[1]};
+    const openvdb::Vec3d across = diagonals[0].cross(diagonals[1]);
+    const double squared = across.lengthSqr();
+    const double gap = across.dot(corners_[1] - corners_[0]);
+    const double limit = kSameDistance * voxelSize_;
+    if (gap * gap >= limit * limit * squared) return false;
+    // `across` is the sum of the normals of the two triangles; both must have a part in it. The scalar
+    // product of two cross products, by Lagrange's identity.
+    const openvdb::Vec3d& chosen = diagonals[second ? 1 : 0];
+    const openvdb::Vec3d other = second ? -diagonals[0] : diagonals[1];
+    const openvdb::Vec3d side = second ? corners_[2] - corners_[1] : corners_[1] - corners_[0];
+    const double part = side.dot(chosen) * chosen.dot(other) - side.dot(other) * chosen.lengthSqr();
+    return part > 0 && part < squared;
+  }
   [[nodiscard]] bool compareAt(const LatticeCrossing& crossing) const;
 
   const Mesh& mesh_;

@@ -140,28 +140,27 @@ Vector boundedStep(const Qef& qef, const Vector& residual, const Vector& c, floa
 Vector solve(const Qef& qef, float halfSize) {
   const Vector c = qef.massPoint();
   const Vector residual = residualAt(qef, c);
-  // Most cells have one normal direction. Then the mean normal is the first eigenvector to second
-  // order, its Rayleigh quotient the first eigenvalue to fourth, and what is left of the trace bounds
-  // the other two.
-  const float length = std::sqrt(dot(qef.normals, qef.normals));
+  // Most cells have one normal direction. Then the sum n of the normals is along the first
+  // eigenvector to second order, its Rayleigh quotient n A n / n n is the first eigenvalue to fourth,
+  // and what is left of the trace bounds the other two.
+  const Vector& n = qef.normals;
   const auto& a = qef.a;
-  const float trace = a[0] + a[3] + a[5];
+  const Vector an = {a[0] * n[0] + a[1] * n[1] + a[2] * n[2],
+                     a[1] * n[0] + a[3] * n[1] + a[4] * n[2],
+                     a[2] * n[0] + a[4] * n[1] + a[5] * n[2]};
+  const float squared = dot(n, n), first = dot(n, an), trace = a[0] + a[3] + a[5];
   Vector step;
-  bool flat = false;
-  if (length > 0.5F * qef.count) {
-    const Vector n = {qef.normals[0] / length, qef.normals[1] / length, qef.normals[2] / length};
-    const Vector an = {a[0] * n[0] + a[1] * n[1] + a[2] * n[2],
-                       a[1] * n[0] + a[3] * n[1] + a[4] * n[2],
-                       a[2] * n[0] + a[4] * n[1] + a[5] * n[2]};
-    const float first = dot(n, an);
-    flat = trace - first < static_cast<float>(kFreeShare) * first;
+  if (squared > 0.25F * qef.count * qef.count &&
+      trace * squared < (1 + static_cast<float>(kFreeShare)) * first) {
     const float along = dot(n, residual) / first;
     step = {n[0] * along, n[1] * along, n[2] * along};
+  } else {
+    step = truncatedStep(qef, residual);
   }
-  if (!flat) step = truncatedStep(qef, residual);
   Vector x = {c[0] + step[0], c[1] + step[1], c[2] + step[2]};
-  const float reach = std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
-  if (reach <= halfSize) return x;
+  if (std::abs(x[0]) <= halfSize && std::abs(x[1]) <= halfSize && std::abs(x[2]) <= halfSize) {
+    return x;
+  }
   step = boundedStep(qef, residual, c, halfSize);
   for (int i = 0; i < 3; ++i) x[i] = std::clamp(c[i] + step[i], -halfSize, halfSize);
   return x;

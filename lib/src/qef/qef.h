@@ -53,7 +53,8 @@ struct alignas(16) Qef {
 
   /// Mean of the points; the count must not be 0.
   [[nodiscard]] Vector massPoint() const {
-    return {points[0] / count, points[1] / count, points[2] / count};
+    const float share = 1 / count;
+    return {points[0] * share, points[1] * share, points[2] * share};
   }
 };
 

@@ -33,7 +33,9 @@ void BlockVertices::place(const blocks::Blocks<TreeT>& blocks, const Topology& t
   const CornerWords corners = blocks.cornerWords(block.neighbours);
   samples_.gather(blocks, scale_, block.block, block.neighbours, accessor);
   numberVertices(topology, block, corners);
-  addEdges(block, topology, corners);
+  addEdges<0>(corners);
+  addEdges<1>(corners);
+  addEdges<2>(corners);
   solveAll();
 }
 
@@ -60,59 +62,51 @@ void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock&
   meetings_.clear();
 }
 
-// Every crossed edge of the block's cells, those on its upper faces included. The edges that start
-// in the block come first in each slab and are its quads.
-void BlockVertices::addEdges(const SurfaceBlock& block, const Topology& topology,
-                             const CornerWords& corners) {
-  alongs_.clear();
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int x = 0; x < kBlockSize + (axis == 0 ? 0 : 1); ++x) {
-      const auto& w = corners.words[x];
-      std::array<std::uint64_t, 4> crossed{};
-      for (int i = 0; i < 4; ++i) {
-        // Words i are the lattice points (y + i / 2, z + i % 2).
-        if (axis == 0) crossed[i] = w[i] ^ corners.words[x + 1][i];
-        if (axis == 1 && i < 2) crossed[i] = w[i] ^ w[i + 2];
-        if (axis == 2 && i % 2 == 0) crossed[i] = w[i] ^ w[i + 1];
-      }
-      const std::uint64_t cut = special_ && x < kBlockSize
-                                    ? topology.specials[block.special].cut[axis].slabs[x]
-                                    : 0;
-      const bool inside = x < kBlockSize;
-      base::forEachBit(crossed[0] & ~cut,
-                       [&](int bit) { addCrossing(axis, x, bit >> 3, bit & 7, inside); });
-      constexpr std::uint64_t kLastY = std::uint64_t{0xff} << 56;
-      constexpr std::uint64_t kLastZ = 0x8080808080808080u;
-      if (axis != 2) {
-        base::forEachBit(crossed[1] & kLastZ,
-                         [&](int bit) { addCrossing(axis, x, bit >> 3, 8, false); });
-      }
-      if (axis != 1) {
-        base::forEachBit(crossed[2] & kLastY,
-                         [&](int bit) { addCrossing(axis, x, 8, bit & 7, false); });
-      }
-      if (axis == 0) {
-        base::forEachBit(crossed[3] & kLastY & kLastZ,
-                         [&](int) { addCrossing(axis, x, 8, 8, false); });
-      }
+// Every crossed edge of the block's cells along one axis, those on its upper faces included.
+template <int axis>
+void BlockVertices::addEdges(const CornerWords& corners) {
+  constexpr std::uint64_t kLastY = std::uint64_t{0xff} << 56;
+  constexpr std::uint64_t kLastZ = 0x8080808080808080u;
+  for (int x = 0; x < kBlockSize + (axis == 0 ? 0 : 1); ++x) {
+    const auto& w = corners.words[x];
+    // Word i is the lattice points (y + i / 2, z + i % 2).
+    std::array<std::uint64_t, 4> crossed{};
+    for (int i = 0; i < 4; ++i) {
+      if (axis == 0) crossed[i] = w[i] ^ corners.words[x + 1][i];
+      if (axis == 1 && i < 2) crossed[i] = w[i] ^ w[i + 2];
+      if (axis == 2 && i % 2 == 0) crossed[i] = w[i] ^ w[i + 1];
+    }
+    base::forEachBit(crossed[0], [&](int bit) { addCrossing<axis>(x, bit >> 3, bit & 7); });
+    if (axis != 2) {
+      base::forEachBit(crossed[1] & kLastZ,
+                       [&](int bit) { addCrossing<axis>(x, bit >> 3, 8); });
+    }
+    if (axis != 1) {
+      base::forEachBit(crossed[2] & kLastY,
+                       [&](int bit) { addCrossing<axis>(x, 8, bit & 7); });
+    }
+    if (axis == 0) {
+      base::forEachBit(crossed[3] & kLastY & kLastZ,
+                       [&](int) { addCrossing<axis>(x, 8, 8); });
     }
   }
 }
 
-void BlockVertices::addCrossing(int axis, int x, int y, int z, bool owned) {
+template <int axis>
+void BlockVertices::addCrossing(int x, int y, int z) {
   const crossings::Crossing crossing =
-      finder_.at(blocks::BlockSamples::index(x, y, z), axis);
-  if (owned) alongs_.push_back(crossing.along);
+      finder_.at<axis>(blocks::BlockSamples::index(x, y, z));
   qef::Vector point = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
   point[axis] += crossing.along;
   const qef::Qef plane(point, crossing.normal);
-  const auto [u, v] = components::otherAxes(axis);
+  constexpr auto kOther = components::otherAxes(axis);
   const std::array<int, 3> start = {x, y, z};
   for (int side = 0; side < 4; ++side) {
-    // The edge is number `side` of this cell: at the cell's upper end of u if bit 1 is set.
+    // The edge is number `side` of this cell: at the cell's upper end of the first other axis if bit
+    // 1 is set, of the second if bit 0 is.
     std::array<int, 3> at = start;
-    at[u] -= side >> 1;
-    at[v] -= side & 1;
+    at[kOther[0]] -= side >> 1;
+    at[kOther[1]] -= side & 1;
     if (((at[0] | at[1] | at[2]) & ~7) != 0) continue;
     const int cell = blocks::cellIndex(at[0], at[1], at[2]);
     int vertex = firstVertexOf_[cell];

@@ -33,8 +33,6 @@ class BlockVertices {
   [[nodiscard]] const std::vector<qef::Vector>& points() const { return points_; }
   /// The sum of the normals gathered at each vertex, in index space.
   [[nodiscard]] const std::vector<qef::Vector>& normals() const { return normals_; }
-  /// For each quad of the block in its order, the place of the crossing on its edge, 0 to 1.
-  [[nodiscard]] const std::vector<float>& alongs() const { return alongs_; }
   /// A vertex on a crease or corner, and the normals of the sides that meet there, in index space.
   struct Meeting {
     std::uint32_t vertex;
@@ -49,9 +47,10 @@ class BlockVertices {
   void numberVertices(const components::Topology& topology,
                       const components::SurfaceBlock& block,
                       const blocks::CornerWords& corners);
-  void addEdges(const components::SurfaceBlock& block, const components::Topology& topology,
-                const blocks::CornerWords& corners);
-  void addCrossing(int axis, int x, int y, int z, bool owned);
+  template <int axis>
+  void addEdges(const blocks::CornerWords& corners);
+  template <int axis>
+  void addCrossing(int x, int y, int z);
   void solveAll();
 
   const blocks::FieldScale& scale_;
@@ -68,7 +67,6 @@ class BlockVertices {
   std::vector<Meeting> meetings_;
   std::vector<qef::Vector> points_;
   std::vector<qef::Vector> normals_;
-  std::vector<float> alongs_;
 };
 
 }  // namespace tufa::vertices

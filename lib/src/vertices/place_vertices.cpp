@@ -1,6 +1,5 @@
 #include "vertices/place_vertices.h"
 
-#include <algorithm>
 #include <mutex>
 
 #include "vertices/block_vertices.h"
@@ -22,12 +21,12 @@ creases::MeetingSides worldSides(const BlockVertices::Meeting& meeting,
 }  // namespace
 
 template <class TreeT>
-Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldScale& scale,
-                     const components::Topology& topology, const base::Affine& affine,
-                     bool normals, Mesh& mesh, base::Job& job) {
-  Placed placed;
-  placed.alongs.resize(topology.quadCount);
-  placed.sides = creases::VertexSides(topology.vertexCount);
+creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
+                                   const blocks::FieldScale& scale,
+                                   const components::Topology& topology,
+                                   const base::Affine& affine, bool normals, Mesh& mesh,
+                                   base::Job& job) {
+  creases::VertexSides sides(topology.vertexCount);
   std::mutex mutex;
   mesh.positions.resize(topology.vertexCount);
   if (normals) mesh.normals.resize(topology.vertexCount);
@@ -49,28 +48,26 @@ Placed placeVertices(const blocks::Blocks<TreeT>& blocks, const blocks::FieldSca
         const qef::Vector& n = work.normals()[v];
         mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
       }
-      for (std::size_t v = 0; v < work.kinds().size(); ++v) {
-        placed.sides.setKind(static_cast<VertexIndex>(block.firstVertex + v), work.kinds()[v]);
-      }
+      sides.setKinds(block.firstVertex, work.kinds());
       if (!work.meetings().empty()) {
         const std::scoped_lock lock(mutex);
         for (const BlockVertices::Meeting& meeting : work.meetings()) {
-          placed.sides.setMeeting(static_cast<VertexIndex>(block.firstVertex + meeting.vertex),
+          sides.setMeeting(static_cast<VertexIndex>(block.firstVertex + meeting.vertex),
                                   worldSides(meeting, affine));
         }
       }
-      std::copy(work.alongs().begin(), work.alongs().end(),
-                placed.alongs.begin() + static_cast<std::ptrdiff_t>(block.firstQuad));
     }
   });
-  return placed;
+  return sides;
 }
 
-template Placed placeVertices(const blocks::Blocks<openvdb::FloatTree>&, const blocks::FieldScale&,
-                              const components::Topology&, const base::Affine&, bool, Mesh&,
-                              base::Job&);
-template Placed placeVertices(const blocks::Blocks<openvdb::DoubleTree>&, const blocks::FieldScale&,
-                              const components::Topology&, const base::Affine&, bool, Mesh&,
-                              base::Job&);
+template creases::VertexSides placeVertices(const blocks::Blocks<openvdb::FloatTree>&,
+                                            const blocks::FieldScale&,
+                                            const components::Topology&, const base::Affine&,
+                                            bool, Mesh&, base::Job&);
+template creases::VertexSides placeVertices(const blocks::Blocks<openvdb::DoubleTree>&,
+                                            const blocks::FieldScale&,
+                                            const components::Topology&, const base::Affine&,
+                                            bool, Mesh&, base::Job&);
 
 }  // namespace tufa::vertices

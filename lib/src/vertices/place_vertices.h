@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <tufa/mesh.h>
-#include <vector>
 
 #include "base/affine.h"
 #include "base/job.h"
@@ -13,19 +12,14 @@
 
 namespace tufa::vertices {
 
-/// What placeVertices() leaves beside the mesh.
-struct Placed {
-  std::vector<float> alongs;   ///< for each quad, the place of the crossing on its edge
-  creases::VertexSides sides;  ///< which vertices lie on creases
-};
-
 /// Sizes and fills the positions of the mesh and, if asked, its normals from the field's gradient.
+/// Returns which vertices lie near or on creases.
 template <class TreeT>
-[[nodiscard]] Placed placeVertices(const blocks::Blocks<TreeT>& blocks,
-                                   const blocks::FieldScale& scale,
-                                   const components::Topology& topology,
-                                   const base::Affine& affine, bool normals, Mesh& mesh,
-                                   base::Job& job);
+[[nodiscard]] creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
+                                                 const blocks::FieldScale& scale,
+                                                 const components::Topology& topology,
+                                                 const base::Affine& affine, bool normals,
+                                                 Mesh& mesh, base::Job& job);
 
 /// Gives each vertex the mean of the normals of its faces, weighted by their angles at the vertex.
 void setFaceNormals(Mesh& mesh, base::Job& job);
