@@ -4,13 +4,13 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/io.h>
-#include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "console.h"
@@ -202,11 +202,11 @@ int runMesh(const MeshArguments& arguments) {
 template <class Enum>
 void addChoice(CLI::App& app, const std::string& name, Enum& value,
                const std::map<std::string, Enum>& choices, const std::string& help) {
-  std::string names;
-  for (const auto& [choice, number] : choices) names += (names.empty() ? "" : "|") + choice;
-  app.add_option(name, value, help)
-      ->transform(CLI::Transformer(choices).description(""))
-      ->type_name(names);
+  std::vector<std::string> names;
+  for (const auto& [choice, number] : choices) names.push_back(choice);
+  app.add_option_function<std::string>(
+         name, [&value, choices](const std::string& choice) { value = choices.at(choice); }, help)
+      ->check(CLI::IsMember(names));
 }
 
 void addContourOptions(CLI::App& app, ContourOptions& options) {

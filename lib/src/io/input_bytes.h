@@ -34,7 +34,7 @@ class InputBytes {
 class TextCursor {
  public:
   TextCursor(const InputBytes& input, std::size_t offset, std::size_t firstLine)
-      : input_(input), rest_(input.view().substr(offset)), nextLine_(firstLine) {}
+      : input_(input), rest_(input.view().substr(offset)), nextLine_(firstLine), line_(firstLine) {}
 
   /// Moves to the next line; false at the end of the file. `continued` joins lines that end in a
   /// backslash with the ones below.
@@ -66,7 +66,7 @@ class TextCursor {
   std::string_view words_;  ///< of the current line, not read yet
   std::string joined_;      ///< holds a line that was continued
   std::size_t nextLine_;
-  std::size_t line_ = 0;
+  std::size_t line_;
 };
 
 /// Whether two words are the same but for the case of ASCII letters.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/number_text.h"
 #include "shapes/fields.h"
 #include "shapes/hash.h"
 #include "shapes/sampler.h"
@@ -76,7 +77,7 @@ openvdb::FloatGrid::Ptr makeNoise(const ShapeOptions& options) {
   const int half = extentInVoxels(1, options.voxelSize, 1);
   const int samples = static_cast<int>(std::lround(2 / options.voxelSize));
   if (samples < 1) {
-    throw Error(ErrorCode::InvalidArgument, "voxel size " + std::to_string(options.voxelSize) +
+    throw Error(ErrorCode::InvalidArgument, "voxel size " + base::numberText(options.voxelSize) +
                                                 " leaves no sample in a cube of side 2");
   }
   const float outside = 1;

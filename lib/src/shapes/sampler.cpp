@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/number_text.h"
 
 namespace tufa::shapes {
 namespace {
@@ -112,7 +113,7 @@ int extentInVoxels(double worldLength, double voxelSize, double margin) {
   const double voxels = std::ceil(worldLength / voxelSize + margin) + 1;
   if (!(voxels < kLimit)) {
     throw Error(ErrorCode::InvalidArgument,
-                "voxel size " + std::to_string(voxelSize) +
+                "voxel size " + base::numberText(voxelSize) +
                     " is too small: the grid's coordinates would overflow");
   }
   return static_cast<int>(voxels);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/number_text.h"
 #include "shapes/fields.h"
 #include "shapes/sampler.h"
 
@@ -50,8 +51,8 @@ void requirePositive(const char* what, double value, double least) {
   if (std::isfinite(value) && value > 0 && value >= least) return;
   throw Error(ErrorCode::InvalidArgument,
               std::string(what) + " must be a finite number " +
-                  (least > 0 ? "of " + std::to_string(least) + " or more" : "above 0") + ", not " +
-                  std::to_string(value));
+                  (least > 0 ? "of " + base::numberText(least) + " or more" : "above 0") +
+                  ", not " + base::numberText(value));
 }
 
 }  // namespace

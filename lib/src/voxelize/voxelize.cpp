@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/job.h"
+#include "base/number_text.h"
 
 namespace tufa {
 namespace {
@@ -87,10 +88,11 @@ void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
   constexpr double kLimit = 1 << 30;
   const double voxels = largest / options.voxelSize + options.halfWidth;
   if (voxels < kLimit) return;
-  throw Error(ErrorCode::InvalidArgument, "voxel size " + std::to_string(options.voxelSize) +
-                                              " puts the mesh " + std::to_string(voxels) +
-                                              " voxels from the origin, more than a grid's " +
-                                              std::to_string(kLimit));
+  throw Error(ErrorCode::InvalidArgument,
+              "voxel size " + base::numberText(options.voxelSize) + " puts the mesh " +
+                  base::numberText(voxels) +
+                  " voxels from the origin, more than the grid's limit of " +
+                  base::numberText(kLimit));
 }
 
 }  // namespace
@@ -98,12 +100,12 @@ void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
 openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
   if (!std::isfinite(options.voxelSize) || options.voxelSize <= 0) {
     throw Error(ErrorCode::InvalidArgument, "voxel size must be a finite number above 0, not " +
-                                                std::to_string(options.voxelSize));
+                                                base::numberText(options.voxelSize));
   }
   if (!std::isfinite(options.halfWidth) || options.halfWidth < 1) {
     throw Error(ErrorCode::InvalidArgument,
                 "half width must be a finite number of 1 or more voxels, not " +
-                    std::to_string(options.halfWidth));
+                    base::numberText(options.halfWidth));
   }
   if (mesh.triangleCount() == 0) {
     throw Error(ErrorCode::InvalidArgument, "the mesh has no faces to voxelize");

@@ -1,0 +1,202 @@
+// The tufa command from outside: exit codes, messages, and what it leaves behind.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <tufa/io.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "support/scratch_folder.h"
+
+namespace tufa {
+namespace {
+
+using testing::readBytes;
+using testing::ScratchFolder;
+using testing::writeBytes;
+
+struct Outcome {
+  int exitCode = -1;
+  std::string out;
+  std::string err;
+};
+
+class Command : public ::testing::Test {
+ protected:
+  /// Runs `tufa ARGUMENTS` in the scratch folder.
+  Outcome run(const std::string& arguments) {
+    const std::string line = "cd '" + (folder / "").string() + "' && '" TUFA_COMMAND "' " +
+                             arguments + " >'" + (logs / "out").string() + "' 2>'" +
+                             (logs / "err").string() + "'";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readBytes(logs / "out"),
+            readBytes(logs / "err")};
+  }
+
+  /// Expects an exit code, one line of error that holds `part`, and no new file.
+  void expectFailure(const std::string& arguments, int exitCode, const std::string& part) {
+    const auto files = folder.fileCount();
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, exitCode) << arguments << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("tufa: ", 0), 0u) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(folder.fileCount(), files) << arguments;
+  }
+
+  void makeSphere() { ASSERT_EQ(run("make sphere --voxel 0.1 -o s.vdb").exitCode, 0); }
+
+  const ScratchFolder folder;
+
+ private:
+  struct Logs {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("tufa-logs-" + std::to_string(::getpid()));
+    Logs() { std::filesystem::create_directories(path); }
+    ~Logs() { std::filesystem::remove_all(path); }
+    std::filesystem::path operator/(const char* name) const { return path / name; }
+  } logs;
+};
+
+TEST_F(Command, SaysItsVersionAndHelp) {
+  EXPECT_EQ(run("--version").exitCode, 0);
+  EXPECT_EQ(run("--help").exitCode, 0);
+  EXPECT_EQ(run("mesh --help").exitCode, 0);
+}
+
+TEST_F(Command, MeshesWhatItMakes) {
+  for (const char* shape :
+       {"sphere", "torus", "box", "bracket", "gyroid", "terrain", "noise", "fog"}) {
+    ASSERT_EQ(run(std::string("make ") + shape + " --voxel 0.08 -o v.vdb").exitCode, 0) << shape;
+    const Outcome outcome = run("mesh v.vdb -o m.ply --check");
+    EXPECT_EQ(outcome.exitCode, 0) << shape << "\n" << outcome.err;
+  }
+}
+
+TEST_F(Command, MeshGivesTheKeysOfItsReport) {
+  makeSphere();
+  const Outcome outcome = run("mesh s.vdb -o m.obj --check --json --threads 2");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto json = nlohmann::json::parse(outcome.out);
+  for (const char* key : {"active_voxels", "surface_cells", "vertices", "triangles", "quads",
+                          "seconds", "peak_memory_bytes", "threads", "check", "isovalue", "inside",
+                          "crease_cells", "cut_edges", "face_flips"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  for (const char* key : {"read", "contour", "check", "write", "stages"}) {
+    EXPECT_TRUE(json["seconds"].contains(key)) << key;
+  }
+  for (const char* key :
+       {"closed", "manifold", "oriented", "bounds_volume", "self_intersecting_pairs",
+        "boundary_edges", "components", "euler_characteristic"}) {
+    EXPECT_TRUE(json["check"].contains(key)) << key;
+  }
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_EQ(json["check"]["euler_characteristic"], 2);
+  EXPECT_EQ(json["triangles"], readMesh(folder / "m.obj").triangleCount());
+}
+
+TEST_F(Command, CheckAndVoxelizeTakeEveryFormat) {
+  makeSphere();
+  for (const char* ending : {"ply", "obj", "stl", "off", "glb"}) {
+    const std::string name = std::string("m.") + ending;
+    ASSERT_EQ(run("mesh s.vdb --quiet -o " + name).exitCode, 0);
+    EXPECT_EQ(run("check --quiet " + name).exitCode, 0) << name;
+    EXPECT_EQ(run("voxelize --voxel 0.1 -o v.vdb " + name).exitCode, 0) << name;
+  }
+}
+
+TEST_F(Command, RefusesWrongUsage) {
+  makeSphere();
+  expectFailure("", 2, "subcommand");
+  expectFailure("fly", 2, "");
+  expectFailure("make cube -o c.vdb", 2, "cube");
+  expectFailure("make sphere", 2, "output");
+  expectFailure("make sphere --voxel 0 -o c.vdb", 2, "voxel size");
+  expectFailure("make sphere --voxel nan -o c.vdb", 2, "voxel size");
+  expectFailure("mesh s.vdb -o m.txt", 2, ".ply");
+  expectFailure("mesh s.vdb -o m.ply --iso nan", 2, "isovalue");
+  expectFailure("mesh s.vdb -o m.ply --inside out", 2, "out");
+  expectFailure("mesh s.vdb -o m.ply --threads -1", 2, "threads");
+}
+
+TEST_F(Command, RefusesUnusableInput) {
+  makeSphere();
+  const std::string whole = readBytes(folder / "s.vdb");
+  writeBytes(folder / "cut.vdb", whole.substr(0, whole.size() / 2));
+  writeBytes(folder / "foreign.vdb", "PK\3\4 something else altogether");
+  writeBytes(folder / "empty.vdb", "");
+  writeBytes(folder / "broken.ply", "ply\n");
+  writeBytes(folder / "bare.obj", "v 0 0 0\n");
+  for (const char* command : {"info", "mesh -o m.ply"}) {
+    expectFailure(std::string(command) + " none.vdb", 3, "none.vdb");
+    expectFailure(std::string(command) + " cut.vdb", 3, "truncated");
+    expectFailure(std::string(command) + " foreign.vdb", 3, "not an OpenVDB file");
+    expectFailure(std::string(command) + " empty.vdb", 3, "empty");
+    expectFailure(std::string(command) + " .", 3, "folder");
+  }
+  expectFailure("mesh s.vdb -o m.ply --grid density", 3, "\"sphere\"");
+  expectFailure("mesh s.vdb -o m.ply --iso 7", 3, "values from");
+  expectFailure("check broken.ply", 3, "broken.ply");
+  expectFailure("voxelize broken.ply --voxel 1 -o v.vdb", 3, "broken.ply");
+  expectFailure("voxelize bare.obj --voxel 1 -o v.vdb", 3, "no faces");
+}
+
+TEST_F(Command, RefusesGridsThatCannotBeMeshed) {
+  openvdb::initialize();
+  auto vectors = openvdb::Vec3SGrid::create();
+  vectors->tree().setValueOn(openvdb::Coord(0), openvdb::Vec3f(1));
+  writeGrids({vectors}, folder / "vectors.vdb");
+  expectFailure("mesh vectors.vdb -o m.ply", 3, "vec3s");
+
+  writeGrids({openvdb::FloatGrid::create(1.0f)}, folder / "empty.vdb");
+  expectFailure("mesh empty.vdb -o m.ply", 3, "no active voxels");
+
+  makeSphere();
+  auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(readGrid(folder / "s.vdb"));
+  grid->tree().setValueOn(openvdb::Coord(10, 0, 0), std::nanf(""));
+  writeGrids({grid}, folder / "nan.vdb");
+  expectFailure("mesh nan.vdb -o m.ply", 3, "10");
+  EXPECT_EQ(run("mesh nan.vdb -o m.ply --nan outside").exitCode, 0);
+}
+
+TEST_F(Command, RefusesUnusableOutput) {
+  makeSphere();
+  expectFailure("mesh s.vdb -o no/m.ply", 3, "no folder");
+  expectFailure("make sphere -o no/m.vdb", 3, "no folder");
+  expectFailure("mesh s.vdb -o .", 2, "ending");
+  if (std::filesystem::exists("/dev/full")) {
+    expectFailure("mesh s.vdb --quiet -o /dev/full", 3, "space");
+    expectFailure("make sphere -o /dev/full", 3, "space");
+  }
+}
+
+TEST_F(Command, RefusesFoldersWithoutPermission) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  makeSphere();
+  std::filesystem::create_directory(folder / "locked");
+  std::filesystem::permissions(folder / "locked", std::filesystem::perms::owner_read);
+  expectFailure("mesh s.vdb -o locked/m.ply", 3, "ermission");
+  std::filesystem::permissions(folder / "locked", std::filesystem::perms::owner_all);
+}
+
+TEST_F(Command, ExitsWithOneForBrokenPromises) {
+  writeBytes(folder / "open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(run("check open.obj").exitCode, 1);
+}
+
+TEST_F(Command, StopsWhenAsked) {
+  const Outcome outcome =
+      run("make gyroid --voxel 0.0015 -o g.vdb & sleep 0.5; kill -INT $!; wait $!");
+  EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
+  EXPECT_EQ(folder.fileCount(), 0);
+}
+
+}  // namespace
+}  // namespace tufa

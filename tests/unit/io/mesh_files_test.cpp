@@ -1,0 +1,205 @@
+// Meshes through files of every format and back.
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <tufa/io.h>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "support/expect_error.h"
+#include "support/scratch_folder.h"
+
+namespace tufa {
+namespace {
+
+using testing::expectError;
+using testing::readBytes;
+using testing::ScratchFolder;
+using testing::writeBytes;
+
+/// A pyramid: one quad below, four triangles above; shifted, so that precision can be tested.
+Mesh makePyramid(double shift = 0) {
+  Mesh mesh;
+  for (const auto& [x, y, z] :
+       {std::array{0.1, 0.0, 0.0}, {0.1, 1.0, 0.0}, {1.1, 1.0, 0.0}, {1.1, 0.0, 0.0}}) {
+    mesh.positions.emplace_back(x + shift, y, z);
+  }
+  mesh.positions.emplace_back(0.6 + shift, 0.5, 1.0);
+  for (const Position& p : mesh.positions) {
+    const double length = std::hypot(p.x - 0.6 - shift, p.y - 0.5, p.z - 0.3);
+    mesh.normals.emplace_back(static_cast<float>((p.x - 0.6 - shift) / length),
+                              static_cast<float>((p.y - 0.5) / length),
+                              static_cast<float>((p.z - 0.3) / length));
+  }
+  mesh.quads.emplace_back(0, 1, 2, 3);
+  mesh.triangles = {{1, 0, 4}, {2, 1, 4}, {3, 2, 4}, {0, 3, 4}};
+  return mesh;
+}
+
+double volumeOf(const Mesh& mesh) {
+  double sixfold = 0;
+  for (const Triangle& t : triangulate(mesh)) {
+    const Position& a = mesh.positions.at(t.vertices[0]);
+    const Position& b = mesh.positions.at(t.vertices[1]);
+    const Position& c = mesh.positions.at(t.vertices[2]);
+    sixfold += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) +
+               a.z * (b.x * c.y - b.y * c.x);
+  }
+  return sixfold / 6;
+}
+
+class EveryFormat : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat,
+                         ::testing::Values(".ply", ".obj", ".stl", ".off", ".glb", ".PLY", ".Stl"),
+                         [](const auto& test) {
+                           return std::string(test.param + 1) + std::to_string(test.index);
+                         });
+
+TEST_P(EveryFormat, KeepsTheSurface) {
+  const ScratchFolder folder;
+  const Mesh mesh = makePyramid();
+  write(mesh, folder / (std::string("pyramid") + GetParam()));
+  const Mesh back = readMesh(folder / (std::string("pyramid") + GetParam()));
+  EXPECT_EQ(back.positions.size(), 5u);
+  EXPECT_EQ(back.triangleCount(), 6u);
+  EXPECT_NEAR(volumeOf(back), volumeOf(mesh), 1e-6);
+  EXPECT_EQ(folder.fileCount(), 1);
+}
+
+TEST_P(EveryFormat, TakesAnEmptyMesh) {
+  const ScratchFolder folder;
+  const auto path = folder / (std::string("empty") + GetParam());
+  write({}, path);
+  EXPECT_GT(std::filesystem::file_size(path), 0u);
+}
+
+/// Whatever is cut off or changed, the reader answers with a mesh of valid indices or an Error.
+TEST_P(EveryFormat, SurvivesDamage) {
+  const ScratchFolder folder;
+  const auto path = folder / (std::string("damaged") + GetParam());
+  write(makePyramid(), path);
+  const std::string whole = readBytes(path);
+  const auto tryToRead = [&](const std::string& bytes) {
+    writeBytes(path, bytes);
+    try {
+      const Mesh mesh = readMesh(path);
+      for (const Triangle& t : triangulate(mesh)) {
+        for (const VertexIndex v : t.vertices) ASSERT_LT(v, mesh.positions.size());
+      }
+      for (const Position& p : mesh.positions) {
+        ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+      }
+    } catch (const Error& error) {
+      ASSERT_EQ(error.code(), ErrorCode::UnreadableFile) << error.what();
+    }
+  };
+  for (std::size_t length = 0; length < whole.size(); ++length) tryToRead(whole.substr(0, length));
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (const int flip : {0x01, 0x10, 0x80, 0xFF}) {
+      std::string changed = whole;
+      changed[at] = static_cast<char>(changed[at] ^ flip);
+      tryToRead(changed);
+    }
+  }
+}
+
+TEST_P(EveryFormat, LeavesNothingWhenCancelled) {
+  const ScratchFolder folder;
+  WriteOptions options;
+  options.progress = [](std::string_view, double) { return false; };
+  expectError(ErrorCode::Cancelled, "cancelled", [&] {
+    write(makePyramid(), folder / (std::string("cancelled") + GetParam()), options);
+  });
+  EXPECT_EQ(folder.fileCount(), 0);
+}
+
+TEST(MeshFiles, KeepQuadsWhereTheFormatHasThem) {
+  const ScratchFolder folder;
+  for (const char* name : {"m.ply", "m.obj", "m.off"}) {
+    write(makePyramid(), folder / name);
+    EXPECT_EQ(readMesh(folder / name).quads, makePyramid().quads) << name;
+    EXPECT_EQ(readMesh(folder / name).triangles, makePyramid().triangles) << name;
+  }
+}
+
+TEST(MeshFiles, PlyKeepsNormals) {
+  const ScratchFolder folder;
+  write(makePyramid(), folder / "m.ply");
+  EXPECT_EQ(readMesh(folder / "m.ply").normals, makePyramid().normals);
+}
+
+TEST(MeshFiles, KeepDoublePrecisionFarFromTheOrigin) {
+  const ScratchFolder folder;
+  const Mesh mesh = makePyramid(1e6);
+  for (const char* name : {"m.ply", "m.obj", "m.off"}) {
+    write(mesh, folder / name);
+    EXPECT_EQ(readMesh(folder / name).positions, mesh.positions) << name;
+  }
+  write(mesh, folder / "m.glb");  // relative to the node's translation
+  const Mesh glb = readMesh(folder / "m.glb");
+  for (std::size_t n = 0; n < mesh.positions.size(); ++n) {
+    EXPECT_NEAR(glb.positions.at(n).x, mesh.positions[n].x, 1e-6);
+  }
+}
+
+TEST(MeshFiles, RefuseUnknownEndings) {
+  const ScratchFolder folder;
+  for (const char* name : {"m.txt", "m", "ply"}) {
+    expectError(ErrorCode::InvalidArgument, ".ply", [&] { write({}, folder / name); });
+    expectError(ErrorCode::InvalidArgument, ".ply", [&] { (void)readMesh(folder / name); });
+    expectError(ErrorCode::InvalidArgument, ".ply", [&] { requireMeshEnding(folder / name); });
+  }
+}
+
+TEST(MeshFiles, RefuseUnusableTargets) {
+  const ScratchFolder folder;
+  const Mesh mesh = makePyramid();
+  expectError(ErrorCode::UnwritableFile, "no folder", [&] { write(mesh, folder / "no/m.ply"); });
+  std::filesystem::create_directory(folder / "d.ply");
+  expectError(ErrorCode::UnwritableFile, "folder", [&] { write(mesh, folder / "d.ply"); });
+}
+
+TEST(MeshFiles, TellOfAFullDisk) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  expectError(ErrorCode::UnwritableFile, "space", [] { write(makePyramid(), "/dev/full"); });
+}
+
+TEST(MeshFiles, WriteToDevices) {
+  write(makePyramid(), "/dev/null");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(MeshFiles, KeepTheOldFileWhenWritingFails) {
+  const ScratchFolder folder;
+  writeBytes(folder / "m.stl", "old");
+  Mesh mesh = makePyramid();
+  mesh.triangles.emplace_back(0, 1, 99);  // .stl looks its corners up
+  EXPECT_ANY_THROW(write(mesh, folder / "m.stl"));
+  EXPECT_EQ(readBytes(folder / "m.stl"), "old");
+  EXPECT_EQ(folder.fileCount(), 1);
+}
+
+TEST(MeshFiles, FollowSymbolicLinks) {
+  const ScratchFolder folder;
+  writeBytes(folder / "target.ply", "old");
+  std::filesystem::create_symlink("target.ply", folder / "link.ply");
+  write(makePyramid(), folder / "link.ply");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.ply"));
+  EXPECT_EQ(readMesh(folder / "target.ply").triangleCount(), 6u);
+}
+
+TEST(MeshFiles, RefuseWhatIsNoFile) {
+  const ScratchFolder folder;
+  expectError(ErrorCode::UnreadableFile, "No such", [&] { (void)readMesh(folder / "no.ply"); });
+  std::filesystem::create_directory(folder / "d.obj");
+  expectError(ErrorCode::UnreadableFile, "folder", [&] { (void)readMesh(folder / "d.obj"); });
+  ASSERT_EQ(::mkfifo((folder / "pipe.off").c_str(), 0600), 0);
+  expectError(ErrorCode::UnreadableFile, "regular", [&] { (void)readMesh(folder / "pipe.off"); });
+  writeBytes(folder / "empty.glb", "");
+  expectError(ErrorCode::UnreadableFile, "empty", [&] { (void)readMesh(folder / "empty.glb"); });
+}
+
+}  // namespace
+}  // namespace tufa

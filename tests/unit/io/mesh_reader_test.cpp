@@ -1,0 +1,249 @@
+// What the readers make of files of other programs.
+
+#include <gtest/gtest.h>
+
+#include <tufa/io.h>
+#include <array>
+#include <cstring>
+
+#include "support/expect_error.h"
+#include "support/scratch_folder.h"
+
+namespace tufa {
+namespace {
+
+using testing::expectError;
+using testing::ScratchFolder;
+using testing::writeBytes;
+
+Mesh readText(const std::string& name, const std::string& text) {
+  const ScratchFolder folder;
+  writeBytes(folder / name, text);
+  return readMesh(folder / name);
+}
+
+void expectUnreadable(const std::string& name, const std::string& text, const std::string& part) {
+  expectError(ErrorCode::UnreadableFile, part, [&] { (void)readText(name, text); });
+}
+
+template <class Number>
+void append(std::string& bytes, Number value, bool bigEndian = false) {
+  std::array<char, sizeof(Number)> raw;
+  std::memcpy(raw.data(), &value, sizeof value);
+  if (bigEndian) std::reverse(raw.begin(), raw.end());
+  bytes.append(raw.data(), raw.size());
+}
+
+const std::string kObjCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 1.5 0\n";
+
+TEST(ObjReader, TakesEveryFormOfCorner) {
+  const Mesh mesh = readText("m.obj", "# comment\nmtllib x.mtl\r\no name\n" + kObjCorners +
+                                          "vt 0 0\nvn 0 0 1\ng a\nusemtl b\ns off\n"
+                                          "f 1 2 3\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\n"
+                                          "f 1/1/1 2/1/1 3/1/1 # tail\nf -5 -4 \\\n -3\n"
+                                          "f 1 2 3 4\nf 1 2 3 5 4\nl 1 2\n");
+  EXPECT_EQ(mesh.positions.size(), 5u);
+  EXPECT_EQ(mesh.quads.size(), 1u);
+  ASSERT_EQ(mesh.triangles.size(), 5u + 3u);
+  for (std::size_t n = 0; n < 5; ++n) EXPECT_EQ(mesh.triangles[n], Triangle(0, 1, 2));
+}
+
+TEST(ObjReader, TakesColorsAndWeights) {
+  const Mesh mesh = readText("m.obj", "v +1 2e0 3 0.5 0.5 0.5\nv 0 0 0 1\nv 1e-400 0 1\nf 1 2 3");
+  EXPECT_EQ(mesh.positions[0], Position(1, 2, 3));
+  EXPECT_EQ(mesh.positions[2], Position(0, 0, 1));
+}
+
+TEST(ObjReader, NamesTheLineOfAnError) {
+  expectUnreadable("m.obj", "v 0 0 0\nv 1 x 0\n", "line 2: \"x\" is not a number");
+  expectUnreadable("m.obj", "v 0 0\n", "line 1: a number is missing");
+  expectUnreadable("m.obj", "v 0 0 nan\n", "line 1: \"nan\" is not finite");
+  expectUnreadable("m.obj", "v 0 0 1e999\n", "not finite");
+  expectUnreadable("m.obj", kObjCorners + "f 1 2 9\nf 1 2 3\n",
+                   "line 6: a face names vertex 9 of 5");
+  expectUnreadable("m.obj", kObjCorners + "f 1 2 -6\n", "line 6: a face names vertex -6 of 5");
+  expectUnreadable("m.obj", kObjCorners + "f 0 1 2\n", "vertex 0");
+  expectUnreadable("m.obj", "solid of something else\n", "no vertices");
+}
+
+TEST(OffReader, TakesColorsAndComments) {
+  const Mesh mesh = readText("m.off",
+                             "# c\nCOFF 4 2 0 # counts\n\n0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n"
+                             "1 1 0 0 0 0 0\n0 1 0 0 0 0 0\n3 0 1 2 255 0 0\n4 0 1 2 3\n");
+  EXPECT_EQ(mesh.positions.size(), 4u);
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.quads.size(), 1u);
+}
+
+TEST(OffReader, RefusesWhatItCannotBe) {
+  expectUnreadable("m.off", "hello\n", "line 1");
+  expectUnreadable("m.off", "4OFF\n", "three dimensions");
+  expectUnreadable("m.off", "OFF BINARY\n", "binary");
+  expectUnreadable("m.off", "OFF\n900000000 1 0\n0 0 0\n", "more than the file can hold");
+  expectUnreadable("m.off", "OFF\n2 1 0\n0 0 0\n", "ends after 1 vertices");
+  expectUnreadable("m.off", "OFF\n1 1 0\n0 0 0\n3 0 0 7\n", "line 4: a face names vertex 7 of 1");
+  expectUnreadable("m.off", "OFF\n-1 1 0\n", "-1");
+}
+
+std::string plyHeader(const std::string& format) {
+  return "ply\r\nformat " + format +
+         " 1.0\r\ncomment c\r\nobj_info o\r\nelement material 1\r\nproperty list uchar float k\r\n"
+         "element vertex 3\r\nproperty uchar red\r\nproperty double x\r\nproperty float y\r\n"
+         "property short z\r\nelement face 1\r\nproperty uchar flag\r\n"
+         "property list ushort uint vertex_index\r\nend_header\n";
+}
+
+TEST(PlyReader, TakesAnyLayoutInEveryEncoding) {
+  const Mesh text = readText("m.ply", plyHeader("ascii") +
+                                          "2 0.5 1\n7 0.25 0 0\n7 1 0 -3\n7 0 1 0\n"
+                                          "9 3 0 1 2\n");
+  EXPECT_EQ(text.positions[0], Position(0.25, 0, 0));
+  EXPECT_EQ(text.positions[1], Position(1, 0, -3));
+  ASSERT_EQ(text.triangles.size(), 1u);
+  for (const bool big : {false, true}) {
+    std::string bytes = plyHeader(big ? "binary_big_endian" : "binary_little_endian");
+    append(bytes, std::uint8_t{2});
+    append(bytes, 0.5f, big);
+    append(bytes, 1.0f, big);
+    for (const Position& p : text.positions) {
+      append(bytes, std::uint8_t{7});
+      append(bytes, p.x, big);
+      append(bytes, static_cast<float>(p.y), big);
+      append(bytes, static_cast<std::int16_t>(p.z), big);
+    }
+    append(bytes, std::uint8_t{9});
+    append(bytes, std::uint16_t{3}, big);
+    for (const std::uint32_t v : {0u, 1u, 2u}) append(bytes, v, big);
+    const Mesh binary = readText("m.ply", bytes);
+    EXPECT_EQ(binary.positions, text.positions);
+    EXPECT_EQ(binary.triangles, text.triangles);
+    expectUnreadable("m.ply", bytes.substr(0, bytes.size() - 1), "truncated");
+  }
+}
+
+TEST(PlyReader, BoundsCountsByTheFile) {
+  const std::string head = "ply\nformat binary_little_endian 1.0\n";
+  expectUnreadable("m.ply",
+                   head +
+                       "element vertex 4000000000000\nproperty float x\nproperty float y\n"
+                       "property float z\nend_header\n",
+                   "need more than");
+  std::string bytes = head +
+                      "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                      "element face 1\nproperty list uint uint vertex_indices\nend_header\n";
+  bytes.append(12, '\0');
+  append(bytes, std::uint32_t{0xFFFFFFFF});
+  expectUnreadable("m.ply", bytes, "longer than the file");
+  expectUnreadable(
+      "m.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1", "no y");
+  expectUnreadable("m.ply", "ply\nelement vertex 0\nend_header\n", "no format");
+  expectUnreadable("m.ply", "ply\nformat ascii 1.0\n", "does not end");
+  expectUnreadable("m.ply", "plywood\n", "not a .ply");
+}
+
+std::string binaryStl(const std::string& header, std::uint32_t claimed, std::uint32_t triangles) {
+  std::string bytes = header;
+  bytes.resize(80, ' ');
+  append(bytes, claimed);
+  for (std::uint32_t n = 0; n < triangles; ++n) {
+    for (const float x : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, -0.f, 1.f, 0.f}) {
+      append(bytes, x);
+    }
+    append(bytes, std::uint16_t{0});
+  }
+  return bytes;
+}
+
+TEST(StlReader, TakesBinaryFilesThatBeginWithSolid) {
+  const Mesh mesh = readText("m.STL", binaryStl("solid of a program that knows no better", 2, 2));
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.positions.size(), 3u);
+}
+
+TEST(StlReader, TakesTextInEitherCase) {
+  const Mesh mesh = readText("m.stl",
+                             "SOLID facet vertex name\n FACET NORMAL 0 0 1\n OUTER LOOP\n"
+                             "  VERTEX 0 0 0\n  VERTEX 1 0 0\n  vertex -0 1e0 0\n ENDLOOP\n"
+                             " ENDFACET\nENDSOLID facet vertex name\n");
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+}
+
+TEST(StlReader, RefusesTruncatedFiles) {
+  expectUnreadable("m.stl", binaryStl("x", 3, 2), "3 triangles need 234 bytes");
+  expectUnreadable("m.stl", binaryStl("x", 0xFFFFFFFF, 1), "truncated");
+  expectUnreadable("m.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "truncated");
+  expectUnreadable("m.stl", "solid x\nhello\nendsolid\n", "line 2");
+  expectUnreadable("m.stl", "short", "too short");
+}
+
+std::string glb(const std::string& json, const std::string& binary = "") {
+  std::string text = json;
+  while (text.size() % 4 != 0) text += ' ';
+  std::string bytes = "glTF";
+  append(bytes, std::uint32_t{2});
+  append(bytes, static_cast<std::uint32_t>(28 + text.size() + binary.size()));
+  append(bytes, static_cast<std::uint32_t>(text.size()));
+  bytes += "JSON" + text;
+  append(bytes, static_cast<std::uint32_t>(binary.size()));
+  bytes += std::string("BIN\0", 4) + binary;
+  return bytes;
+}
+
+/// One triangle in the xy plane under the given nodes.
+std::string glbScene(const std::string& nodes, std::uint32_t indexCount = 3) {
+  std::string binary;
+  for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) append(binary, x);
+  for (const std::uint8_t index : {0, 1, 2, 0}) append(binary, index);
+  return glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
+                 R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+              "buffers":[{"byteLength":40}],
+              "bufferViews":[{"buffer":0,"byteLength":36},
+                             {"buffer":0,"byteOffset":36,"byteLength":4}],
+              "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+                           {"bufferView":1,"componentType":5121,"count":)" +
+                 std::to_string(indexCount) + R"(,"type":"SCALAR"}]})",
+             binary);
+}
+
+TEST(GlbReader, GoesThroughNodeTransforms) {
+  // A quarter turn about z and a scale of 2, below a translation.
+  const Mesh mesh = readText("m.glb", glbScene(R"([{"children":[1],"translation":[10,0,0]},
+      {"mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,2,2]}])"));
+  ASSERT_EQ(mesh.positions.size(), 3u);
+  EXPECT_NEAR(mesh.positions[1].x, 10, 1e-12);
+  EXPECT_NEAR(mesh.positions[1].y, 2, 1e-12);
+  EXPECT_NEAR(mesh.positions[2].x, 8, 1e-12);
+  EXPECT_EQ(mesh.triangles[0], Triangle(0, 1, 2));
+}
+
+TEST(GlbReader, TurnsMirroredMeshesAround) {
+  const Mesh mesh =
+      readText("m.glb", glbScene(R"([{"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]}])"));
+  EXPECT_EQ(mesh.positions[1], Position(4, 6, 7));
+  EXPECT_EQ(mesh.triangles[0], Triangle(0, 2, 1));
+}
+
+TEST(GlbReader, RefusesDamagedFiles) {
+  expectUnreadable("m.glb", glbScene(R"([{"mesh":7}])"), "damaged");
+  expectUnreadable("m.glb", glbScene(R"([{"mesh":0}])", 4000000000u), "beyond the binary chunk");
+  expectUnreadable("m.glb", glbScene(R"([{"children":[0]}])"), "two parents");
+  expectUnreadable("m.glb", glb("{not json"), "damaged");
+  expectUnreadable("m.glb", glb(R"({"extensionsRequired":["KHR_draco_mesh_compression"]})"),
+                   "draco");
+  expectUnreadable("m.glb", glbScene("[{}]").substr(0, 100), "truncated");
+  expectUnreadable("m.glb", "glTF but not really", "glTF version");
+}
+
+TEST(MeshReader, ReadsTheSampleMeshes) {
+  const std::filesystem::path folder = TUFA_TEST_DATA;
+  if (!std::filesystem::exists(folder / "ode_spot.obj")) GTEST_SKIP() << "no samples in " << folder;
+  const auto triangles = [&](const char* name) { return readMesh(folder / name).triangleCount(); };
+  EXPECT_EQ(triangles("ode_spot.obj"), 23062u);
+  EXPECT_EQ(triangles("cgal_knot1.off"), 6400u);
+  EXPECT_EQ(triangles("tri_plate_holes.STL"), 1252u);
+  EXPECT_EQ(triangles("occ_propeller.stl"), 7375u);
+  EXPECT_EQ(triangles("mani_mengerSponge3.glb"), 21598u);
+}
+
+}  // namespace
+}  // namespace tufa

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <tufa/voxelize.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/expect_error.h"
+
+namespace tufa {
+namespace {
+
+using testing::expectError;
+
+/// A cube of half side 1 in quads.
+Mesh makeCube() {
+  Mesh mesh;
+  for (int n = 0; n < 8; ++n)
+    mesh.positions.emplace_back(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1);
+  mesh.quads = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  return mesh;
+}
+
+double cubeDistance(const openvdb::Vec3d& p) {
+  const openvdb::Vec3d q(std::abs(p.x()) - 1, std::abs(p.y()) - 1, std::abs(p.z()) - 1);
+  const double inside = std::min(std::max({q.x(), q.y(), q.z()}), 0.0);
+  return inside +
+         openvdb::Vec3d(std::max(q.x(), 0.0), std::max(q.y(), 0.0), std::max(q.z(), 0.0)).length();
+}
+
+TEST(Voxelize, GivesTheSignedDistance) {
+  VoxelizeOptions options;
+  options.voxelSize = 0.07;
+  const auto grid = voxelize(makeCube(), options);
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
+  EXPECT_EQ(grid->getName(), "surface");
+  EXPECT_NEAR(grid->background(), 0.21, 1e-6);
+  EXPECT_GT(grid->activeVoxelCount(), 10000u);
+  for (auto value = grid->cbeginValueOn(); value; ++value) {
+    ASSERT_NEAR(*value, cubeDistance(grid->indexToWorld(value.getCoord())), 1e-5);
+  }
+}
+
+TEST(Voxelize, DoesNotCareForOrientation) {
+  VoxelizeOptions options;
+  options.voxelSize = 0.1;
+  Mesh turned = makeCube();
+  for (Quad& quad : turned.quads) std::reverse(quad.vertices.begin(), quad.vertices.end());
+  turned.quads[2] = makeCube().quads[2];
+  const auto grid = voxelize(turned, options);
+  EXPECT_LT(grid->tree().getValue(openvdb::Coord(0)), 0);
+}
+
+TEST(Voxelize, TakesOpenMeshes) {
+  VoxelizeOptions options;
+  options.voxelSize = 0.1;
+  Mesh open = makeCube();
+  open.quads.pop_back();
+  EXPECT_GT(voxelize(open, options)->activeVoxelCount(), 0u);
+}
+
+TEST(Voxelize, RefusesWhatCannotBeDone) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  VoxelizeOptions options;
+  for (const double voxelSize : {0.0, -1.0, infinity, std::nan(""), 1e-12, 1e-320}) {
+    options.voxelSize = voxelSize;
+    expectError(ErrorCode::InvalidArgument, "voxel size",
+                [&] { (void)voxelize(makeCube(), options); });
+  }
+  options.voxelSize = 0.1;
+  options.halfWidth = 0;
+  expectError(ErrorCode::InvalidArgument, "half width",
+              [&] { (void)voxelize(makeCube(), options); });
+  options.halfWidth = 3;
+  expectError(ErrorCode::InvalidArgument, "no faces", [&] { (void)voxelize({}, options); });
+  Mesh broken = makeCube();
+  broken.triangles.emplace_back(0, 1, 8);
+  expectError(ErrorCode::InvalidArgument, "vertex 8", [&] { (void)voxelize(broken, options); });
+  broken = makeCube();
+  broken.positions[0].x = infinity;
+  expectError(ErrorCode::InvalidArgument, "finite", [&] { (void)voxelize(broken, options); });
+}
+
+TEST(Voxelize, CanBeCancelled) {
+  VoxelizeOptions options;
+  options.voxelSize = 0.02;
+  options.progress = [](std::string_view, double) { return false; };
+  expectError(ErrorCode::Cancelled, "cancelled", [&] { (void)voxelize(makeCube(), options); });
+}
+
+}  // namespace
+}  // namespace tufa

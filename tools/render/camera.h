@@ -1,0 +1,29 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+
+namespace tufa::render {
+
+using Vec3 = openvdb::Vec3d;
+
+/// An orthographic view: x to the right, y down, in pixels; depth grows away from the eye.
+struct Camera {
+  Vec3 right, up, toEye;  ///< an orthonormal frame
+  Vec3 centre;            ///< shown in the middle of the picture
+  double pixels = 1;      ///< for each world unit
+  double halfWidth = 0;   ///< of the picture, in pixels
+  double halfHeight = 0;
+
+  /// `azimuth` turns about z, from the x axis; `elevation` is over the xy plane; both in degrees.
+  static Camera looking(double azimuth, double elevation);
+
+  [[nodiscard]] Vec3 project(const Vec3& p) const {
+    const Vec3 d = p - centre;
+    return {halfWidth + pixels * right.dot(d), halfHeight - pixels * up.dot(d),
+            -pixels * toEye.dot(d)};
+  }
+};
+
+}  // namespace tufa::render

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <tufa/mesh.h>
+
+#include "camera.h"
+#include "image.h"
+
+namespace tufa::render {
+
+/// How a picture is taken.
+struct View {
+  double azimuth = 35;    ///< degrees
+  double elevation = 25;  ///< degrees
+  /// World units from left to right; 0 fits the mesh.
+  double width = 0;
+  Vec3 centre{0, 0, 0};   ///< used if `width` is given
+  bool edges = false;     ///< draw the mesh's edges; a quad's diagonal is drawn lighter
+  bool smooth = true;     ///< shade over edges flatter than 30 degrees; else one shade a triangle
+};
+
+/// Takes a picture of a mesh on a light ground.
+[[nodiscard]] Image render(const Mesh& mesh, const View& view, int width, int height);
+
+}  // namespace tufa::render
