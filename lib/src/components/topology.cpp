@@ -37,8 +37,7 @@ std::uint32_t Topology::firstVertexInBlock(const SurfaceBlock& block, int cell) 
   const auto next = std::lower_bound(
       special.exceptions.begin(), special.exceptions.end(), cell,
       [](const CellException& exception, int wanted) { return exception.cell < wanted; });
-  const std::int32_t extra =
-      next == special.exceptions.end() ? special.extra : next->extraBefore;
+  const std::int32_t extra = next == special.exceptions.end() ? special.extra : next->extraBefore;
   return rank + static_cast<std::uint32_t>(extra);
 }
 
@@ -164,7 +163,7 @@ class TopologyBuilder {
     return cells;
   }
 
-  // A block is special if a cell of it has an ambiguous face or touches a cut edge.
+  // A block is special if a cell of it may have several components or touches a cut edge.
   void chooseSpecialBlocks(bool cut) {
     const std::size_t count = topology_.blocks.size();
     std::vector<std::array<BlockBits, 3>> cuts(cut ? count : 0);
@@ -173,7 +172,7 @@ class TopologyBuilder {
     forBlocks([&](SurfaceBlock& block, std::size_t i, Accessor& accessor) {
       const CornerWords corners = blocks_.cornerWords(block.neighbours);
       block.quadCount = countCrossedEdges(corners);
-      special[i] = hasAmbiguousFace(corners) ? 1 : 0;
+      special[i] = mayHaveSeveralComponents(corners) ? 1 : 0;
       if (cut) hasCut[i] = findCutEdges(block, corners, accessor, cuts[i]) ? 1 : 0;
     });
     for (std::size_t i = 0; i < count; ++i) {
@@ -197,7 +196,8 @@ class TopologyBuilder {
 
   static std::size_t countAll(const BlockBits& bits) {
     std::size_t sum = 0;
-    for (const std::uint64_t slab : bits.slabs) sum += static_cast<std::size_t>(base::countBits(slab));
+    for (const std::uint64_t slab : bits.slabs)
+      sum += static_cast<std::size_t>(base::countBits(slab));
     return sum;
   }
 
@@ -207,7 +207,24 @@ class TopologyBuilder {
     return ~(a ^ d) & ~(b ^ c) & (a ^ b);
   }
 
-  static bool hasAmbiguousFace(const CornerWords& corners) {
+  // Whether two opposite corners of a cell differ from its other six. It has two components, though
+  // none of its faces is ambiguous.
+  static std::uint64_t oppositeCornersAlone(const std::array<std::uint64_t, 4>& lower,
+                                            const std::array<std::uint64_t, 4>& upper) {
+    std::uint64_t found = 0;
+    for (int i = 0; i < 4; ++i) {
+      std::uint64_t alone = ~(lower[i] ^ upper[3 - i]);
+      for (int other = 0; other < 4; ++other) {
+        if (other != i) alone &= lower[i] ^ lower[other];
+        if (other != 3 - i) alone &= lower[i] ^ upper[other];
+      }
+      found |= alone;
+    }
+    return found;
+  }
+
+  // Whether a cell of the block may have more than one component.
+  static bool mayHaveSeveralComponents(const CornerWords& corners) {
     std::uint64_t found = 0;
     for (int x = 0; x <= kBlockSize; ++x) {
       const auto& w = corners.words[x];
@@ -216,6 +233,7 @@ class TopologyBuilder {
       const auto& n = corners.words[x + 1];
       found |= alternates(w[0], w[1], n[0], n[1]) | alternates(w[2], w[3], n[2], n[3]);
       found |= alternates(w[0], w[2], n[0], n[2]) | alternates(w[1], w[3], n[1], n[3]);
+      found |= oppositeCornersAlone(w, n);
     }
     return found != 0;
   }
@@ -253,8 +271,9 @@ class TopologyBuilder {
         std::array<double, 4> values{};
         for (int i = 0; i < 4; ++i) {
           const int corner = kFaceCorners[axis * 2][i];
-          values[i] = samples.at((cell >> 6) + (corner >> 2), ((cell >> 3) & 7) + ((corner >> 1) & 1),
-                                 (cell & 7) + (corner & 1));
+          values[i] =
+              samples.at((cell >> 6) + (corner >> 2), ((cell >> 3) & 7) + ((corner >> 1) & 1),
+                         (cell & 7) + (corner & 1));
         }
         if (joinsInside(rule, values)) special.joined[axis].set(cell);
       });
@@ -323,8 +342,8 @@ class TopologyBuilder {
       CornerWords lowerCorners = corners;
       if (along == 0) {
         lowerCell = cell + (7 << shift);
-        below = &topology_.blocks[topology_.neighbour(block, axis == 0 ? -1 : 0,
-                                                      axis == 1 ? -1 : 0, axis == 2 ? -1 : 0)];
+        below = &topology_.blocks[topology_.neighbour(block, axis == 0 ? -1 : 0, axis == 1 ? -1 : 0,
+                                                      axis == 2 ? -1 : 0)];
         lowerCorners = blocks_.cornerWords(below->neighbours);
       }
       if (ownsBothArcs(*below, lowerCell, cornerMask(lowerCorners, lowerCell), axis * 2 + 1)) {
@@ -340,11 +359,10 @@ class TopologyBuilder {
       for (int x = 0; x < kBlockSize; ++x) {
         base::forEachBit(block.cells.slabs[x], [&](int bit) {
           const int cell = x * 64 + bit;
-          const int count =
-              topology_.componentsAt(block, cell, cornerMask(corners, cell)).count();
+          const int count = topology_.componentsAt(block, cell, cornerMask(corners, cell)).count();
           if (count == 1) return;
-          special.exceptions.push_back({static_cast<std::uint16_t>(cell),
-                                        static_cast<std::uint16_t>(count), special.extra});
+          special.exceptions.push_back(
+              {static_cast<std::uint16_t>(cell), static_cast<std::uint16_t>(count), special.extra});
           special.extra += count - 1;
         });
       }
@@ -354,7 +372,8 @@ class TopologyBuilder {
   static std::uint32_t countCrossedEdges(const CornerWords& corners) {
     int count = 0;
     for (int x = 0; x < kBlockSize; ++x) {
-      for (const std::uint64_t crossed : crossedEdges(corners, x)) count += base::countBits(crossed);
+      for (const std::uint64_t crossed : crossedEdges(corners, x))
+        count += base::countBits(crossed);
     }
     return static_cast<std::uint32_t>(count);
   }
