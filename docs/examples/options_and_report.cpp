@@ -28,9 +28,9 @@ int main() {
 
     // The checker lives in tufa::check, which links CGAL and falls under the GPL.
     const tufa::CheckReport check = tufa::check(mesh);
-    std::cout << check.components.size() << " pieces, "
-              << check.selfIntersectingPairs.value_or(0) << " intersecting pairs, "
-              << (check.watertight() ? "watertight" : "not watertight") << "\n";
+    std::cout << check.components.size() << " pieces, " << check.selfIntersectingPairs.value_or(0)
+              << " intersecting pairs, " << (check.watertight() ? "watertight" : "not watertight")
+              << "\n";
     return check.watertight() ? 0 : 1;
   } catch (const tufa::Error& error) {
     std::cerr << error.what() << "\n";

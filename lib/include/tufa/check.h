@@ -13,8 +13,8 @@ namespace tufa {
 
 /// One connected piece of the surface: vertices that a chain of faces joins, be it at a vertex.
 struct CheckComponent {
-  std::size_t vertices = 0;
-  std::size_t triangles = 0;
+  std::size_t vertices = 0;           ///< that its faces use
+  std::size_t triangles = 0;          ///< quads count as two
   long long eulerCharacteristic = 0;  ///< V - E + F
   /// Handles: (2 - eulerCharacteristic) / 2; unset unless the piece is a closed, oriented
   /// 2-manifold.
@@ -92,10 +92,10 @@ struct CheckOptions {
 /// Distances in voxels, where a voxel is the cube root of its world volume. Infinite where there
 /// are samples but nothing to measure to.
 struct DistanceSummary {
-  std::size_t samples = 0;
-  double largest = 0;
-  double mean = 0;
-  double rms = 0;
+  std::size_t samples = 0;  ///< points measured at, all of equal weight
+  double largest = 0;       ///< of all samples
+  double mean = 0;          ///< arithmetic mean
+  double rms = 0;           ///< root mean square
 };
 
 /// Two-sided distance between a mesh and the trilinear isosurface of a grid.
@@ -104,14 +104,14 @@ struct DistanceReport {
   DistanceSummary surfaceToMesh;  ///< samples on the isosurface, nearest triangle of an AABB tree
   double isovalue = 0;            ///< as used
   double voxelSize = 0;           ///< world length of one voxel of the figures above
-  double seconds = 0;
+  double seconds = 0;             ///< wall clock
 };
 
 /// Options of checkAgainst().
 struct DistanceOptions {
   std::optional<double> isovalue = {};  ///< unset: as contour() chooses
   int samplesPerEdge = 3;  ///< each triangle is sampled on a lattice with that many a side
-  int threads = 0;
+  int threads = 0;         ///< as in CheckOptions
   Progress progress = {};  ///< called from the calling thread; may cancel
 };
 

@@ -2,11 +2,11 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <tufa/mesh.h>
-#include <tufa/progress.h>
 #include <vector>
 
 namespace tufa {
@@ -45,10 +45,10 @@ struct ContourOptions {
   /// Value of the field on the surface, in the grid's own unit. Unset: 0 for level sets, else half
   /// way between the least and the greatest value.
   std::optional<double> isovalue;
-  Inside inside = Inside::Auto;
-  Ambiguity ambiguity = Ambiguity::Separate;
-  Normals normals = Normals::Gradient;
-  NonFinite nonFinite = NonFinite::Refuse;
+  Inside inside = Inside::Auto;               ///< which side of the isovalue is solid
+  Ambiguity ambiguity = Ambiguity::Separate;  ///< how ambiguous cell faces are joined
+  Normals normals = Normals::Gradient;        ///< where the vertices' normals come from
+  NonFinite nonFinite = NonFinite::Refuse;    ///< what to do with NaN and infinite samples
   /// Close the surface where it runs out of a level set's band (a clipped level set) instead of
   /// leaving an open boundary there.
   bool cap = false;
@@ -59,18 +59,18 @@ struct ContourOptions {
 
 /// Wall-clock seconds that one stage took.
 struct StageTime {
-  std::string stage;
-  double seconds = 0;
+  std::string stage;   ///< its name, as Progress has it
+  double seconds = 0;  ///< wall clock
 };
 
 /// What contour() did, beside the mesh.
 struct ContourReport {
-  double isovalue = 0;            ///< as used
-  bool insideIsBelow = true;      ///< as used
-  bool distanceField = false;     ///< the field has unit gradient: creases were restored from it
-  std::size_t activeVoxels = 0;   ///< of the grid
+  double isovalue = 0;              ///< as used
+  bool insideIsBelow = true;        ///< as used
+  bool distanceField = false;       ///< the field has unit gradient: creases were restored from it
+  std::size_t activeVoxels = 0;     ///< of the grid
   std::size_t nonFiniteValues = 0;  ///< treated as outside
-  std::size_t surfaceCells = 0;   ///< cells of eight samples that the surface passes
+  std::size_t surfaceCells = 0;     ///< cells of eight samples that the surface passes
   std::size_t creaseCells = 0;    ///< of these, cells whose vertex was placed on a crease or corner
   std::size_t faceFlips = 0;      ///< ambiguous faces joined against the rule to stay manifold
   std::size_t cutEdges = 0;       ///< sign changes at the edge of the data, left open
@@ -80,10 +80,10 @@ struct ContourReport {
 /// Meshes the surface of `grid` at the isovalue: dual contouring with one vertex for each surface
 /// component of a cell and one quad for each crossed lattice edge.
 ///
-/// The mesh is a closed, consistently oriented 2-manifold whenever the surface does not meet the edge
-/// of the data, in world space, outward by the right-hand rule under any affine transform. A grid
-/// without surface gives an empty mesh. The result is the same, byte for byte, for any number of
-/// threads. FloatGrid and DoubleGrid are supported.
+/// The mesh is a closed, consistently oriented 2-manifold whenever the surface does not meet the
+/// edge of the data, in world space, outward by the right-hand rule under any affine transform. A
+/// grid without surface gives an empty mesh. The result is the same, byte for byte, for any number
+/// of threads. FloatGrid and DoubleGrid are supported.
 ///
 /// Throws Error: UnsupportedGrid (other value types, frustum transforms), NonFiniteValues,
 /// InvalidArgument (isovalue not finite), LimitExceeded (2^32 vertices or more), Cancelled.

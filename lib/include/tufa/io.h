@@ -2,12 +2,12 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <tufa/mesh.h>
-#include <tufa/progress.h>
 #include <vector>
 
 namespace tufa {
@@ -15,16 +15,17 @@ namespace tufa {
 /// Options of write().
 struct WriteOptions {
   std::string name = "mesh";  ///< of the object inside formats that name objects (.obj, .glb)
-  Progress progress;
+  Progress progress;          ///< called from the calling thread; may cancel
 };
 
-/// Writes a mesh in the format that the file name's ending says: .ply (binary), .obj, .stl (binary),
-/// .off or .glb. Quads stay quads in .ply, .obj and .off.
+/// Writes a mesh in the format that the file name's ending says: .ply (binary), .obj, .stl
+/// (binary), .off or .glb. Quads stay quads in .ply, .obj and .off.
 ///
 /// .ply and .obj keep double precision where single precision would lose more than a millionth of
 /// the mesh's extent; .glb stores positions relative to the node's translation; .stl is single
 /// precision always. The file appears whole or not at all: it is written under a temporary name in
-/// the same folder and renamed. A pipe or a device is written to as it is, as .ply if it has no ending.
+/// the same folder and renamed. A pipe or a device is written to as it is, as .ply if it has no
+/// ending.
 ///
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending), LimitExceeded (more than the
 /// format can hold), Cancelled.
@@ -33,31 +34,31 @@ void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptio
 /// Throws Error(InvalidArgument) if write() knows no format of this ending.
 void requireMeshEnding(const std::filesystem::path& path);
 
-/// Throws Error(UnwritableFile) if it is plain now that write() or writeGrids() could not write there:
-/// for programs that work long before they do. A full disk shows only later.
+/// Throws Error(UnwritableFile) if it is plain now that write() or writeGrids() could not write
+/// there: for programs that work long before they do. A full disk shows only later.
 void requireWritable(const std::filesystem::path& path);
 
-/// Reads a mesh: .ply (text or binary), .obj, .stl (text or binary), .off or .glb. Polygons with more
-/// than four corners are fanned; .stl vertices at equal positions are shared. Throws Error:
+/// Reads a mesh: .ply (text or binary), .obj, .stl (text or binary), .off or .glb. Polygons with
+/// more than four corners are fanned; .stl vertices at equal positions are shared. Throws Error:
 /// UnreadableFile with the place where reading failed, InvalidArgument (unknown ending).
 [[nodiscard]] Mesh readMesh(const std::filesystem::path& path);
 
 /// What a .vdb file says of one grid.
 struct GridInfo {
-  std::string name;
-  std::string valueType;    ///< "float", "double", "vec3s", ...
-  std::string gridClass;    ///< "level set", "fog volume", "unknown", ...
-  std::string transform;    ///< "uniform scale", "affine", "frustum", ...
+  std::string name;                 ///< empty if it has none
+  std::string valueType;            ///< "float", "double", "vec3s", ...
+  std::string gridClass;            ///< "level set", "fog volume", "unknown", ...
+  std::string transform;            ///< "uniform scale", "affine", "frustum", ...
   double voxelSize[3] = {0, 0, 0};  ///< world length of a voxel's edges
-  std::size_t activeVoxels = 0;
-  std::size_t leaves = 0;
-  std::size_t tiles = 0;    ///< active tiles
-  std::size_t memoryBytes = 0;
+  std::size_t activeVoxels = 0;     ///< those of active tiles included
+  std::size_t leaves = 0;           ///< leaf nodes of 8^3 voxels
+  std::size_t tiles = 0;            ///< active tiles
+  std::size_t memoryBytes = 0;      ///< of the grid's tree
   int boundsMin[3] = {0, 0, 0};     ///< first index of the active voxels' bounding box
   int boundsMax[3] = {0, 0, 0};     ///< last index of it
-  double background = 0;
+  double background = 0;            ///< value where the tree holds none
   std::optional<double> minValue;   ///< of the active values that are finite
-  std::optional<double> maxValue;
+  std::optional<double> maxValue;   ///< of the active values that are finite
   std::size_t nonFiniteValues = 0;  ///< NaN or infinite active values
   bool meshable = false;            ///< contour() takes it
   std::string whyNot;               ///< if not, the reason

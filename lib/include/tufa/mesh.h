@@ -7,20 +7,28 @@
 
 namespace tufa {
 
-/// A point in the grid's world space. Double, so that a volume far from the origin keeps its detail.
-/// Default construction leaves the coordinates unset: large arrays are filled in parallel.
+/// A point in the grid's world space. Double, so that a volume far from the origin keeps its
+/// detail. Default construction leaves the coordinates unset: large arrays are filled in parallel.
 struct Position {
-  double x, y, z;
+  double x;      ///< world units
+  double y;      ///< world units
+  double z;      ///< world units
   Position() {}  // NOLINT(modernize-use-equals-default): "= default" would zero every array
+  /// From three coordinates.
   Position(double px, double py, double pz) : x(px), y(py), z(pz) {}
+  /// Equal in every coordinate.
   friend bool operator==(const Position&, const Position&) = default;
 };
 
 /// A unit vector in world space, pointing outward.
 struct Normal {
-  float x, y, z;
+  float x;     ///< of a vector of length 1
+  float y;     ///< of a vector of length 1
+  float z;     ///< of a vector of length 1
   Normal() {}  // NOLINT(modernize-use-equals-default)
+  /// From three components.
   Normal(float nx, float ny, float nz) : x(nx), y(ny), z(nz) {}
+  /// Equal in every component.
   friend bool operator==(const Normal&, const Normal&) = default;
 };
 
@@ -29,9 +37,11 @@ using VertexIndex = std::uint32_t;
 
 /// Three vertices, counter-clockwise seen from outside.
 struct Triangle {
-  std::array<VertexIndex, 3> vertices;
-  Triangle() {}  // NOLINT(modernize-use-equals-default)
+  std::array<VertexIndex, 3> vertices;  ///< the corners
+  Triangle() {}                         // NOLINT(modernize-use-equals-default)
+  /// From its corners in order.
   Triangle(VertexIndex a, VertexIndex b, VertexIndex c) : vertices{a, b, c} {}
+  /// The same corners, and the same one first.
   friend bool operator==(const Triangle&, const Triangle&) = default;
 };
 
@@ -39,9 +49,11 @@ struct Triangle {
 /// always the diagonal from vertices[0] to vertices[2], so a program that fans polygons from their
 /// first vertex shows the surface as it was meant.
 struct Quad {
-  std::array<VertexIndex, 4> vertices;
-  Quad() {}  // NOLINT(modernize-use-equals-default)
+  std::array<VertexIndex, 4> vertices;  ///< the corners
+  Quad() {}                             // NOLINT(modernize-use-equals-default)
+  /// From its corners in order.
   Quad(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) : vertices{a, b, c, d} {}
+  /// The same corners, and the same one first.
   friend bool operator==(const Quad&, const Quad&) = default;
 };
 
@@ -49,8 +61,8 @@ struct Quad {
 struct Mesh {
   std::vector<Position> positions;  ///< world space
   std::vector<Normal> normals;      ///< empty, or one for each position
-  std::vector<Quad> quads;
-  std::vector<Triangle> triangles;
+  std::vector<Quad> quads;          ///< faces of four corners
+  std::vector<Triangle> triangles;  ///< faces of three corners
 
   /// Triangles once every quad is split in two.
   [[nodiscard]] std::size_t triangleCount() const { return triangles.size() + 2 * quads.size(); }

@@ -5,11 +5,12 @@
 
 namespace tufa {
 
-/// Called now and then during long work, from the calling thread only, never at the same time twice.
+/// Called now and then during long work, from the calling thread only, never at the same time
+/// twice.
 ///
 /// `stage` names the stage at work ("signs", "vertices", ...), `fraction` is the share of the whole
-/// call that is done, from 0 to 1, never falling. Return false to cancel: the call then throws Error
-/// with ErrorCode::Cancelled and frees everything it holds.
+/// call that is done, from 0 to 1, never falling. Return false to cancel: the call then throws
+/// Error with ErrorCode::Cancelled and frees everything it holds.
 using Progress = std::function<bool(std::string_view stage, double fraction)>;
 
 }  // namespace tufa

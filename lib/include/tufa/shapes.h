@@ -2,12 +2,12 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/mesh.h>
+#include <tufa/progress.h>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
-#include <tufa/mesh.h>
-#include <tufa/progress.h>
 #include <vector>
 
 namespace tufa {
@@ -26,11 +26,11 @@ enum class Shape {
 
 /// Options of makeShape().
 struct ShapeOptions {
-  double voxelSize = 0.02;   ///< world units; every shape is about 2 units in size
-  double halfWidth = 3;      ///< of the narrow band, in voxels, 1 at least
-  std::uint32_t seed = 1;    ///< of the random shapes
-  int threads = 0;
-  Progress progress;
+  double voxelSize = 0.02;  ///< world units; every shape is about 2 units in size
+  double halfWidth = 3;     ///< of the narrow band, in voxels, 1 at least
+  std::uint32_t seed = 1;   ///< of the random shapes
+  int threads = 0;          ///< most threads; 0: all. Never changes the result.
+  Progress progress;        ///< called from the calling thread; may cancel
 };
 
 /// The shape of that name ("sphere", "torus", ...), if there is one.
@@ -39,9 +39,9 @@ struct ShapeOptions {
 /// Names of all shapes, in the order of the enum.
 [[nodiscard]] const std::array<std::string_view, 8>& shapeNames();
 
-/// Samples the shape on a grid of the given voxel size. Noise is a dense cube of 64^3 random samples
-/// with a border of outside samples. Throws Error(InvalidArgument) for a voxel size or half width
-/// that is not positive, or so small that the grid's coordinates overflow.
+/// Samples the shape on a grid of the given voxel size. Noise is a dense cube of 64^3 random
+/// samples with a border of outside samples. Throws Error(InvalidArgument) for a voxel size or half
+/// width that is not positive, or so small that the grid's coordinates overflow.
 [[nodiscard]] openvdb::FloatGrid::Ptr makeShape(Shape shape, const ShapeOptions& options = {});
 
 /// Exact signed distance from a world point to the true shape, negative inside; for Gyroid and

@@ -9,14 +9,14 @@ namespace tufa {
 
 /// Options of voxelize().
 struct VoxelizeOptions {
-  double voxelSize = 0;     ///< world units, must be given
-  double halfWidth = 3;     ///< of the narrow band, in voxels, 1 at least
-  int threads = 0;
-  Progress progress;
+  double voxelSize = 0;  ///< world units, must be given
+  double halfWidth = 3;  ///< of the narrow band, in voxels, 1 at least
+  int threads = 0;       ///< most threads; 0: all
+  Progress progress;     ///< called from the calling thread; may cancel
 };
 
-/// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. The mesh should be closed;
-/// an open one gives an unsigned shell that OpenVDB decides the inside of. Throws Error:
+/// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. The mesh should be
+/// closed; an open one gives an unsigned shell that OpenVDB decides the inside of. Throws Error:
 /// InvalidArgument (voxel size, half width, empty mesh), Cancelled.
 [[nodiscard]] openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options);
 
