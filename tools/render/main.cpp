@@ -77,7 +77,8 @@ Arguments parse(const std::vector<std::string>& words) {
   }
   if (arguments.output.empty() || arguments.panels.empty() || arguments.width < 1 ||
       arguments.height < 1) {
-    throw std::runtime_error("usage: tufa_render -o OUT.png [--size 900x700] MESH[:key=value,...]...");
+    throw std::runtime_error(
+        "usage: tufa_render -o OUT.png [--size 900x700] MESH[:key=value,...]...");
   }
   return arguments;
 }

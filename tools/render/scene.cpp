@@ -46,7 +46,8 @@ class CornerNormals {
       : normals_(facets.size()), begin_(mesh.positions.size() + 1) {
     for (std::size_t i = 0; i < facets.size(); ++i) {
       const auto& v = facets[i].triangle.vertices;
-      normals_[i] = (point(mesh, v[1]) - point(mesh, v[0])).cross(point(mesh, v[2]) - point(mesh, v[0]));
+      normals_[i] =
+          (point(mesh, v[1]) - point(mesh, v[0])).cross(point(mesh, v[2]) - point(mesh, v[0]));
       for (const VertexIndex vertex : v) ++begin_[vertex + 1];
     }
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
@@ -100,7 +101,8 @@ Camera aim(const Mesh& mesh, const View& view, int width, int height) {
   const Vec3 middle = 0.5 * (low + high);
   camera.centre = middle[0] * camera.right + middle[1] * camera.up + middle[2] * camera.toEye;
   const Vec3 size = high - low;
-  camera.pixels = 0.9 * std::min(width / std::max(size[0], 1e-12), height / std::max(size[1], 1e-12));
+  camera.pixels =
+      0.9 * std::min(width / std::max(size[0], 1e-12), height / std::max(size[1], 1e-12));
   return camera;
 }
 
@@ -151,7 +153,8 @@ class Painter {
                                              cross(p[2], p[0], at) / area,
                                              cross(p[0], p[1], at) / area};
         if (share[0] < 0 || share[1] < 0 || share[2] < 0) continue;
-        const auto depth = static_cast<float>(share[0] * p[0][2] + share[1] * p[1][2] + share[2] * p[2][2]);
+        const auto depth =
+            static_cast<float>(share[0] * p[0][2] + share[1] * p[1][2] + share[2] * p[2][2]);
         const std::size_t pixel = layer_.color.index(x, y);
         if (depth >= layer_.depth[pixel]) continue;
         layer_.depth[pixel] = depth;

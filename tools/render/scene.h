@@ -13,9 +13,9 @@ struct View {
   double elevation = 25;  ///< degrees
   /// World units from left to right; 0 fits the mesh.
   double width = 0;
-  Vec3 centre{0, 0, 0};   ///< used if `width` is given
-  bool edges = false;     ///< draw the mesh's edges; a quad's diagonal is drawn lighter
-  bool smooth = true;     ///< shade over edges flatter than 30 degrees; else one shade a triangle
+  Vec3 centre{0, 0, 0};  ///< used if `width` is given
+  bool edges = false;    ///< draw the mesh's edges; a quad's diagonal is drawn lighter
+  bool smooth = true;    ///< shade over edges flatter than 30 degrees; else one shade a triangle
 };
 
 /// Takes a picture of a mesh on a light ground.

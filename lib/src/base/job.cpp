@@ -4,8 +4,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <tufa/error.h>
+#include <algorithm>
 #include <utility>
 
 namespace tufa::base {

@@ -1,13 +1,13 @@
 #pragma once
 
+#include <tufa/contour.h>
+#include <tufa/progress.h>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <functional>
 #include <string>
 #include <thread>
-#include <tufa/contour.h>
-#include <tufa/progress.h>
 #include <vector>
 
 namespace tufa::base {
@@ -50,6 +50,5 @@ class Job {
   double stageEnd_ = 0;
   double lastFraction_ = 0;
 };
-
 
 }  // namespace tufa::base

@@ -25,16 +25,15 @@ Bvh buildFaceTree(const Faces& faces, base::Job& job) {
 
 std::size_t countIntersectingPairs(const Faces& faces, const Bvh& tree, base::Job& job) {
   const std::vector<Triangle>& solid = faces.solid();
-  return sumRanges<std::size_t>(
-      job, tree.leafCount(), 64, [&](std::size_t begin, std::size_t end) {
-        std::size_t pairs = 0;
-        for (std::size_t leaf = begin; leaf < end; ++leaf) {
-          tree.pairsOfLeaf(leaf, [&](std::uint32_t a, std::uint32_t b) {
-            pairs += meetElsewhere(faces.positions, solid[a], solid[b]) ? 1 : 0;
-          });
-        }
-        return pairs;
+  return sumRanges<std::size_t>(job, tree.leafCount(), 64, [&](std::size_t begin, std::size_t end) {
+    std::size_t pairs = 0;
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      tree.pairsOfLeaf(leaf, [&](std::uint32_t a, std::uint32_t b) {
+        pairs += meetElsewhere(faces.positions, solid[a], solid[b]) ? 1 : 0;
       });
+    }
+    return pairs;
+  });
 }
 
 }  // namespace tufa::checks
