@@ -27,7 +27,7 @@ fi
 tufa=build/release/bin/tufa
 $tufa make bracket -o "$out/bracket.vdb"
 $tufa mesh "$out/bracket.vdb" -o "$out/bracket.ply" --check
-build/release/bin/tufa_render -o "$out/bracket.png" "$out/bracket.ply:edges=1"
+build/release/bin/tufa_render -o "$out/bracket.png" "$out/bracket.ply:azimuth=60,elevation=50,edges=1"
 
 cat <<END
 
