@@ -1,0 +1,36 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/contour.h>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tufa::bench {
+
+/// What one run made.
+struct Outcome {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;      ///< once every quad is split in two
+  std::vector<StageTime> stages;  ///< of Tufa's own
+  std::shared_ptr<void> made;     ///< keeps the result, so that freeing it is not timed
+};
+
+/// One way to mesh a grid.
+struct Contender {
+  std::string name;
+  std::function<Outcome(int threads)> run;
+};
+
+/// Every way to mesh `grid` there is on this machine, Tufa first, then the one that it is compared
+/// with. What a contender needs beside the grid is made here, outside of what is timed. `grid` must
+/// outlive the result.
+[[nodiscard]] std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid);
+
+/// Reads every leaf value once, in parallel: what no mesher that looks at the whole grid can beat.
+[[nodiscard]] Contender floorFor(const openvdb::FloatGrid& grid);
+
+}  // namespace tufa::bench

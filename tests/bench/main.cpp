@@ -1,0 +1,86 @@
+// Meshes the same grids with Tufa and with its peers in one process and prints how they compare.
+
+#include <openvdb/openvdb.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+#include "contenders.h"
+#include "measure.h"
+#include "tables.h"
+#include "volumes.h"
+
+namespace {
+
+using namespace tufa::bench;
+
+struct Arguments {
+  std::vector<std::string> shapes = {"sphere", "gyroid", "bracket", "terrain"};
+  std::vector<std::string> meshes;
+  std::vector<double> sizes = {1, 10};
+  std::vector<int> threads = {1, 2};
+  int repeats = 5;
+};
+
+void addOptions(CLI::App& app, Arguments& arguments) {
+  app.add_option("--shapes", arguments.shapes, "shapes to mesh, as `tufa make` names them")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--mesh", arguments.meshes, "mesh files to voxelize and mesh");
+  app.add_option("--sizes", arguments.sizes, "millions of active voxels")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--threads", arguments.threads, "numbers of threads")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--repeats", arguments.repeats, "timed runs of each mesher")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
+std::vector<Case> measureVolume(const std::string& volume, double millions,
+                                const Arguments& arguments) {
+  const openvdb::FloatGrid::Ptr grid = makeVolume(volume, millions * 1e6);
+  std::vector<Contender> contenders = contendersFor(*grid);
+  contenders.push_back(floorFor(*grid));
+  std::vector<Case> cases;
+  for (const int threads : arguments.threads) {
+    cases.push_back({std::filesystem::path(volume).stem().string(),
+                     static_cast<double>(grid->activeVoxelCount()), threads,
+                     measure(contenders, threads, arguments.repeats)});
+  }
+  return cases;
+}
+
+void run(const Arguments& arguments) {
+  std::vector<std::string> volumes = arguments.shapes;
+  volumes.insert(volumes.end(), arguments.meshes.begin(), arguments.meshes.end());
+  std::vector<Case> all;
+  for (const std::string& volume : volumes) {
+    for (const double millions : arguments.sizes) {
+      const std::vector<Case> cases = measureVolume(volume, millions, arguments);
+      std::cerr << timeTable(cases) << std::flush;
+      all.insert(all.end(), cases.begin(), cases.end());
+    }
+  }
+  std::cout << timeTable(all) << "\n" << stageTable(all);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Compares Tufa's speed and memory with its peers'. Prints markdown tables.");
+  Arguments arguments;
+  addOptions(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  openvdb::initialize();
+  try {
+    run(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+  return 0;
+}
