@@ -17,7 +17,8 @@ struct Camera {
   double halfHeight = 0;
 
   /// `azimuth` turns about z, from the x axis; `elevation` is over the xy plane; both in degrees.
-  static Camera looking(double azimuth, double elevation);
+  /// If `yUp`, y takes the place of z, z that of x, and x that of y.
+  static Camera looking(double azimuth, double elevation, bool yUp);
 
   [[nodiscard]] Vec3 project(const Vec3& p) const {
     const Vec3 d = p - centre;

@@ -3,7 +3,7 @@
 //     tufa_render -o OUT.png [--size 900x700] MESH[:key=value,...]...
 //
 // Each mesh becomes one picture; they stand side by side. Keys: azimuth, elevation (degrees), width
-// (world units, 0 fits), x, y, z (the centre if width is given), edges, smooth (0 or 1).
+// (world units, 0 fits), x, y, z (the centre if width is given); 0 or 1: edges, smooth, yup.
 
 #include <tufa/io.h>
 
@@ -38,7 +38,8 @@ void setKey(View& view, const std::string& key, double value) {
   const std::map<std::string, double*> numbers = {
       {"azimuth", &view.azimuth}, {"elevation", &view.elevation}, {"width", &view.width},
       {"x", &view.centre[0]},     {"y", &view.centre[1]},         {"z", &view.centre[2]}};
-  const std::map<std::string, bool*> switches = {{"edges", &view.edges}, {"smooth", &view.smooth}};
+  const std::map<std::string, bool*> switches = {
+      {"edges", &view.edges}, {"smooth", &view.smooth}, {"yup", &view.yUp}};
   if (numbers.count(key) != 0) {
     *numbers.at(key) = value;
   } else if (switches.count(key) != 0) {

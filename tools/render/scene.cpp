@@ -81,7 +81,7 @@ class CornerNormals {
 };
 
 Camera aim(const Mesh& mesh, const View& view, int width, int height) {
-  Camera camera = Camera::looking(view.azimuth, view.elevation);
+  Camera camera = Camera::looking(view.azimuth, view.elevation, view.yUp);
   camera.halfWidth = 0.5 * width;
   camera.halfHeight = 0.5 * height;
   if (view.width > 0) {
@@ -241,11 +241,14 @@ void occlude(Layer& layer, int radius) {
 
 }  // namespace
 
-Camera Camera::looking(double azimuth, double elevation) {
+Camera Camera::looking(double azimuth, double elevation, bool yUp) {
   const double a = azimuth * kPi / 180, e = elevation * kPi / 180;
   Camera camera;
   camera.toEye = {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
   camera.right = {-std::sin(a), std::cos(a), 0};
+  if (yUp) {
+    for (Vec3* v : {&camera.toEye, &camera.right}) *v = {(*v)[1], (*v)[2], (*v)[0]};
+  }
   camera.up = camera.toEye.cross(camera.right);
   camera.centre = Vec3(0);
   return camera;

@@ -14,6 +14,7 @@ struct View {
   /// World units from left to right; 0 fits the mesh.
   double width = 0;
   Vec3 centre{0, 0, 0};  ///< used if `width` is given
+  bool yUp = false;      ///< the mesh's y axis points up, not z
   bool edges = false;    ///< draw the mesh's edges; a quad's diagonal is drawn lighter
   bool smooth = true;    ///< shade over edges flatter than 30 degrees; else one shade a triangle
 };
