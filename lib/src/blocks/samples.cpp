@@ -5,11 +5,14 @@
 namespace tufa::blocks {
 namespace {
 
-// A row of samples along z in one block: its values, or one value for all.
+// The samples of one block: those of a leaf, or eight equal ones that stand for each row of a tile.
 template <class T>
 struct Source {
   const T* values = nullptr;
-  float constant = 0;
+  int mask = 0;  // keeps the row's part of an index in a leaf, drops it in a tile
+  std::array<T, kBlockSize> tileRow;
+
+  [[nodiscard]] const T* row(int first) const { return values + (first & mask); }
 };
 
 template <class T>
@@ -30,29 +33,26 @@ void BlockSamples::gather(const Blocks<TreeT>& blocks, const FieldScale& scale, 
   for (int i = 0; i < 27; ++i) {
     const BlockRef from = neighbours[i];
     if (from >= 0) sources[i].values = blocks.values(from);
+    sources[i].mask = ~0;
     if (sources[i].values != nullptr) continue;
     const openvdb::Coord there = blocks.origin(block).offsetBy(
         (i / 9 - 1) * kBlockSize, (i / 3 % 3 - 1) * kBlockSize, (i % 3 - 1) * kBlockSize);
-    sources[i].constant = scaled<T>(accessor.getValue(there), isovalue, factor);
+    sources[i].tileRow.fill(accessor.getValue(there));
+    sources[i].values = sources[i].tileRow.data();
+    sources[i].mask = 0;
   }
   for (int x = -1; x <= kBlockSize + 1; ++x) {
     for (int y = -1; y <= kBlockSize + 1; ++y) {
-      const Source<T>* row = &sources[neighbourIndex(x >> 3, y >> 3, -1)];
-      const int offset = cellIndex(x & 7, y & 7, 0);
+      const Source<T>* along = &sources[neighbourIndex(x >> 3, y >> 3, -1)];
+      const int first = cellIndex(x & 7, y & 7, 0);
+      const T* below = along[0].row(first);
+      const T* here = along[1].row(first);
+      const T* above = along[2].row(first);
       float* to = &values_[index(x, y, -1)];
-      to[0] = row[0].values != nullptr ? scaled(row[0].values[offset + 7], isovalue, factor)
-                                       : row[0].constant;
-      if (row[1].values != nullptr) {
-        for (int z = 0; z < kBlockSize; ++z) {
-          to[z + 1] = scaled(row[1].values[offset + z], isovalue, factor);
-        }
-      } else {
-        for (int z = 0; z < kBlockSize; ++z) to[z + 1] = row[1].constant;
-      }
-      for (int z = 0; z < 2; ++z) {
-        to[z + 9] = row[2].values != nullptr ? scaled(row[2].values[offset + z], isovalue, factor)
-                                             : row[2].constant;
-      }
+      to[0] = scaled(below[kBlockSize - 1], isovalue, factor);
+      for (int z = 0; z < kBlockSize; ++z) to[z + 1] = scaled(here[z], isovalue, factor);
+      to[9] = scaled(above[0], isovalue, factor);
+      to[10] = scaled(above[1], isovalue, factor);
     }
   }
   if (blocks.nonFiniteValues() == 0) return;

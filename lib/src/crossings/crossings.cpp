@@ -11,14 +11,15 @@ Crossing CrossingFinder::atKink(int lower, int axis) const {
   const int stride = BlockSamples::stride(axis);
   Crossing crossing;
   crossing.crease = true;
-  crossing.along = subcellRoot(lower, axis);
+  crossing.along = keptOffEnds(subcellRoot(lower, axis));
   const Vector g = oneSidedGradient(crossing.along < 0.5F ? lower : lower + stride);
-  finish(crossing, g, axis, samples_[lower + stride] > samples_[lower]);
+  const float rise = samples_[lower + stride] - samples_[lower];
+  crossing.normal = direction(g, axis, rise);
   return crossing;
 }
 
-// Of the forward and backward differences on each axis, those whose gradient has a length nearest to
-// 1; samples beyond the band do not take part.
+// Of the forward and backward differences on each axis, those whose gradient has a length nearest
+// to 1; samples beyond the band do not take part.
 Vector CrossingFinder::oneSidedGradient(int at) const {
   const float here = samples_[at];
   std::array<std::array<float, 2>, 3> sides{};

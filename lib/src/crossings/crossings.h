@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "blocks/field.h"
 #include "blocks/samples.h"
@@ -12,37 +13,83 @@ namespace tufa::crossings {
 
 /// Where the surface crosses a lattice edge.
 struct Crossing {
-  float along = 0;        ///< place on the edge, from 0 at its lower end to 1
-  qef::Vector normal{};   ///< outward unit normal in index space
-  bool crease = false;    ///< the field has a kink here: a crease may be near
+  float along = 0;       ///< place on the edge, from 0 at its lower end to 1
+  qef::Vector normal{};  ///< outward unit normal in index space
+  bool crease = false;   ///< the field has a kink here: a crease may be near
+};
+
+/// Crossings of some edges along one axis, one array for each number.
+struct CrossingBatch {
+  static constexpr int kSize = 16;
+  std::array<std::uint16_t, kSize> lower;  ///< in: where each edge starts, a BlockSamples index
+  std::array<float, kSize> along;
+  std::array<std::array<float, kSize>, 3> normals;
+  unsigned creases = 0;  ///< a bit for each crossing at a kink
+
+  void set(int lane, const Crossing& crossing) {
+    along[lane] = crossing.along;
+    for (int i = 0; i < 3; ++i) normals[i][lane] = crossing.normal[i];
+  }
 };
 
 /// Finds crossings from the samples of a block.
 ///
-/// Smooth field: linear interpolation for the place, central differences at both ends, interpolated,
-/// for the normal. Where a distance field has a kink, both are wrong: the normals of two sides are
-/// blended, and the place is off by up to 0.3 voxel. A kink shows as a gradient whose length is not 1
-/// or as slopes along the edge that disagree. There the place comes from the straight lines on either
-/// side (ENO with subcell resolution, Harten 1989), and the normal from the one-sided differences
-/// whose length is nearest to 1.
+/// Smooth field: linear interpolation for the place, central differences at both ends,
+/// interpolated, for the normal. Where a distance field has a kink, both are wrong: the normals of
+/// two sides are blended, and the place is off by up to 0.3 voxel. A kink shows as a gradient whose
+/// length is not 1 or as slopes along the edge that disagree. There the place comes from the
+/// straight lines on either side (ENO with subcell resolution, Harten 1989), and the normal from
+/// the one-sided differences whose length is nearest to 1.
 class CrossingFinder {
  public:
   CrossingFinder(const blocks::BlockSamples& samples, const blocks::FieldScale& scale)
-      : samples_(samples), scale_(scale) {}
+      : samples_(samples), scale_(scale), limits_(limitsOf(scale)) {}
 
   /// The crossing of the edge along `axis` that starts at BlockSamples index `lower`.
   template <int axis>
   [[nodiscard]] Crossing at(int lower) const {
     constexpr int kStride = blocks::BlockSamples::stride(axis);
-    const float a = samples_[lower], b = samples_[lower + kStride];
-    const qef::Vector ga = centralDifference(lower), gb = centralDifference(lower + kStride);
-    Crossing crossing;
-    crossing.along = linearRoot(a, b);
-    qef::Vector g;
-    for (int i = 0; i < 3; ++i) g[i] = ga[i] + crossing.along * (gb[i] - ga[i]);
-    if (scale_.distance && isKinked(b - a, ga[axis], gb[axis], axis, g)) return atKink(lower, axis);
-    finish(crossing, g, axis, b > a);
-    return crossing;
+    const Ends ends = {samples_[lower], samples_[lower + kStride], centralDifference(lower),
+                       centralDifference(lower + kStride)};
+    const Smooth smooth = smoothCrossing<axis>(ends, limits_);
+    if (smooth.kinked != 0) return atKink(lower, axis);
+    const float rise = ends.b - ends.a;
+    return {smooth.along, direction({smooth.x, smooth.y, smooth.z}, axis, rise), false};
+  }
+
+  /// The crossings of all edges of a batch, as at() finds them, but several at a time.
+  template <int axis>
+  void findAll(CrossingBatch& batch) const {
+    EndArrays arrays;
+    for (int lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      arrays.load<axis>(samples_.data() + batch.lower[lane], lane);
+    }
+    const Limits limits = limits_;
+    std::array<int, CrossingBatch::kSize> kinked;
+    std::array<float, CrossingBatch::kSize> scales;
+    for (int lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      const Smooth smooth = smoothCrossing<axis>(arrays.ends(lane), limits);
+      batch.along[lane] = smooth.along;
+      batch.normals[0][lane] = smooth.x;
+      batch.normals[1][lane] = smooth.y;
+      batch.normals[2][lane] = smooth.z;
+      scales[lane] = smooth.squared;
+      kinked[lane] = smooth.kinked;
+    }
+    for (float& scale : scales) scale = normalizer(scale);
+    for (auto& numbers : batch.normals) {
+      for (int lane = 0; lane < CrossingBatch::kSize; ++lane) numbers[lane] *= scales[lane];
+    }
+    batch.creases = 0;
+    for (int lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      batch.creases |= static_cast<unsigned>(kinked[lane]) << lane;
+      if (kinked[lane] != 0) {
+        batch.set(lane, atKink(batch.lower[lane], axis));
+      } else if (scales[lane] == 0) {
+        const float rise = arrays.at[1][lane] - arrays.at[0][lane];
+        batch.set(lane, {batch.along[lane], alongEdge(axis, rise), false});
+      }
+    }
   }
 
   /// Whether a sample is a distance, and not the side of a clamped one.
@@ -62,8 +109,78 @@ class CrossingFinder {
   // bring the vertices of all cells around it to one point.
   static constexpr float kEndMargin = 1e-3F;
 
-  // Where a linear change from a to b is zero, half way if neither says.
-  static float linearRoot(float a, float b) { return a == b ? 0.5F : a / (a - b); }
+  // The samples at both ends of an edge and the gradients there.
+  struct Ends {
+    float a, b;
+    qef::Vector gradientA, gradientB;
+  };
+
+  // The crossing of a field that is smooth there, but for the length of its gradient; `kinked` if
+  // it is not. Plain numbers, so that the compiler can work on several at a time.
+  struct Smooth {
+    float along;
+    float x, y, z;  // gradient
+    float squared;  // its squared length
+    int kinked;
+  };
+
+  // What the test for kinks compares with.
+  struct Limits {
+    std::array<float, 6> metric;
+    std::array<float, 3> slope;
+    int distance;
+  };
+
+  // The samples around the edges of a batch, one array for each place: the ends, and the neighbours
+  // below and above each end on each axis.
+  struct EndArrays {
+    template <class T>
+    using Lanes = std::array<T, CrossingBatch::kSize>;
+    std::array<Lanes<float>, 2> at;
+    std::array<std::array<Lanes<float>, 3>, 2> below, above;
+
+    template <int axis>
+    void load(const float* lower, int lane) {
+      using Samples = blocks::BlockSamples;
+      for (int end = 0; end < 2; ++end) {
+        const float* here = lower + end * Samples::stride(axis);
+        at[end][lane] = here[0];
+        for (int i = 0; i < 3; ++i) {
+          below[end][i][lane] = here[-Samples::stride(i)];
+          above[end][i][lane] = here[Samples::stride(i)];
+        }
+      }
+    }
+    [[nodiscard]] qef::Vector gradient(int end, int lane) const {
+      return {0.5F * (above[end][0][lane] - below[end][0][lane]),
+              0.5F * (above[end][1][lane] - below[end][1][lane]),
+              0.5F * (above[end][2][lane] - below[end][2][lane])};
+    }
+    [[nodiscard]] Ends ends(int lane) const {
+      return {at[0][lane], at[1][lane], gradient(0, lane), gradient(1, lane)};
+    }
+  };
+
+  static Limits limitsOf(const blocks::FieldScale& scale) {
+    Limits limits{scale.metric, {}, scale.distance ? 1 : 0};
+    for (int i = 0; i < 3; ++i) {
+      limits.slope[i] = kSlopeTolerance * static_cast<float>(scale.axisLength[i]);
+    }
+    return limits;
+  }
+
+  // Where a linear change from a to b, on different sides, is zero; half way if both are. Written
+  // without a choice, which would keep the loop over a batch from being vectorized.
+  static float linearRoot(float a, float b) {
+    const float across = a - b;
+    const auto flat = static_cast<float>(across == 0);
+    return (a + 0.5F * flat) / (across + flat);
+  }
+
+  static float keptOffEnds(float along) {
+    const float kept = along < kEndMargin ? kEndMargin : along;
+    return kept > 1 - kEndMargin ? 1 - kEndMargin : kept;
+  }
 
   [[nodiscard]] qef::Vector centralDifference(int at) const {
     using Samples = blocks::BlockSamples;
@@ -72,24 +189,37 @@ class CrossingFinder {
             0.5F * (s[Samples::kStrideY] - s[-Samples::kStrideY]), 0.5F * (s[1] - s[-1])};
   }
 
-  [[nodiscard]] bool isKinked(float slope, float slopeA, float slopeB, int axis,
-                              const qef::Vector& g) const {
-    const float tolerance = kSlopeTolerance * static_cast<float>(scale_.axisLength[axis]);
-    return std::abs(scale_.squaredLength(g[0], g[1], g[2]) - 1) > kLengthTolerance ||
-           std::abs(slopeA - slope) > tolerance || std::abs(slopeB - slope) > tolerance;
+  // What makes a unit vector of one with this squared length; 0 if it vanishes.
+  static float normalizer(float squared) { return squared > 1e-12F ? 1 / std::sqrt(squared) : 0; }
+
+  // The unit vector along g; along the edge if g vanishes.
+  static qef::Vector direction(const qef::Vector& g, int axis, float rise) {
+    const float scale = normalizer(qef::dot(g, g));
+    qef::Vector normal = {g[0] * scale, g[1] * scale, g[2] * scale};
+    if (scale == 0) normal = alongEdge(axis, rise);
+    return normal;
+  }
+  static qef::Vector alongEdge(int axis, float rise) {
+    qef::Vector normal{};
+    normal[axis] = rise > 0 ? 1.0F : -1.0F;
+    return normal;
   }
 
-  // Keeps the crossing off the ends of its edge and gives it the direction of `g`; along the edge if
-  // the gradient vanishes.
-  static void finish(Crossing& crossing, const qef::Vector& g, int axis, bool rising) {
-    crossing.along = std::clamp(crossing.along, kEndMargin, 1 - kEndMargin);
-    const float squared = qef::dot(g, g);
-    if (squared > 1e-12F) {
-      const float scale = 1 / std::sqrt(squared);
-      crossing.normal = {g[0] * scale, g[1] * scale, g[2] * scale};
-    } else {
-      crossing.normal[axis] = rising ? 1.0F : -1.0F;
-    }
+  template <int axis>
+  static Smooth smoothCrossing(const Ends& ends, const Limits& limits) {
+    const qef::Vector& ga = ends.gradientA;
+    const qef::Vector& gb = ends.gradientB;
+    const float root = linearRoot(ends.a, ends.b);
+    const qef::Vector g = {ga[0] + root * (gb[0] - ga[0]), ga[1] + root * (gb[1] - ga[1]),
+                           ga[2] + root * (gb[2] - ga[2])};
+    const auto& m = limits.metric;
+    const float squared = m[0] * g[0] * g[0] + m[3] * g[1] * g[1] + m[5] * g[2] * g[2] +
+                          2 * (m[1] * g[0] * g[1] + m[2] * g[0] * g[2] + m[4] * g[1] * g[2]);
+    const float slope = ends.b - ends.a;
+    const int kinked = (std::abs(squared - 1) > kLengthTolerance) |
+                       (std::abs(ga[axis] - slope) > limits.slope[axis]) |
+                       (std::abs(gb[axis] - slope) > limits.slope[axis]);
+    return {keptOffEnds(root), g[0], g[1], g[2], qef::dot(g, g), kinked & limits.distance};
   }
 
   [[nodiscard]] Crossing atKink(int lower, int axis) const;
@@ -98,6 +228,7 @@ class CrossingFinder {
 
   const blocks::BlockSamples& samples_;
   const blocks::FieldScale& scale_;
+  Limits limits_;
 };
 
 }  // namespace tufa::crossings

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/bits.h"
+#include "base/huge_pages.h"
 #include "blocks/samples.h"
 #include "polygons/diagonal.h"
 
@@ -51,8 +52,8 @@ class VertexTable {
   void fillFrom(const SurfaceBlock& from, int dx, int dy, int dz) {
     constexpr std::uint64_t kLastY = std::uint64_t{0xff} << 56;
     constexpr std::uint64_t kLastZ = 0x8080808080808080u;
-    const std::uint64_t layer = (dy != 0 ? kLastY : ~std::uint64_t{0}) &
-                                (dz != 0 ? kLastZ : ~std::uint64_t{0});
+    const std::uint64_t layer =
+        (dy != 0 ? kLastY : ~std::uint64_t{0}) & (dz != 0 ? kLastZ : ~std::uint64_t{0});
     const bool special = from.special >= 0;
     const bool whole = dx == 0 && dy == 0 && dz == 0;
     CornerWords corners;
@@ -65,18 +66,18 @@ class VertexTable {
     for (int x = dx != 0 ? kBlockSize - 1 : 0; x < kBlockSize; ++x) {
       base::forEachBit(from.cells.slabs[x] & layer, [&](int bit) {
         const int cell = x * 64 + bit;
-        const int slot = slotOf(x - dx * kBlockSize, (bit >> 3) - dy * kBlockSize,
-                                (bit & 7) - dz * kBlockSize);
+        const int slot =
+            slotOf(x - dx * kBlockSize, (bit >> 3) - dy * kBlockSize, (bit & 7) - dz * kBlockSize);
         if (special) {
           components_[slot] =
               topology_.componentsAt(from, cell, components::cornerMask(corners, cell));
         } else if (special_) {
           components_[slot] = {};
         }
-        first_[slot] = whole && !special ? next++
-                                         : static_cast<VertexIndex>(
-                                               from.firstVertex +
-                                               topology_.firstVertexInBlock(from, cell));
+        first_[slot] = whole && !special
+                           ? next++
+                           : static_cast<VertexIndex>(from.firstVertex +
+                                                      topology_.firstVertexInBlock(from, cell));
       });
     }
   }
@@ -117,22 +118,33 @@ void forQuads(const QuadContext<TreeT>& context, const SurfaceBlock& block, cons
   }
 }
 
-template <class TreeT>
+template <int axis, class TreeT>
 Quad quadAround(const VertexTable<TreeT>& table, const QuadPlace& place, bool mirrored) {
-  const int axis = place.axis;
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const bool swapped = u > v;  // the edge numbers count the other axes in rising order
+  constexpr int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  constexpr bool kSwapped = u > v;  // the edge numbers count the other axes in rising order
   Quad quad;
   for (int i = 0; i < 4; ++i) {
     const auto [du, dv] = kAround[i];
     std::array<int, 3> cell = place.start;
     cell[u] -= du;
     cell[v] -= dv;
-    const int edge = axis * 4 + (swapped ? dv * 2 + du : du * 2 + dv);
+    const int edge = axis * 4 + (kSwapped ? dv * 2 + du : du * 2 + dv);
     quad.vertices[i] = table.at(cell[0], cell[1], cell[2], edge);
   }
   if (place.upward == mirrored) std::swap(quad.vertices[1], quad.vertices[3]);
   return quad;
+}
+
+template <class TreeT>
+Quad quadAround(const VertexTable<TreeT>& table, const QuadPlace& place, bool mirrored) {
+  switch (place.axis) {
+    case 0:
+      return quadAround<0>(table, place, mirrored);
+    case 1:
+      return quadAround<1>(table, place, mirrored);
+    default:
+      return quadAround<2>(table, place, mirrored);
+  }
 }
 
 bool isNearCrease(const creases::VertexSides& sides, const Quad& quad) {
@@ -169,7 +181,7 @@ LatticeCrossing crossingOf(const QuadContext<TreeT>& context, const SurfaceBlock
 template <class TreeT>
 void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job) {
   const Topology& topology = context.topology;
-  mesh.quads.resize(topology.quadCount);
+  base::resizeLarge(mesh.quads, topology.quadCount);
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     VertexTable<TreeT> table(context.blocks, topology);
     for (std::size_t i = begin; i < end; ++i) {
@@ -179,8 +191,7 @@ void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job)
         Quad quad = quadAround(table, place, context.affine.mirrored());
         if (!isNearCrease(context.sides, quad)) {
           const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
-          if (chooser.isSecondDiagonalBetter(
-                  [&] { return crossingOf(context, block, place); })) {
+          if (chooser.isSecondDiagonalBetter([&] { return crossingOf(context, block, place); })) {
             turn(quad);
           }
         }

@@ -135,35 +135,107 @@ Vector boundedStep(const Qef& qef, const Vector& residual, const Vector& c, floa
   return best;
 }
 
-}  // namespace
+// What the short way finds.
+struct Solution {
+  float x, y, z;
+  int oneDirection;  // the planes have one normal direction: the point is their solution
+  int inside;        // it lies in the cube
+};
 
-Vector solve(const Qef& qef, float halfSize) {
+// Most cells have one normal direction. Then the sum n of the normals is along the first
+// eigenvector to second order, its Rayleigh quotient n A n / n n is the first eigenvalue to fourth,
+// and what is left of the trace bounds the other two. Without branches, so that the compiler can
+// work on several problems at a time.
+inline Solution solveOneDirection(const Qef& qef, float halfSize) {
   const Vector c = qef.massPoint();
   const Vector residual = residualAt(qef, c);
-  // Most cells have one normal direction. Then the sum n of the normals is along the first
-  // eigenvector to second order, its Rayleigh quotient n A n / n n is the first eigenvalue to fourth,
-  // and what is left of the trace bounds the other two.
   const Vector& n = qef.normals;
   const auto& a = qef.a;
   const Vector an = {a[0] * n[0] + a[1] * n[1] + a[2] * n[2],
                      a[1] * n[0] + a[3] * n[1] + a[4] * n[2],
                      a[2] * n[0] + a[4] * n[1] + a[5] * n[2]};
   const float squared = dot(n, n), first = dot(n, an), trace = a[0] + a[3] + a[5];
-  Vector step;
-  if (squared > 0.25F * qef.count * qef.count &&
-      trace * squared < (1 + static_cast<float>(kFreeShare)) * first) {
-    const float along = dot(n, residual) / first;
-    step = {n[0] * along, n[1] * along, n[2] * along};
-  } else {
-    step = truncatedStep(qef, residual);
+  const float along = dot(n, residual) / first;
+  const Vector x = {c[0] + n[0] * along, c[1] + n[1] * along, c[2] + n[2] * along};
+  const int oneDirection = (squared > 0.25F * qef.count * qef.count) &
+                           (trace * squared < (1 + static_cast<float>(kFreeShare)) * first);
+  const int inside =
+      (std::abs(x[0]) <= halfSize) & (std::abs(x[1]) <= halfSize) & (std::abs(x[2]) <= halfSize);
+  return {x[0], x[1], x[2], oneDirection, inside};
+}
+
+// Several problems, number by number.
+struct Lanes {
+  static constexpr std::size_t kCount = 8;
+  std::array<std::array<float, kCount>, 6> a;
+  std::array<std::array<float, kCount>, 3> b, points, normals, origins;
+  std::array<float, kCount> count;
+
+  void load(std::size_t lane, const Qef& qef, const Vector& origin) {
+    for (int i = 0; i < 6; ++i) a[i][lane] = qef.a[i];
+    for (int i = 0; i < 3; ++i) {
+      b[i][lane] = qef.b[i];
+      points[i][lane] = qef.points[i];
+      normals[i][lane] = qef.normals[i];
+      origins[i][lane] = origin[i];
+    }
+    count[lane] = qef.count;
   }
-  Vector x = {c[0] + step[0], c[1] + step[1], c[2] + step[2]};
-  if (std::abs(x[0]) <= halfSize && std::abs(x[1]) <= halfSize && std::abs(x[2]) <= halfSize) {
-    return x;
+  [[nodiscard]] Qef seenFromOrigin(std::size_t lane) const {
+    Qef qef;
+    qef.a = {a[0][lane], a[1][lane], a[2][lane], a[3][lane], a[4][lane], a[5][lane]};
+    qef.b = {b[0][lane], b[1][lane], b[2][lane]};
+    qef.points = {points[0][lane], points[1][lane], points[2][lane]};
+    qef.normals = {normals[0][lane], normals[1][lane], normals[2][lane]};
+    qef.count = count[lane];
+    return qef.seenFrom({origins[0][lane], origins[1][lane], origins[2][lane]});
   }
-  step = boundedStep(qef, residual, c, halfSize);
+};
+
+}  // namespace
+
+Vector solve(const Qef& qef, float halfSize) {
+  const Solution quick = solveOneDirection(qef, halfSize);
+  if ((quick.oneDirection & quick.inside) != 0) return {quick.x, quick.y, quick.z};
+  const Vector c = qef.massPoint();
+  const Vector residual = residualAt(qef, c);
+  Vector x{};
+  if (quick.oneDirection == 0) {
+    const Vector step = truncatedStep(qef, residual);
+    x = {c[0] + step[0], c[1] + step[1], c[2] + step[2]};
+    if (std::abs(x[0]) <= halfSize && std::abs(x[1]) <= halfSize && std::abs(x[2]) <= halfSize) {
+      return x;
+    }
+  }
+  const Vector step = boundedStep(qef, residual, c, halfSize);
   for (int i = 0; i < 3; ++i) x[i] = std::clamp(c[i] + step[i], -halfSize, halfSize);
   return x;
+}
+
+void solveAll(const Qef* qefs, const Vector* origins, std::size_t count, float halfSize,
+              Vector* solutions) {
+  for (std::size_t first = 0; first < count; first += Lanes::kCount) {
+    Lanes lanes;
+    for (std::size_t lane = 0; lane < Lanes::kCount; ++lane) {
+      // The last problem fills the lanes that are left over.
+      const std::size_t i = std::min(first + lane, count - 1);
+      lanes.load(lane, qefs[i], origins[i]);
+    }
+    std::array<std::array<float, Lanes::kCount>, 3> points;
+    std::array<int, Lanes::kCount> found;
+    for (std::size_t lane = 0; lane < Lanes::kCount; ++lane) {
+      const Solution solution = solveOneDirection(lanes.seenFromOrigin(lane), halfSize);
+      points[0][lane] = solution.x;
+      points[1][lane] = solution.y;
+      points[2][lane] = solution.z;
+      found[lane] = solution.oneDirection & solution.inside;
+    }
+    for (std::size_t lane = 0; lane < std::min(Lanes::kCount, count - first); ++lane) {
+      solutions[first + lane] = found[lane] != 0
+                                    ? Vector{points[0][lane], points[1][lane], points[2][lane]}
+                                    : solve(lanes.seenFromOrigin(lane), halfSize);
+    }
+  }
 }
 
 }  // namespace tufa::qef

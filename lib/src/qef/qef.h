@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace tufa::qef {
 
@@ -13,9 +14,9 @@ inline float dot(const Vector& a, const Vector& b) {
 /// A quadratic error function: the sum of squared distances to tangent planes, with the mean of the
 /// points they were taken at (Ju, Losasso, Schaefer and Warren 2002).
 ///
-/// Sums are additive as long as they share one origin; coordinates are in voxels and small (inside a
-/// block), so that single precision serves at any distance from the grid's origin. Sixteen floats, so
-/// that adding one to another is four vector instructions.
+/// Sums are additive as long as they share one origin; coordinates are in voxels and small (inside
+/// a block), so that single precision serves at any distance from the grid's origin. Sixteen
+/// floats, so that adding one to another is four vector instructions.
 struct alignas(16) Qef {
   std::array<float, 6> a{};  ///< sum of n n^T: xx, xy, xz, yy, yz, zz
   Vector b{};                ///< sum of n (n . p)
@@ -58,10 +59,16 @@ struct alignas(16) Qef {
   }
 };
 
-/// The point of the cube [-halfSize, halfSize]^3 around the origin with the least error, as near to the mass point as
-/// the planes leave free: directions whose eigenvalue is under a hundredth of the largest count as
-/// free. Where the unbounded solution leaves the cube, the problem is solved again on the cube's
-/// faces, edges and corners. The mass point must lie in the cube and the count must not be 0.
+/// The point of the cube [-halfSize, halfSize]^3 around the origin with the least error, as near to
+/// the mass point as the planes leave free: directions whose eigenvalue is under a hundredth of the
+/// largest count as free. Where the unbounded solution leaves the cube, the problem is solved again
+/// on the cube's faces, edges and corners. The mass point must lie in the cube and the count must
+/// not be 0.
 [[nodiscard]] Vector solve(const Qef& qef, float halfSize);
+
+/// Solves `count` problems, each in the cube around an origin of its own: bit for bit
+/// solutions[i] = solve(qefs[i].seenFrom(origins[i]), halfSize), but several at a time.
+void solveAll(const Qef* qefs, const Vector* origins, std::size_t count, float halfSize,
+              Vector* solutions);
 
 }  // namespace tufa::qef

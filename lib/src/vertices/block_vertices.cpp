@@ -1,9 +1,12 @@
 #include "vertices/block_vertices.h"
 
+#include <algorithm>
+
 #include "base/bits.h"
 
 namespace tufa::vertices {
 
+using blocks::BlockSamples;
 using blocks::CornerWords;
 using blocks::kBlockSize;
 using components::SurfaceBlock;
@@ -24,6 +27,29 @@ Kind kindOf(const qef::Qef& qef) {
   return squared < kOneSide * kOneSide * qef.count * qef.count ? Kind::Unknown : Kind::Near;
 }
 
+int slotOf(int cell) { return BlockSamples::index(cell >> 6, (cell >> 3) & 7, cell & 7); }
+
+// Lattice points of the slots, in voxels from the block's first.
+constexpr auto kPointOf = [] {
+  constexpr int kSize = BlockSamples::kSize;
+  std::array<qef::Vector, kSize * kSize * kSize> points{};
+  for (int i = 0; i < kSize * kSize * kSize; ++i) {
+    points[i] = {static_cast<float>(i / BlockSamples::kStrideX - 1),
+                 static_cast<float>(i / BlockSamples::kStrideY % kSize - 1),
+                 static_cast<float>(i % kSize - 1)};
+  }
+  return points;
+}();
+
+// Slots of the lattice points of a slab, counted from its first.
+constexpr auto kSlotInSlab = [] {
+  std::array<std::uint16_t, 64> slots{};
+  for (int bit = 0; bit < 64; ++bit) {
+    slots[bit] = static_cast<std::uint16_t>((bit >> 3) * BlockSamples::kStrideY + (bit & 7));
+  }
+  return slots;
+}();
+
 }  // namespace
 
 template <class TreeT>
@@ -36,116 +62,139 @@ void BlockVertices::place(const blocks::Blocks<TreeT>& blocks, const Topology& t
   addEdges<0>(corners);
   addEdges<1>(corners);
   addEdges<2>(corners);
-  solveAll();
+  solveVertices();
 }
 
 void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock& block,
                                    const CornerWords& corners) {
   special_ = block.special >= 0;
+  firstVertexOf_.fill(kNobody);
   cells_.clear();
+  centers_.clear();
   for (int x = 0; x < kBlockSize; ++x) {
     base::forEachBit(block.cells.slabs[x], [&](int bit) {
       const int cell = x * 64 + bit;
-      firstVertexOf_[cell] = static_cast<std::uint16_t>(cells_.size());
+      const int slot = slotOf(cell);
+      firstVertexOf_[slot] = static_cast<std::uint16_t>(cells_.size() + 1);
       int count = 1;
       if (special_) {
-        componentsOf_[cell] =
+        componentsOf_[slot] =
             topology.componentsAt(block, cell, components::cornerMask(corners, cell));
-        cutEdgesOf_[cell] = static_cast<std::uint16_t>(topology.cutEdgesOf(block, cell));
-        count = componentsOf_[cell].count();
+        cutEdgesOf_[slot] = static_cast<std::uint16_t>(topology.cutEdgesOf(block, cell));
+        count = componentsOf_[slot].count();
       }
-      cells_.insert(cells_.end(), count, static_cast<std::uint16_t>(cell));
+      const qef::Vector& corner = kPointOf[slot];
+      for (; count > 0; --count) {
+        cells_.push_back(static_cast<std::uint16_t>(cell));
+        centers_.push_back({corner[0] + 0.5F, corner[1] + 0.5F, corner[2] + 0.5F});
+      }
     });
   }
-  qefs_.assign(cells_.size(), {});
+  qefs_.assign(cells_.size() + 1, {});
   kinds_.assign(cells_.size(), Kind::Smooth);
   meetings_.clear();
 }
 
 // Every crossed edge of the block's cells along one axis, those on its upper faces included.
 template <int axis>
-void BlockVertices::addEdges(const CornerWords& corners) {
+void BlockVertices::collectEdges(const CornerWords& corners) {
   constexpr std::uint64_t kLastY = std::uint64_t{0xff} << 56;
   constexpr std::uint64_t kLastZ = 0x8080808080808080u;
+  edgeCount_ = 0;
   for (int x = 0; x < kBlockSize + (axis == 0 ? 0 : 1); ++x) {
     const auto& w = corners.words[x];
     // Word i is the lattice points (y + i / 2, z + i % 2).
-    std::array<std::uint64_t, 4> crossed{};
-    for (int i = 0; i < 4; ++i) {
-      if (axis == 0) crossed[i] = w[i] ^ corners.words[x + 1][i];
-      if (axis == 1 && i < 2) crossed[i] = w[i] ^ w[i + 2];
-      if (axis == 2 && i % 2 == 0) crossed[i] = w[i] ^ w[i + 1];
-    }
-    base::forEachBit(crossed[0], [&](int bit) { addCrossing<axis>(x, bit >> 3, bit & 7); });
-    if (axis != 2) {
-      base::forEachBit(crossed[1] & kLastZ,
-                       [&](int bit) { addCrossing<axis>(x, bit >> 3, 8); });
-    }
-    if (axis != 1) {
-      base::forEachBit(crossed[2] & kLastY,
-                       [&](int bit) { addCrossing<axis>(x, 8, bit & 7); });
-    }
-    if (axis == 0) {
-      base::forEachBit(crossed[3] & kLastY & kLastZ,
-                       [&](int) { addCrossing<axis>(x, 8, 8); });
-    }
+    const auto add = [&](int i, std::uint64_t crossed) {
+      const int first = BlockSamples::index(x, i / 2, i % 2);
+      base::forEachBit(crossed, [&](int bit) {
+        edges_[edgeCount_++] = static_cast<std::uint16_t>(first + kSlotInSlab[bit]);
+      });
+    };
+    const auto crossedAt = [&](int i) {
+      return w[i] ^ (axis == 0 ? corners.words[x + 1][i] : w[i + (axis == 1 ? 2 : 1)]);
+    };
+    add(0, crossedAt(0));
+    if (axis != 2) add(1, crossedAt(1) & kLastZ);
+    if (axis != 1) add(2, crossedAt(2) & kLastY);
+    if (axis == 0) add(3, crossedAt(3) & kLastY & kLastZ);
   }
 }
 
 template <int axis>
-void BlockVertices::addCrossing(int x, int y, int z) {
-  const crossings::Crossing crossing =
-      finder_.at<axis>(blocks::BlockSamples::index(x, y, z));
-  qef::Vector point = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-  point[axis] += crossing.along;
-  const qef::Qef plane(point, crossing.normal);
+void BlockVertices::addEdges(const CornerWords& corners) {
+  using crossings::CrossingBatch;
+  collectEdges<axis>(corners);
+  CrossingBatch batch;
+  std::array<qef::Qef, CrossingBatch::kSize> planes;
+  for (int first = 0; first < edgeCount_; first += CrossingBatch::kSize) {
+    const int count = std::min(edgeCount_ - first, CrossingBatch::kSize);
+    const std::uint16_t* slots = &edges_[first];
+    // The last edge fills the places that are left over.
+    for (int lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      batch.lower[lane] = slots[std::min(lane, count - 1)];
+    }
+    finder_.findAll<axis>(batch);
+    for (int lane = 0; lane < count; ++lane) {
+      qef::Vector point = kPointOf[slots[lane]];
+      point[axis] += batch.along[lane];
+      planes[lane] =
+          qef::Qef(point, {batch.normals[0][lane], batch.normals[1][lane], batch.normals[2][lane]});
+    }
+    for (int lane = 0; lane < count; ++lane) {
+      addCrossing<axis>(slots[lane], planes[lane], ((batch.creases >> lane) & 1) != 0);
+    }
+  }
+}
+
+// Adds a crossing's plane to the vertices that own it in the four cells around its edge.
+template <int axis>
+void BlockVertices::addCrossing(int slot, const qef::Qef& plane, bool crease) {
   constexpr auto kOther = components::otherAxes(axis);
-  const std::array<int, 3> start = {x, y, z};
+  constexpr std::array<int, 2> kBack = {BlockSamples::stride(kOther[0]),
+                                        BlockSamples::stride(kOther[1])};
   for (int side = 0; side < 4; ++side) {
-    // The edge is number `side` of this cell: at the cell's upper end of the first other axis if bit
-    // 1 is set, of the second if bit 0 is.
-    std::array<int, 3> at = start;
-    at[kOther[0]] -= side >> 1;
-    at[kOther[1]] -= side & 1;
-    if (((at[0] | at[1] | at[2]) & ~7) != 0) continue;
-    const int cell = blocks::cellIndex(at[0], at[1], at[2]);
+    // The edge is number `side` of this cell: at the cell's upper end of the first other axis if
+    // bit 1 is set, of the second if bit 0 is.
+    const int cell = slot - (side >> 1) * kBack[0] - (side & 1) * kBack[1];
     int vertex = firstVertexOf_[cell];
-    if (special_) {
+    if (special_ && vertex != kNobody) {
       const int edge = axis * 4 + side;
       if (((cutEdgesOf_[cell] >> edge) & 1) != 0) continue;
       vertex += componentsOf_[cell].of(edge);
     }
     qefs_[vertex] += plane;
-    if (crossing.crease) kinds_[vertex] = Kind::Near;
+    if (crease && vertex != kNobody) kinds_[vertex - 1] = Kind::Near;
   }
 }
 
-void BlockVertices::solveAll() {
-  points_.resize(qefs_.size());
-  normals_.resize(qefs_.size());
+void BlockVertices::solveVertices() {
+  points_.resize(cells_.size());
+  normals_.resize(cells_.size());
+  qef::solveAll(qefs_.data() + 1, centers_.data(), cells_.size(), kHalfCell, points_.data());
+  for (std::size_t i = 0; i < cells_.size(); ++i) normals_[i] = qefs_[i + 1].normals;
   bool fresh = true;
-  for (std::size_t i = 0; i < qefs_.size(); ++i) {
-    const int cell = cells_[i];
-    const int x = cell >> 6, y = (cell >> 3) & 7, z = cell & 7;
-    const qef::Qef local = qefs_[i].seenFrom({static_cast<float>(x) + 0.5F,
-                                              static_cast<float>(y) + 0.5F,
-                                              static_cast<float>(z) + 0.5F});
-    points_[i] = qef::solve(local, kHalfCell);
-    normals_[i] = local.normals;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (kinds_[i] == Kind::Smooth) continue;
     if (fresh) creaseCell_.reset();
     fresh = false;
-    const creases::CreasePlacement placement = creaseCell_.place(x, y, z, local.massPoint());
-    if (placement.planes == 0) {
-      kinds_[i] = kindOf(local);
-      continue;
-    }
-    points_[i] = placement.point;
-    normals_[i] = placement.normal;
-    if (placement.planes == 1) continue;
-    kinds_[i] = Kind::Meeting;
-    meetings_.push_back({static_cast<std::uint32_t>(i), placement.planes, placement.sides});
+    placeAtCrease(i);
   }
+}
+
+void BlockVertices::placeAtCrease(std::size_t vertex) {
+  const int cell = cells_[vertex];
+  const qef::Qef local = qefs_[vertex + 1].seenFrom(centers_[vertex]);
+  const creases::CreasePlacement placement =
+      creaseCell_.place(cell >> 6, (cell >> 3) & 7, cell & 7, local.massPoint());
+  if (placement.planes == 0) {
+    kinds_[vertex] = kindOf(local);
+    return;
+  }
+  points_[vertex] = placement.point;
+  normals_[vertex] = placement.normal;
+  if (placement.planes == 1) return;
+  kinds_[vertex] = Kind::Meeting;
+  meetings_.push_back({static_cast<std::uint32_t>(vertex), placement.planes, placement.sides});
 }
 
 template void BlockVertices::place(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,

@@ -44,24 +44,36 @@ class BlockVertices {
   [[nodiscard]] const std::vector<creases::VertexSides::Kind>& kinds() const { return kinds_; }
 
  private:
-  void numberVertices(const components::Topology& topology,
-                      const components::SurfaceBlock& block,
+  // Samples and cells are numbered alike, by BlockSamples::index() of a cell's first corner.
+  static constexpr int kSlots = blocks::BlockSamples::kSize * blocks::BlockSamples::kStrideX;
+  // Among qefs_: what belongs to cells outside of the block goes there. Vertex i is at i + 1.
+  static constexpr std::uint16_t kNobody = 0;
+  static constexpr int kMostEdges =
+      blocks::kBlockSize * (blocks::kBlockSize + 1) * (blocks::kBlockSize + 1);
+
+  void numberVertices(const components::Topology& topology, const components::SurfaceBlock& block,
                       const blocks::CornerWords& corners);
   template <int axis>
   void addEdges(const blocks::CornerWords& corners);
   template <int axis>
-  void addCrossing(int x, int y, int z);
-  void solveAll();
+  void collectEdges(const blocks::CornerWords& corners);
+  template <int axis>
+  void addCrossing(int slot, const qef::Qef& plane, bool crease);
+  void solveVertices();
+  void placeAtCrease(std::size_t vertex);
 
   const blocks::FieldScale& scale_;
   blocks::BlockSamples samples_;
   crossings::CrossingFinder finder_;
   creases::CreaseCell creaseCell_;
   bool special_ = false;
-  std::array<std::uint16_t, blocks::kBlockCells> firstVertexOf_;      ///< of surface cells
-  std::array<components::Components, blocks::kBlockCells> componentsOf_;  ///< if special_
-  std::array<std::uint16_t, blocks::kBlockCells> cutEdgesOf_;             ///< if special_
+  std::array<std::uint16_t, kSlots> firstVertexOf_{};          ///< kNobody, or number + 1
+  std::array<components::Components, kSlots> componentsOf_{};  ///< if special_
+  std::array<std::uint16_t, kSlots> cutEdgesOf_{};             ///< if special_
+  std::array<std::uint16_t, kMostEdges + crossings::CrossingBatch::kSize> edges_;  ///< slots
+  int edgeCount_ = 0;
   std::vector<std::uint16_t> cells_;
+  std::vector<qef::Vector> centers_;  ///< middle of each vertex's cell
   std::vector<qef::Qef> qefs_;
   std::vector<creases::VertexSides::Kind> kinds_;
   std::vector<Meeting> meetings_;

@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include "base/huge_pages.h"
 #include "vertices/block_vertices.h"
 
 namespace tufa::vertices {
@@ -23,13 +24,12 @@ creases::MeetingSides worldSides(const BlockVertices::Meeting& meeting,
 template <class TreeT>
 creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
                                    const blocks::FieldScale& scale,
-                                   const components::Topology& topology,
-                                   const base::Affine& affine, bool normals, Mesh& mesh,
-                                   base::Job& job) {
+                                   const components::Topology& topology, const base::Affine& affine,
+                                   bool normals, Mesh& mesh, base::Job& job) {
   creases::VertexSides sides(topology.vertexCount);
   std::mutex mutex;
-  mesh.positions.resize(topology.vertexCount);
-  if (normals) mesh.normals.resize(topology.vertexCount);
+  base::resizeLarge(mesh.positions, topology.vertexCount);
+  if (normals) base::resizeLarge(mesh.normals, topology.vertexCount);
   job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
     typename blocks::Blocks<TreeT>::Accessor accessor(blocks.tree());
     BlockVertices work(scale);
@@ -40,10 +40,10 @@ creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
       for (std::size_t v = 0; v < work.cells().size(); ++v) {
         const int cell = work.cells()[v];
         const qef::Vector& point = work.points()[v];
-        mesh.positions[block.firstVertex + v] = affine.position(
-            origin, (cell >> 6) + 0.5 + static_cast<double>(point[0]),
-            ((cell >> 3) & 7) + 0.5 + static_cast<double>(point[1]),
-            (cell & 7) + 0.5 + static_cast<double>(point[2]));
+        mesh.positions[block.firstVertex + v] =
+            affine.position(origin, (cell >> 6) + 0.5 + static_cast<double>(point[0]),
+                            ((cell >> 3) & 7) + 0.5 + static_cast<double>(point[1]),
+                            (cell & 7) + 0.5 + static_cast<double>(point[2]));
         if (!normals) continue;
         const qef::Vector& n = work.normals()[v];
         mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
@@ -53,7 +53,7 @@ creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
         const std::scoped_lock lock(mutex);
         for (const BlockVertices::Meeting& meeting : work.meetings()) {
           sides.setMeeting(static_cast<VertexIndex>(block.firstVertex + meeting.vertex),
-                                  worldSides(meeting, affine));
+                           worldSides(meeting, affine));
         }
       }
     }
@@ -62,12 +62,10 @@ creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
 }
 
 template creases::VertexSides placeVertices(const blocks::Blocks<openvdb::FloatTree>&,
-                                            const blocks::FieldScale&,
-                                            const components::Topology&, const base::Affine&,
-                                            bool, Mesh&, base::Job&);
+                                            const blocks::FieldScale&, const components::Topology&,
+                                            const base::Affine&, bool, Mesh&, base::Job&);
 template creases::VertexSides placeVertices(const blocks::Blocks<openvdb::DoubleTree>&,
-                                            const blocks::FieldScale&,
-                                            const components::Topology&, const base::Affine&,
-                                            bool, Mesh&, base::Job&);
+                                            const blocks::FieldScale&, const components::Topology&,
+                                            const base::Affine&, bool, Mesh&, base::Job&);
 
 }  // namespace tufa::vertices
