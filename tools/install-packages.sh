@@ -4,8 +4,8 @@
 set -eu
 
 packages="ca-certificates cmake g++ git ninja-build
-  libopenvdb-dev libtbb-dev libblosc-dev libimath-dev zlib1g-dev
-  libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev libboost-dev
+  libopenvdb-dev libtbb-dev libimath-dev
+  libcgal-dev libgmp-dev libmpfr-dev libboost-dev
   libcli11-dev nlohmann-json3-dev libpng-dev libgtest-dev"
 case "${1:-}" in
   "") ;;
