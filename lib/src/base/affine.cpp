@@ -4,20 +4,23 @@
 
 namespace tufa::base {
 
-Affine::Affine(const openvdb::math::Transform& transform) {
-  const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0));
+Affine::Affine(const openvdb::math::Transform& transform, const openvdb::Coord& origin)
+    : origin_(origin) {
+  const openvdb::Vec3d zero = transform.indexToWorld(openvdb::Vec3d(0));
+  const openvdb::Vec3d start = transform.indexToWorld(origin.asVec3d());
   openvdb::math::Mat3d linear;
   for (int axis = 0; axis < 3; ++axis) {
     openvdb::Vec3d unit(0);
     unit[axis] = 1;
-    linear.setCol(axis, transform.indexToWorld(unit) - origin);
+    linear.setCol(axis, transform.indexToWorld(unit) - zero);
   }
   const double size = std::cbrt(std::abs(linear.det()));
   const openvdb::math::Mat3d inverse = linear.inverse();
   for (int i = 0; i < 3; ++i) {
-    t_[i] = origin[i];
+    world_[i] = start[i];
     for (int j = 0; j < 3; ++j) {
       m_[i][j] = linear(i, j);
+      inverse_[i][j] = inverse(i, j);
       // The inverse transpose, scaled to the size of a rotation so that single precision serves.
       normals_[i][j] = static_cast<float>(inverse(j, i) * size);
     }

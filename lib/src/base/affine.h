@@ -2,26 +2,59 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cstdint>
 #include <tufa/mesh.h>
 
 namespace tufa::base {
 
-/// A linear transform from index to world space, taken apart for speed.
+/// A linear transform from index to world space, taken apart for speed. Positions are counted from
+/// `origin`, a lattice point near the surface, so that they are the same digits wherever in the world
+/// the grid lies; toWorld() moves them there.
 class Affine {
  public:
-  explicit Affine(const openvdb::math::Transform& transform);
+  explicit Affine(const openvdb::math::Transform& transform,
+                  const openvdb::Coord& origin = openvdb::Coord(0));
 
-  /// World position of `cell` + `offset`; the two are added in double, so a far cell keeps the
-  /// offset's digits.
+  /// Position of `cell` + (dx, dy, dz).
   [[nodiscard]] Position position(const openvdb::Coord& cell, double dx, double dy,
                                   double dz) const {
-    const double x = cell[0] + dx, y = cell[1] + dy, z = cell[2] + dz;
-    return {m_[0][0] * x + m_[0][1] * y + m_[0][2] * z + t_[0],
-            m_[1][0] * x + m_[1][1] * y + m_[1][2] * z + t_[1],
-            m_[2][0] * x + m_[2][1] * y + m_[2][2] * z + t_[2]};
+    const double x = static_cast<double>(std::int64_t{cell[0]} - origin_[0]) + dx;
+    const double y = static_cast<double>(std::int64_t{cell[1]} - origin_[1]) + dy;
+    const double z = static_cast<double>(std::int64_t{cell[2]} - origin_[2]) + dz;
+    return {m_[0][0] * x + m_[0][1] * y + m_[0][2] * z, m_[1][0] * x + m_[1][1] * y + m_[1][2] * z,
+            m_[2][0] * x + m_[2][1] * y + m_[2][2] * z};
   }
+  /// The position, counted from the world's origin.
+  [[nodiscard]] Position toWorld(const Position& p) const {
+    return {p.x + world_[0], p.y + world_[1], p.z + world_[2]};
+  }
+  /// Inverse of position(): lattice coordinates counted from `cell`.
+  [[nodiscard]] openvdb::Vec3d latticePoint(const Position& p, const openvdb::Coord& cell) const {
+    openvdb::Vec3d at;
+    for (int i = 0; i < 3; ++i) {
+      at[i] = inverse_[i][0] * p.x + inverse_[i][1] * p.y + inverse_[i][2] * p.z -
+              static_cast<double>(std::int64_t{cell[i]} - origin_[i]);
+    }
+    return at;
+  }
+  /// The world plane with unit normal `n`, as a covector of index space: its scalar product with a
+  /// difference of lattice points is their distance along the normal, in voxels.
+  [[nodiscard]] openvdb::Vec3d planeInLattice(const Normal& n) const {
+    openvdb::Vec3d g;
+    for (int i = 0; i < 3; ++i) {
+      g[i] = (m_[0][i] * static_cast<double>(n.x) + m_[1][i] * static_cast<double>(n.y) +
+              m_[2][i] * static_cast<double>(n.z)) /
+             voxelSize_;
+    }
+    return g;
+  }
+  [[nodiscard]] const openvdb::Coord& origin() const { return origin_; }
   /// World unit normal of an index-space gradient: by the inverse transpose.
   [[nodiscard]] Normal normal(float gx, float gy, float gz) const;
+  /// World unit normal of a covector of index space, such as a sum of planeInLattice().
+  [[nodiscard]] Normal normalOfPlane(const openvdb::Vec3d& g) const {
+    return normal(static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]));
+  }
   /// World direction of an index-space axis.
   [[nodiscard]] openvdb::Vec3d axis(int axis) const {
     return {m_[0][axis], m_[1][axis], m_[2][axis]};
@@ -32,8 +65,10 @@ class Affine {
   [[nodiscard]] bool mirrored() const { return mirrored_; }
 
  private:
+  openvdb::Coord origin_;
   double m_[3][3];
-  double t_[3];
+  double inverse_[3][3];
+  double world_[3];  ///< world position of origin_
   float normals_[3][3];
   double voxelSize_;
   bool mirrored_;

@@ -98,6 +98,20 @@ Components Topology::componentsAt(const SurfaceBlock& block, int cell, CornerMas
   return cut == 0 ? componentsOf(mask, joined) : joinCrossings(mask, joined, cut);
 }
 
+bool Topology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask, int face) const {
+  const unsigned cut = cutEdgesOf(block, cell);
+  const auto& edges = kFaceEdges[face];
+  for (const int edge : edges) {
+    if (((cut >> edge) & 1) != 0) return false;
+  }
+  const FaceBits joined = faceBits(block, cell) & ambiguousFaces(mask);
+  const Components components =
+      cut == 0 ? componentsOf(mask, joined) : joinCrossings(mask, joined, cut);
+  const bool cutOffInside = ((joined >> face) & 1) == 0;
+  const int first = isInside(mask, kFaceCorners[face][0]) == cutOffInside ? 0 : 1;
+  return components.of(edges[first]) == components.of(edges[first + 1]);
+}
+
 namespace {
 
 // Builds a Topology step by step; each step is one parallel pass over blocks.
@@ -297,21 +311,6 @@ class TopologyBuilder {
     }
   }
 
-  // Whether the cell owns both arcs of its ambiguous face in one component.
-  bool ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask, int face) const {
-    const unsigned cut = topology_.cutEdgesOf(block, cell);
-    const auto& edges = kFaceEdges[face];
-    for (const int edge : edges) {
-      if (((cut >> edge) & 1) != 0) return false;
-    }
-    const FaceBits joined = topology_.faceBits(block, cell) & ambiguousFaces(mask);
-    const Components components =
-        cut == 0 ? componentsOf(mask, joined) : joinCrossings(mask, joined, cut);
-    const bool cutOffInside = ((joined >> face) & 1) == 0;
-    const int first = isInside(mask, kFaceCorners[face][0]) == cutOffInside ? 0 : 1;
-    return components.of(edges[first]) == components.of(edges[first + 1]);
-  }
-
   void flipFaces() {
     std::vector<BlockBits> flips(topology_.specials.size());
     for (int axis = 0; axis < 3; ++axis) {
@@ -336,7 +335,7 @@ class TopologyBuilder {
     forAmbiguousFaces(block, corners, [&](int faceAxis, int cell) {
       const int along = (cell >> shift) & 7;
       if (faceAxis != axis || (along & 1) != parity) return;
-      if (!ownsBothArcs(block, cell, cornerMask(corners, cell), axis * 2)) return;
+      if (!topology_.ownsBothArcs(block, cell, cornerMask(corners, cell), axis * 2)) return;
       const SurfaceBlock* below = &block;
       int lowerCell = cell - (1 << shift);
       CornerWords lowerCorners = corners;
@@ -346,7 +345,7 @@ class TopologyBuilder {
                                                       axis == 2 ? -1 : 0)];
         lowerCorners = blocks_.cornerWords(below->neighbours);
       }
-      if (ownsBothArcs(*below, lowerCell, cornerMask(lowerCorners, lowerCell), axis * 2 + 1)) {
+      if (topology_.ownsBothArcs(*below, lowerCell, cornerMask(lowerCorners, lowerCell), axis * 2 + 1)) {
         bad.set(cell);
       }
     });

@@ -72,6 +72,9 @@ struct Topology {
   /// The components of a cell of a block, all rules applied.
   [[nodiscard]] Components componentsAt(const SurfaceBlock& block, int cell,
                                         CornerMask mask) const;
+  /// Whether one component of the cell owns both arcs of its ambiguous face `face`.
+  [[nodiscard]] bool ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask,
+                                  int face) const;
 };
 
 /// The corner mask of a cell.

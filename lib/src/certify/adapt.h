@@ -1,0 +1,25 @@
+#pragma once
+
+#include "certify/certificate.h"
+#include "cut/leaves.h"
+#include "forest/forest.h"
+#include "polygons/cut_polygons.h"
+
+namespace tufa::certify {
+
+/// The coarsest mesh found that keeps a rule, and how far it is from the base mesh.
+struct AdaptiveMesh {
+  Mesh mesh;
+  cut::CellFlags merged;  ///< the octree it was taken from
+  double largestError = 0;  ///< voxels
+  double meanError = 0;     ///< voxels
+  int rounds = 0;           ///< meshes made and measured
+};
+
+/// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the
+/// tolerance, and starts again until there are none.
+template <class TreeT>
+[[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
+                                 const cut::CutRule& rule, base::Job& job);
+
+}  // namespace tufa::certify

@@ -1,0 +1,142 @@
+#include "certify/base_surface.h"
+
+#include <openvdb/math/Proximity.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/bits.h"
+
+namespace tufa::certify {
+
+using blocks::kBlockSize;
+using components::SurfaceBlock;
+using openvdb::Coord;
+using openvdb::Vec3d;
+
+namespace {
+
+// A vertex whose normal has less than this part along the direction asked for faces away; on the
+// corner of a cube the normals of vertex and face have 0.58.
+constexpr double kFacing = 0.2;
+
+Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
+
+}  // namespace
+
+template <class TreeT>
+BaseSurface<TreeT>::BaseSurface(const forest::Base<TreeT>& base, const forest::Level& blockCells,
+                                base::Job& job)
+    : base_(base), blockCells_(blockCells), edges_(base.topology.blocks.size()) {
+  job.forRanges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = base_.topology.blocks[i];
+      const blocks::CornerWords corners = base_.blocks.cornerWords(block.neighbours);
+      std::uint16_t count = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        for (int x = 0; x < kBlockSize; ++x) {
+          std::uint64_t crossed = components::crossedEdges(corners, x)[axis];
+          if (block.special >= 0) {
+            crossed &= ~base_.topology.specials[block.special].cut[axis].slabs[x];
+          }
+          edges_[i].crossed[axis][x] = crossed;
+          edges_[i].before[axis][x] = count;
+          count = static_cast<std::uint16_t>(count + base::countBits(crossed));
+        }
+      }
+    }
+  });
+}
+
+template <class TreeT>
+void BaseSurface<TreeT>::searchCell(std::uint32_t block, int cell, const Vec3d& point,
+                                    const Vec3d& facing, Near& near) const {
+  const SurfaceBlock& surface = base_.topology.blocks[block];
+  const std::uint32_t first = base_.topology.firstVertexInBlock(surface, cell);
+  std::uint32_t count = 1;
+  if (surface.special >= 0) {
+    // Ranks count the cells before; behind the last cell of the block there is none to ask.
+    for (const components::CellException& exception :
+         base_.topology.specials[surface.special].exceptions) {
+      if (exception.cell == cell) count = exception.count;
+    }
+  }
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const std::size_t vertex = surface.firstVertex + i;
+    const double squared = (vectorOf(base_.mesh.positions[vertex]) - point).lengthSqr();
+    if (squared >= near.squared) continue;
+    const Normal& n = base_.mesh.normals[vertex];
+    const bool sharp = base_.sides.isSharp(static_cast<VertexIndex>(vertex));
+    if (!sharp && Vec3d(n.x, n.y, n.z).dot(facing) < kFacing) continue;
+    near = {block, cell, squared};
+  }
+}
+
+template <class TreeT>
+typename BaseSurface<TreeT>::Near BaseSurface<TreeT>::nearestVertex(const Vec3d& point,
+                                                                    const Vec3d& facing,
+                                                                    int reach) const {
+  const Vec3d at =
+      base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
+  const Coord middle = base_.affine.origin() + Coord::floor(at);
+  Near near;
+  // Rings of cells outward, one more after the first that holds a vertex: it may hold a nearer one.
+  for (int radius = 1; radius <= reach; ++radius) {
+    const bool last = near.block != forest::kNone;
+    for (int x = -radius; x <= radius; ++x) {
+      for (int y = -radius; y <= radius; ++y) {
+        const bool inside = std::max(std::abs(x), std::abs(y)) < radius && radius > 1;
+        for (int z = -radius; z <= radius; z += inside ? 2 * radius : 1) {
+          const Coord cell = middle.offsetBy(x, y, z);
+          const std::uint32_t block = blockAt(cell);
+          if (block == forest::kNone) continue;
+          const int local = blocks::cellIndex(cell[0] & 7, cell[1] & 7, cell[2] & 7);
+          if (base_.topology.blocks[block].cells.get(local)) {
+            searchCell(block, local, point, facing, near);
+          }
+        }
+      }
+    }
+    if (last || (radius == 1 && near.block != forest::kNone)) break;
+  }
+  return near;
+}
+
+template <class TreeT>
+double BaseSurface<TreeT>::distance(const Vec3d& point, const Vec3d& facing, int reach) const {
+  const Near near = nearestVertex(point, facing, reach);
+  if (near.block == forest::kNone) return std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity();
+  const std::array<int, 3> cell = {near.cell >> 6, (near.cell >> 3) & 7, near.cell & 7};
+  for (int edge = 0; edge < components::kEdges; ++edge) {
+    const int axis = edge / 4, corner = components::edgeCorners(edge)[0];
+    const int x = cell[0] + (corner >> 2), y = cell[1] + ((corner >> 1) & 1),
+              z = cell[2] + (corner & 1);
+    std::uint32_t block = near.block;
+    if (((x | y | z) & 8) != 0) {
+      block = base_.topology.neighbour(base_.topology.blocks[block], x >> 3, y >> 3, z >> 3);
+      if (block == components::kNoSurfaceBlock) continue;
+    }
+    const int bit = (y & 7) * 8 + (z & 7);
+    const std::uint64_t crossed = edges_[block].crossed[axis][x & 7];
+    if (((crossed >> bit) & 1) == 0) continue;
+    const std::size_t index = base_.topology.blocks[block].firstQuad +
+                              edges_[block].before[axis][x & 7] +
+                              static_cast<std::size_t>(base::countBits(crossed & base::bitsBelow(bit)));
+    const auto& v = base_.mesh.quads[index].vertices;
+    const Vec3d p[4] = {vectorOf(base_.mesh.positions[v[0]]), vectorOf(base_.mesh.positions[v[1]]),
+                        vectorOf(base_.mesh.positions[v[2]]), vectorOf(base_.mesh.positions[v[3]])};
+    Vec3d weights;
+    for (int i = 1; i <= 2; ++i) {
+      const Vec3d foot =
+          openvdb::math::closestPointOnTriangleToPoint(p[0], p[i], p[i + 1], point, weights);
+      best = std::min(best, (foot - point).lengthSqr());
+    }
+  }
+  return std::sqrt(best);
+}
+
+template class BaseSurface<openvdb::FloatTree>;
+template class BaseSurface<openvdb::DoubleTree>;
+
+}  // namespace tufa::certify

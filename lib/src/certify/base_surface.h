@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "forest/forest.h"
+
+namespace tufa::certify {
+
+/// The uniform mesh, asked by place: which of its vertices and quads are near a point. Nothing is
+/// sorted or searched: cells and crossed edges are bits, and their ranks are the indices.
+template <class TreeT>
+class BaseSurface {
+ public:
+  BaseSurface(const forest::Base<TreeT>& base, const forest::Level& blockCells, base::Job& job);
+
+  /// An upper bound of the distance from `point` to the base mesh, exact if the nearest vertex has the
+  /// nearest polygon: to the polygons around the nearest base vertex that does not face away from
+  /// `facing`. Looks `reach` cells far; infinite if there is no such vertex. World units.
+  [[nodiscard]] double distance(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
+                                int reach) const;
+
+ private:
+  // Ranks of the crossed edges that start in a block: the quads of the block.
+  struct Edges {
+    std::array<std::array<std::uint64_t, 8>, 3> crossed{};
+    std::array<std::array<std::uint16_t, 8>, 3> before{};
+  };
+  struct Near {
+    std::uint32_t block = forest::kNone;
+    int cell = 0;
+    double squared = std::numeric_limits<double>::infinity();
+  };
+
+  [[nodiscard]] std::uint32_t blockAt(const openvdb::Coord& cell) const {
+    return blockCells_.find(openvdb::Coord(cell[0] >> 3, cell[1] >> 3, cell[2] >> 3));
+  }
+  void searchCell(std::uint32_t block, int cell, const openvdb::Vec3d& point,
+                  const openvdb::Vec3d& facing, Near& near) const;
+  [[nodiscard]] Near nearestVertex(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
+                                   int reach) const;
+
+  const forest::Base<TreeT>& base_;
+  const forest::Level& blockCells_;
+  std::vector<Edges> edges_;
+};
+
+}  // namespace tufa::certify

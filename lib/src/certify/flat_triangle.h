@@ -1,0 +1,50 @@
+#pragma once
+
+#include <openvdb/math/Proximity.h>
+
+#include <array>
+#include <cmath>
+#include <tufa/mesh.h>
+
+namespace tufa::certify {
+
+/// A triangle taken apart for many distance questions: most points lie above its inside, where the
+/// distance is the one to its plane.
+class FlatTriangle {
+ public:
+  FlatTriangle(const openvdb::Vec3d& a, const openvdb::Vec3d& b, const openvdb::Vec3d& c)
+      : corners_{a, b, c}, normal_((b - a).cross(c - a)) {
+    if (!normal_.normalize()) normal_ = openvdb::Vec3d(0);
+    for (int i = 0; i < 3; ++i) {
+      inward_[i] = normal_.cross(corners_[(i + 1) % 3] - corners_[i]);
+    }
+  }
+  [[nodiscard]] const openvdb::Vec3d& normal() const { return normal_; }
+
+  /// Lowers `squared` to the squared distance of `point`, and says whether it did.
+  bool closer(const openvdb::Vec3d& point, double& squared) const {
+    const openvdb::Vec3d from = point - corners_[0];
+    const double height = normal_.dot(from);
+    if (height * height >= squared) return false;
+    const bool above = inward_[0].dot(from) >= 0 && inward_[1].dot(point - corners_[1]) >= 0 &&
+                       inward_[2].dot(from) >= 0 && normal_.lengthSqr() > 0.5;
+    double distance = height * height;
+    if (!above) {
+      openvdb::Vec3d weights;
+      distance = (openvdb::math::closestPointOnTriangleToPoint(corners_[0], corners_[1],
+                                                               corners_[2], point, weights) -
+                  point)
+                     .lengthSqr();
+    }
+    if (distance >= squared) return false;
+    squared = distance;
+    return true;
+  }
+
+ private:
+  std::array<openvdb::Vec3d, 3> corners_;
+  openvdb::Vec3d normal_;
+  std::array<openvdb::Vec3d, 3> inward_;  ///< across each side, of any length
+};
+
+}  // namespace tufa::certify

@@ -1,0 +1,194 @@
+#include "cut/leaves.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tufa::cut {
+
+using components::SurfaceBlock;
+using components::SurfaceBlockIndex;
+using components::Topology;
+using forest::BlockForest;
+using forest::Cluster;
+using forest::Forest;
+using forest::Level;
+
+namespace {
+
+// Share of the tolerance that a cluster's mean error may take. On a curved patch the largest distance
+// is about twice the mean one; what slips through is found and split by the certificate.
+constexpr double kErrorShare = 0.5;
+
+class Merger {
+ public:
+  Merger(const Forest& forest, const Topology& topology, const CutRule& rule,
+         const CellFlags& forbidden, base::Job& job)
+      : forest_(forest), topology_(topology), rule_(rule), forbidden_(forbidden), job_(job),
+        merged_(forest) {}
+
+  CellFlags merge() {
+    mergeLevel1();
+    mergeLevel2();
+    mergeBlocks();
+    for (std::size_t i = 1; i < forest_.levels.size(); ++i) mergeUpper(i);
+    return std::move(merged_);
+  }
+
+ private:
+  // `middle` is the middle of the cell, in lattice coordinates.
+  [[nodiscard]] bool keepsRule(const Cluster& cluster, int level,
+                               const openvdb::Vec3d& middle) const {
+    if (level > rule_.maxLevel) return false;
+    if (level <= rule_.minLevel) return true;
+    double tolerance = rule_.tolerance;
+    if (rule_.scale) {
+      tolerance *= rule_.scale(middle + openvdb::Vec3d(cluster.point[0], cluster.point[1],
+                                                       cluster.point[2]));
+    }
+    return cluster.error <= kErrorShare * tolerance && cluster.angle <= rule_.maxAngle;
+  }
+
+  [[nodiscard]] openvdb::Vec3d middleOf(std::size_t block, int level, int x, int y, int z) const {
+    const openvdb::Coord& cell = forest_.levels[0].cells[block];
+    const double size = 1 << level;
+    return openvdb::Vec3d(cell[0] * 8.0, cell[1] * 8.0, cell[2] * 8.0) +
+           openvdb::Vec3d(x + 0.5, y + 0.5, z + 0.5) * size;
+  }
+
+  void mergeLevel1() {
+    forBlocks([&](std::size_t i) {
+      const BlockForest& block = forest_.blocks[i];
+      std::uint64_t merged = block.safe1 & ~forbidden_.level1[i];
+      for (const Cluster& cluster : block.level1) {
+        const int cell = cluster.cell;
+        if (!keepsRule(cluster, 1, middleOf(i, 1, cell >> 4, (cell >> 2) & 3, cell & 3))) {
+          merged &= ~(std::uint64_t{1} << cell);
+        }
+      }
+      merged_.level1[i] = merged;
+    });
+  }
+
+  void mergeLevel2() {
+    forBlocks([&](std::size_t i) {
+      const BlockForest& block = forest_.blocks[i];
+      auto merged = static_cast<std::uint8_t>(block.safe2 & ~forbidden_.level2[i]);
+      for (const Cluster& cluster : block.level2) {
+        const int cell = cluster.cell;
+        if (!keepsRule(cluster, 2, middleOf(i, 2, cell >> 2, (cell >> 1) & 1, cell & 1))) {
+          merged &= static_cast<std::uint8_t>(~(1 << cell));
+        }
+      }
+      if (merged != 0) merged = keepBesideMerged(i, merged);
+      merged_.level2[i] = merged;
+    });
+  }
+
+  // Of the level-2 cells given, those whose children and their neighbours are merged.
+  [[nodiscard]] std::uint8_t keepBesideMerged(std::size_t block, std::uint8_t cells) const {
+    std::array<std::uint64_t, 27> unmerged{};
+    std::uint64_t any = 0;
+    for (int i = 0; i < 27; ++i) {
+      const SurfaceBlockIndex near =
+          topology_.neighbour(topology_.blocks[block], i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+      if (near == components::kNoSurfaceBlock) continue;
+      unmerged[i] = forest_.blocks[near].surface1 & ~merged_.level1[near];
+      any |= unmerged[i];
+    }
+    if (any == 0) return cells;
+    for (int cell = 0; cell < 8; ++cell) {
+      if (((cells >> cell) & 1) == 0) continue;
+      const int x = cell >> 2, y = (cell >> 1) & 1, z = cell & 1;
+      for (int i = 0; i < 64; ++i) {
+        // Level-1 cells from one below to one above; 4 is added to stay positive.
+        const int u = 2 * x + (i >> 4) + 3, v = 2 * y + ((i >> 2) & 3) + 3, w = 2 * z + (i & 3) + 3;
+        const std::uint64_t words = unmerged[(u >> 2) * 9 + (v >> 2) * 3 + (w >> 2)];
+        if (((words >> forest::cellIndex1(u & 3, v & 3, w & 3)) & 1) == 0) continue;
+        cells &= static_cast<std::uint8_t>(~(1 << cell));
+        break;
+      }
+    }
+    return cells;
+  }
+
+  void mergeBlocks() {
+    const Level& level = forest_.levels[0];
+    forBlocks([&](std::size_t i) {
+      bool merged = level.safe[i] != 0 && forbidden_.levels[0][i] == 0;
+      const openvdb::Vec3d middle = middleOf(i, 3, 0, 0, 0);
+      for (std::uint32_t c = level.first[i]; merged && c < level.first[i + 1]; ++c) {
+        merged = keepsRule(level.clusters[c], 3, middle);
+      }
+      for (int n = 0; merged && n < 27; ++n) {
+        const int dx = n / 9 - 1, dy = n / 3 % 3 - 1, dz = n % 3 - 1;
+        const SurfaceBlockIndex near = topology_.neighbour(topology_.blocks[i], dx, dy, dz);
+        if (near == components::kNoSurfaceBlock) continue;
+        const unsigned unmerged = forest_.blocks[near].surface2 & ~unsigned{merged_.level2[near]};
+        merged = (unmerged & touching(dx, dy, dz)) == 0;
+      }
+      merged_.levels[0][i] = merged ? 1 : 0;
+    });
+  }
+
+  // The level-2 cells of the block (dx, dy, dz) away that touch this one.
+  static unsigned touching(int dx, int dy, int dz) {
+    unsigned cells = 0xff;
+    if (dx != 0) cells &= dx < 0 ? 0xf0U : 0x0fU;
+    if (dy != 0) cells &= dy < 0 ? 0xccU : 0x33U;
+    if (dz != 0) cells &= dz < 0 ? 0xaaU : 0x55U;
+    return cells;
+  }
+
+  void mergeUpper(std::size_t index) {
+    const Level& level = forest_.levels[index];
+    const Level& below = forest_.levels[index - 1];
+    const std::vector<std::uint8_t>& mergedBelow = merged_.levels[index - 1];
+    job_.forRanges(level.cells.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        bool merged = level.safe[i] != 0 && forbidden_.levels[index][i] == 0;
+        const openvdb::Coord& cell = level.cells[i];
+        const double size = static_cast<double>(std::int64_t{1} << level.level);
+        const openvdb::Vec3d middle((cell[0] + 0.5) * size, (cell[1] + 0.5) * size,
+                                    (cell[2] + 0.5) * size);
+        for (std::uint32_t c = level.first[i]; merged && c < level.first[i + 1]; ++c) {
+          merged = keepsRule(level.clusters[c], level.level, middle);
+        }
+        for (int n = 0; merged && n < 64; ++n) {
+          const std::uint32_t near =
+              below.find(openvdb::Coord(2 * cell[0] + (n >> 4) - 1, 2 * cell[1] + ((n >> 2) & 3) - 1,
+                                        2 * cell[2] + (n & 3) - 1));
+          merged = near == forest::kNone || mergedBelow[near] != 0;
+        }
+        merged_.levels[index][i] = merged ? 1 : 0;
+      }
+    });
+  }
+
+  template <class Body>
+  void forBlocks(const Body& body) {
+    job_.forRanges(forest_.blocks.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) body(i);
+    });
+  }
+
+  const Forest& forest_;
+  const Topology& topology_;
+  const CutRule& rule_;
+  const CellFlags& forbidden_;
+  base::Job& job_;
+  CellFlags merged_;
+};
+
+}  // namespace
+
+CellFlags::CellFlags(const Forest& forest)
+    : level1(forest.blocks.size()), level2(forest.blocks.size()) {
+  for (const Level& level : forest.levels) levels.emplace_back(level.cells.size());
+}
+
+CellFlags mergeCells(const Forest& forest, const Topology& topology, const CutRule& rule,
+                     const CellFlags& forbidden, base::Job& job) {
+  return Merger(forest, topology, rule, forbidden, job).merge();
+}
+
+}  // namespace tufa::cut

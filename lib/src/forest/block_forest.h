@@ -1,0 +1,56 @@
+#pragma once
+
+#include <vector>
+
+#include "forest/forest.h"
+#include "forest/patch.h"
+
+namespace tufa::forest {
+
+/// Builds levels 1 to 3 of one block. Made once for a range of blocks, so that its arrays are used
+/// again.
+template <class TreeT>
+class BlockForestBuilder {
+ public:
+  explicit BlockForestBuilder(const Base<TreeT>& base) : base_(base) {}
+
+  /// The forest of surface block `index`; the parents in its level 2 count from 0.
+  [[nodiscard]] BlockForest build(std::size_t index);
+
+  /// Of the block built last, the patches and clusters of level 3; none unless isSafe().
+  [[nodiscard]] bool isSafe() const { return safe3_; }
+  [[nodiscard]] std::vector<Patch>& patches() { return levels_[3].patches; }
+  [[nodiscard]] std::vector<Cluster>& clusters() { return clusters3_; }
+
+ private:
+  using Accessor = typename blocks::Blocks<TreeT>::Accessor;
+
+  // The patches of one level's cells in the block, cell by cell.
+  struct Patches {
+    std::vector<Patch> patches;
+    std::array<std::uint32_t, blocks::kBlockCells> first{};  // only of cells with patches
+    std::array<std::uint32_t, blocks::kBlockCells> count{};
+  };
+
+  void readVertices(std::size_t index);
+  void addVertexPlanes(VertexIndex vertex, const openvdb::Coord& origin, Patch& patch) const;
+  void forbidBeside(std::size_t index);
+  [[nodiscard]] bool neighbourOwnsBothArcs(std::size_t index, int cell, int face) const;
+  // Tries one cell of level `level`, at (x, y, z) in cells of that level; appends what it finds.
+  [[nodiscard]] bool tryCell(int level, int x, int y, int z, std::vector<Cluster>& clusters);
+  [[nodiscard]] static int slot(int level, int x, int y, int z) {
+    const int bits = 3 - level;
+    return ((x << bits | y) << bits) | z;
+  }
+  void setParent(int level, std::uint32_t patch, std::uint32_t parent);
+
+  const Base<TreeT>& base_;
+  BlockForest forest_;
+  PatchJoiner joiner_;
+  std::array<Patches, 4> levels_;  ///< levels 0 to 3
+  std::vector<Cluster> clusters3_;
+  std::uint64_t forbidden1_ = 0;
+  bool safe3_ = false;
+};
+
+}  // namespace tufa::forest

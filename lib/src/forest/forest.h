@@ -1,0 +1,92 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <tufa/mesh.h>
+#include <unordered_map>
+#include <vector>
+
+#include "base/affine.h"
+#include "base/job.h"
+#include "blocks/blocks.h"
+#include "components/topology.h"
+#include "creases/vertex_sides.h"
+
+namespace tufa::forest {
+
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// A connected piece of the surface in one octree cell, which one vertex can stand for.
+struct Cluster {
+  std::array<float, 3> point;   ///< the vertex, in voxels from the middle of the cell
+  std::array<float, 3> normal;  ///< outward unit normal, world space
+  float error = 0;              ///< root mean square distance of the vertex to the gathered planes, voxels
+  float angle = 0;              ///< bound on the angle between two gathered normals, radians
+  std::uint32_t parent = kNone; ///< the cluster one level up that holds this one
+  std::uint16_t cell = 0;       ///< levels 1 and 2: the cell inside the block
+};
+
+/// Number of a level-1 cell (x, y, z each 0..3) or level-2 cell (0..1) inside its block.
+inline constexpr int cellIndex1(int x, int y, int z) { return x * 16 + y * 4 + z; }
+inline constexpr int cellIndex2(int x, int y, int z) { return x * 4 + y * 2 + z; }
+
+/// Levels 1 and 2 of one block.
+struct BlockForest {
+  static constexpr std::uint16_t kNoParent = std::numeric_limits<std::uint16_t>::max();
+
+  std::vector<std::uint16_t> parents;  ///< of each base vertex: its level-1 cluster or kNoParent
+  std::vector<Cluster> level1;         ///< parents in level2
+  std::vector<Cluster> level2;         ///< parents in Forest::levels[0]
+  std::uint64_t surface1 = 0;          ///< level-1 cells that the surface passes
+  std::uint64_t safe1 = 0;             ///< of these, the ones that may become leaves
+  std::uint8_t surface2 = 0;
+  std::uint8_t safe2 = 0;
+};
+
+/// One level of cells of the size of a block or larger: all that the surface passes.
+struct Level {
+  int level = 3;
+  std::vector<openvdb::Coord> cells;  ///< lower corner, in cells of this level
+  std::vector<std::uint8_t> safe;     ///< may become a leaf
+  std::vector<std::uint32_t> first;   ///< clusters of cell i: first[i] to first[i + 1]; none unless safe
+  std::vector<Cluster> clusters;
+  std::vector<std::uint32_t> parentCells;  ///< in the next level; empty at the last
+
+  /// Index of a cell, or kNone where the surface does not pass.
+  [[nodiscard]] std::uint32_t find(const openvdb::Coord& cell) const {
+    const auto found = indices.find(cell);
+    return found == indices.end() ? kNone : found->second;
+  }
+  std::unordered_map<openvdb::Coord, std::uint32_t> indices;
+};
+
+/// The surface as clusters of all sizes, each with the vertex that would stand for it: what every cut
+/// is taken from. Depends on no tolerance. A cell is there if all its patches, at every level below,
+/// pass the safety test; see PatchJoiner.
+struct Forest {
+  std::vector<BlockForest> blocks;  ///< for each surface block of the topology
+  std::vector<Level> levels;        ///< level 3 (cell i is surface block i), 4, and so on
+};
+
+/// The uniform mesh that a forest is built on.
+template <class TreeT>
+struct Base {
+  const blocks::Blocks<TreeT>& blocks;
+  const components::Topology& topology;
+  const base::Affine& affine;
+  const Mesh& mesh;  ///< with normals
+  const creases::VertexSides& sides;
+
+  [[nodiscard]] const openvdb::Coord& origin(std::size_t surfaceBlock) const {
+    return blocks.origin(topology.blocks[surfaceBlock].block);
+  }
+};
+
+/// Builds the levels from the base mesh up, until none has a safe cell or cells have 2^maxLevel voxels.
+template <class TreeT>
+[[nodiscard]] Forest buildForest(const Base<TreeT>& base, int maxLevel, base::Job& job);
+
+}  // namespace tufa::forest

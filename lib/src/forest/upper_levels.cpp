@@ -1,0 +1,108 @@
+#include "forest/upper_levels.h"
+
+#include <algorithm>
+
+#include "forest/solve_patch.h"
+
+namespace tufa::forest {
+namespace {
+
+using components::kCorners;
+
+// What one cell of the new level came to.
+struct Outcome {
+  bool safe = false;
+  std::vector<Cluster> clusters;
+  std::vector<Patch> patches;
+  std::vector<std::uint32_t> parents;  // of the children's clusters, child by child
+};
+
+using ChildCells = std::array<std::uint32_t, kCorners>;
+
+Outcome tryCell(const LevelPatches& below, const ChildCells& cells, const base::Affine& affine,
+                PatchJoiner& joiner) {
+  Outcome outcome;
+  PatchJoiner::Children children;
+  for (int child = 0; child < kCorners; ++child) {
+    if (cells[child] == kNone) continue;
+    if (below.level.safe[cells[child]] == 0) return outcome;
+    const std::uint32_t first = below.level.first[cells[child]];
+    children[child] = {below.patches.data() + first, below.level.first[cells[child] + 1] - first};
+  }
+  if (!joiner.join(children)) return outcome;
+  outcome.safe = true;
+  outcome.patches = joiner.patches();
+  outcome.parents = joiner.parents();
+  const int childSize = 1 << below.level.level;
+  std::size_t next = 0;
+  for (int child = 0; child < kCorners; ++child) {
+    const openvdb::Vec3d corner(((child >> 2) & 1) * childSize, ((child >> 1) & 1) * childSize,
+                                (child & 1) * childSize);
+    for (const Patch& patch : children[child]) {
+      Patch& parent = outcome.patches[outcome.parents[next++]];
+      parent.planes += patch.planes.seenFrom(-corner);
+      parent.cone.add(patch.cone);
+    }
+  }
+  for (const Patch& patch : outcome.patches) {
+    outcome.clusters.push_back(solvePatch(patch, openvdb::Vec3d(0), 2 * childSize, affine));
+  }
+  return outcome;
+}
+
+// The cells above those of a level, in the order of their first child, and their children.
+std::vector<ChildCells> findCells(Level& below, Level& above) {
+  std::vector<ChildCells> children;
+  below.parentCells.resize(below.cells.size());
+  for (std::uint32_t i = 0; i < below.cells.size(); ++i) {
+    const openvdb::Coord& cell = below.cells[i];
+    const openvdb::Coord parent(cell[0] >> 1, cell[1] >> 1, cell[2] >> 1);
+    const auto [entry, fresh] =
+        above.indices.try_emplace(parent, static_cast<std::uint32_t>(above.cells.size()));
+    if (fresh) {
+      above.cells.push_back(parent);
+      children.emplace_back().fill(kNone);
+    }
+    below.parentCells[i] = entry->second;
+    children[entry->second][(cell[0] & 1) * 4 + (cell[1] & 1) * 2 + (cell[2] & 1)] = i;
+  }
+  return children;
+}
+
+}  // namespace
+
+LevelPatches buildLevelAbove(LevelPatches& below, const base::Affine& affine, base::Job& job) {
+  LevelPatches above;
+  Level& level = above.level;
+  level.level = below.level.level + 1;
+  const std::vector<ChildCells> children = findCells(below.level, level);
+  std::vector<Outcome> outcomes(level.cells.size());
+  job.forRanges(outcomes.size(), 16, [&](std::size_t begin, std::size_t end) {
+    PatchJoiner joiner;
+    for (std::size_t i = begin; i < end; ++i) {
+      outcomes[i] = tryCell(below, children[i], affine, joiner);
+    }
+  });
+  level.safe.resize(outcomes.size());
+  level.first.reserve(outcomes.size() + 1);
+  level.first.push_back(0);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    Outcome& outcome = outcomes[i];
+    level.safe[i] = outcome.safe ? 1 : 0;
+    const auto first = static_cast<std::uint32_t>(level.clusters.size());
+    std::size_t next = 0;
+    for (const std::uint32_t child : children[i]) {
+      if (!outcome.safe || child == kNone) continue;
+      for (std::uint32_t c = below.level.first[child]; c < below.level.first[child + 1]; ++c) {
+        below.level.clusters[c].parent = first + outcome.parents[next++];
+      }
+    }
+    level.clusters.insert(level.clusters.end(), outcome.clusters.begin(), outcome.clusters.end());
+    above.patches.insert(above.patches.end(), outcome.patches.begin(), outcome.patches.end());
+    level.first.push_back(static_cast<std::uint32_t>(level.clusters.size()));
+    outcome = {};
+  }
+  return above;
+}
+
+}  // namespace tufa::forest

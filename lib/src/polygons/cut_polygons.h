@@ -1,0 +1,24 @@
+#pragma once
+
+#include <tufa/mesh.h>
+
+#include "base/affine.h"
+#include "base/job.h"
+#include "cut/cut.h"
+#include "forest/forest.h"
+
+namespace tufa::polygons {
+
+/// A mesh taken from a cut, and the base quads that its polygons come from.
+struct CutMesh {
+  Mesh mesh;
+  std::vector<std::uint32_t> quadSources;      ///< base quad of each quad
+  std::vector<std::uint32_t> triangleSources;  ///< base quad of each triangle
+};
+
+/// The mesh of a cut: of every base quad the distinct vertices of the cut in their order; four make
+/// a quad, three a triangle, fewer nothing. Quads start where their better diagonal does.
+[[nodiscard]] CutMesh meshCut(const forest::Forest& forest, const cut::Cut& cut, const Mesh& base,
+                              const base::Affine& affine, base::Job& job);
+
+}  // namespace tufa::polygons
