@@ -5,6 +5,7 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -27,6 +28,8 @@ struct MeshArguments {
   std::string output;
   std::optional<std::string> grid;
   ContourOptions contour;
+  std::string tolerance = "0.1";
+  std::optional<std::string> toleranceGrid;
   bool check = false;
   bool json = false;
   bool quiet = false;
@@ -71,6 +74,29 @@ void requireSurface(const MeshRun& run, const openvdb::GridBase& grid, const std
                                               grid.getName() + "\" in " + file + " " + range);
 }
 
+/// "0.1" is in voxels, "0.1w" in world units.
+double readTolerance(const std::string& text, const openvdb::GridBase& grid) {
+  const bool world = !text.empty() && text.back() == 'w';
+  const std::string number = world ? text.substr(0, text.size() - 1) : text;
+  double value = 0;
+  if (!CLI::detail::lexical_cast(number, value) || !(value >= 0)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--tolerance must be a number of voxels, or of world units with the suffix w, not \"" +
+                    text + "\"");
+  }
+  return world ? value / std::cbrt(grid.transform().voxelVolume()) : value;
+}
+
+openvdb::FloatGrid::ConstPtr readToleranceGrid(const std::string& file, const std::string& name) {
+  const openvdb::GridBase::Ptr grid = readGrid(file, name);
+  if (!grid->isType<openvdb::FloatGrid>()) {
+    throw Error(ErrorCode::UnsupportedGrid, "the tolerance grid \"" + name + "\" in " + file +
+                                                " holds " + grid->valueType() +
+                                                " values; it must be a float grid");
+  }
+  return openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+}
+
 MeshRun runStages(const MeshArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   MeshRun run;
@@ -80,6 +106,10 @@ MeshRun runStages(const MeshArguments& arguments) {
   requireVoxels(*grid, arguments.input);
 
   ContourOptions contourOptions = arguments.contour;
+  contourOptions.tolerance = readTolerance(arguments.tolerance, *grid);
+  if (arguments.toleranceGrid) {
+    contourOptions.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
+  }
   contourOptions.progress = bar.callback();
   run.contourSeconds = timed([&] { run.mesh = contour(*grid, contourOptions, &run.contour); });
   requireSurface(run, *grid, arguments.input);
@@ -115,6 +145,15 @@ Json runToJson(const MeshRun& run, const MeshArguments& arguments) {
   json["vertices"] = run.mesh.positions.size();
   json["triangles"] = run.mesh.triangleCount();
   json["quads"] = run.mesh.quads.size();
+  if (run.contour.certificate) {
+    const Certificate& certificate = *run.contour.certificate;
+    json["certificate"] = {{"max_error_voxels", certificate.maxErrorVoxels},
+                           {"mean_error_voxels", certificate.meanErrorVoxels},
+                           {"max_error_world", certificate.maxErrorWorld},
+                           {"euler_characteristic", certificate.eulerCharacteristic},
+                           {"leaf_levels", certificate.leafLevels},
+                           {"rounds", certificate.rounds}};
+  }
   Json stages = Json::object();
   for (const StageTime& stage : run.contour.stages) stages[stage.stage] = stage.seconds;
   json["seconds"] = {{"read", run.readSeconds},
@@ -128,6 +167,17 @@ Json runToJson(const MeshRun& run, const MeshArguments& arguments) {
   return json;
 }
 
+std::string describeCertificate(const Certificate& certificate) {
+  std::string text = "within " + formatNumber(certificate.maxErrorVoxels) + " voxels (" +
+                     formatNumber(certificate.maxErrorWorld) + " world units) of the uniform mesh, " +
+                     formatNumber(certificate.meanErrorVoxels) + " on average; leaves of";
+  for (std::size_t level = 0; level < certificate.leafLevels.size(); ++level) {
+    text += (level == 0 ? " " : ", ") + std::to_string(std::size_t{1} << level) + ": " +
+            formatCount(certificate.leafLevels[level]);
+  }
+  return text + "\n";
+}
+
 std::string summary(const MeshRun& run, const MeshArguments& arguments) {
   const double total = run.readSeconds + run.contourSeconds + run.checkSeconds + run.writeSeconds;
   std::string text = arguments.output + ": " + formatCount(run.mesh.triangleCount()) +
@@ -139,6 +189,7 @@ std::string summary(const MeshRun& run, const MeshArguments& arguments) {
   text += formatNumber(total) + " s: read " + formatNumber(run.readSeconds) + ", contour " +
           formatNumber(run.contourSeconds) + ", check " + formatNumber(run.checkSeconds) +
           ", write " + formatNumber(run.writeSeconds) + "\n";
+  if (run.contour.certificate) text += describeCertificate(*run.contour.certificate);
   if (run.check) text += describe(*run.check);
   return text;
 }
@@ -209,6 +260,24 @@ void addChoice(CLI::App& app, const std::string& name, Enum& value,
       ->check(CLI::IsMember(names));
 }
 
+void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
+  ContourOptions& options = arguments.contour;
+  app.add_option("--tolerance", arguments.tolerance,
+                 "largest distance to the uniform mesh, in voxels, or with the suffix w in world "
+                 "units")
+      ->capture_default_str();
+  app.add_option("--max-angle", options.maxAngle,
+                 "largest angle between the normals in one cell, in degrees")
+      ->capture_default_str();
+  app.add_option("--min-cell", options.minCell,
+                 "size in voxels up to which cells are merged whatever the tolerance")
+      ->capture_default_str();
+  app.add_option("--max-cell", options.maxCell, "size in voxels of the largest cells");
+  app.add_option("--tolerance-grid", arguments.toleranceGrid,
+                 "float grid of the file that multiplies the tolerance in space");
+  app.add_flag("--uniform", options.uniform, "do not merge cells");
+}
+
 void addContourOptions(CLI::App& app, ContourOptions& options) {
   app.add_option("--iso", options.isovalue,
                  "value on the surface; default: 0 for level sets, else half way between the "
@@ -245,6 +314,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
                    "the mesh to write: .ply (binary), .obj, .stl, .off or .glb")
       ->required();
   mesh->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
+  addAdaptiveOptions(*mesh, *arguments);
   addContourOptions(*mesh, arguments->contour);
   mesh->add_flag("--check", arguments->check, "check the mesh; exit 1 if it is not watertight");
   mesh->add_flag("--json", arguments->json, "one JSON object on standard output");

@@ -7,23 +7,46 @@
 #include "base/job.h"
 #include "blocks/blocks.h"
 #include "blocks/field.h"
+#include "certify/adapt.h"
 #include "components/topology.h"
 #include "creases/promote.h"
+#include "cut/cut_rule.h"
+#include "forest/forest.h"
 #include "polygons/base_quads.h"
 #include "vertices/place_vertices.h"
 
 namespace tufa {
 namespace {
 
+// The end of a call's progress that each stage reaches, uniform or not.
+struct StageEnds {
+  double blocks, topology, vertices, polygons, creases, forest, cut;
+};
+constexpr StageEnds kUniformEnds = {0.15, 0.3, 0.75, 0.95, 1.0, 1.0, 1.0};
+constexpr StageEnds kAdaptiveEnds = {0.08, 0.15, 0.36, 0.46, 0.5, 0.75, 1.0};
+
+// The lowest corner of all blocks: a grid that is moved by whole blocks keeps it in its place.
+template <class TreeT>
+openvdb::Coord lowestOrigin(const blocks::Blocks<TreeT>& blocks) {
+  if (blocks.count() == 0) return openvdb::Coord(0);
+  openvdb::Coord lowest = blocks.origin(0);
+  for (std::size_t i = 1; i < blocks.count(); ++i) {
+    lowest.minComponent(blocks.origin(static_cast<blocks::BlockRef>(i)));
+  }
+  return lowest;
+}
+
 template <class TreeT>
 Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options,
                  ContourReport& report, base::Job& job) {
-  job.beginStage("blocks", 0.15);
+  const StageEnds& ends = options.uniform ? kUniformEnds : kAdaptiveEnds;
+  const cut::CutRule rule = cut::readRule(options, grid.transform());
+  job.beginStage("blocks", ends.blocks);
   const blocks::IsoChoice iso = blocks::chooseIsovalue(grid, options.isovalue, options.inside);
   const blocks::Blocks<TreeT> blocks(grid.tree(), iso, options.nonFinite, job);
   const blocks::FieldScale scale = blocks::readFieldScale(grid, iso);
 
-  job.beginStage("topology", 0.3);
+  job.beginStage("topology", ends.topology);
   const components::Topology topology =
       components::buildTopology(blocks, scale, options.ambiguity, options.cap, job);
   if (topology.vertexCount > std::numeric_limits<VertexIndex>::max()) {
@@ -32,24 +55,37 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
                     " vertices, more than 32-bit indices can name; use a coarser grid");
   }
 
-  job.beginStage("vertices", 0.75);
+  job.beginStage("vertices", ends.vertices);
   Mesh mesh;
-  const base::Affine affine(grid.transform());
-  const bool normals = options.normals == Normals::Gradient || scale.distance;
+  const base::Affine affine(grid.transform(), lowestOrigin(blocks));
+  const bool normals =
+      options.normals == Normals::Gradient || scale.distance || !options.uniform;
   creases::VertexSides sides =
       vertices::placeVertices(blocks, scale, topology, affine, normals, mesh, job);
 
-  job.beginStage("polygons", 0.95);
+  job.beginStage("polygons", ends.polygons);
   const polygons::QuadContext<TreeT> quads{blocks, topology, scale, affine, sides};
   polygons::connectQuads(quads, mesh, job);
 
-  job.beginStage("creases", 1.0);
+  job.beginStage("creases", ends.creases);
   if (scale.distance) {
     creases::promoteToCreases(mesh, sides, affine.voxelSize(), job);
     polygons::splitAtCreases(quads, mesh, job);
   }
+  if (!options.uniform && !mesh.positions.empty()) {
+    const forest::Base<TreeT> base{blocks, topology, affine, mesh, sides};
+    job.beginStage("forest", ends.forest);
+    const forest::Forest forest = forest::buildForest(base, rule.maxLevel, job);
+    job.beginStage("cut", ends.cut);
+    certify::AdaptiveMesh adaptive = certify::adapt(base, forest, rule, job);
+    report.certificate = certify::certificateOf(adaptive, affine.voxelSize());
+    mesh = std::move(adaptive.mesh);
+  }
   if (options.normals == Normals::Faces) vertices::setFaceNormals(mesh, job);
   if (options.normals == Normals::None) mesh.normals = {};
+  job.forRanges(mesh.positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);
+  });
 
   report.isovalue = iso.isovalue;
   report.insideIsBelow = iso.insideIsBelow;

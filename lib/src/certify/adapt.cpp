@@ -1,5 +1,8 @@
 #include "certify/adapt.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace tufa::certify {
 namespace {
 
@@ -18,27 +21,53 @@ bool splitCells(const std::vector<VertexIndex>& vertices, const cut::Cut& cut, i
   return any;
 }
 
+// Vertices - edges + faces. Edges are told apart by sorting, as the mesh may be open.
+std::int64_t eulerCharacteristic(const Mesh& mesh) {
+  std::vector<std::pair<VertexIndex, VertexIndex>> edges;
+  edges.reserve(3 * mesh.triangles.size() + 4 * mesh.quads.size());
+  const auto add = [&](const auto& vertices) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const VertexIndex a = vertices[i], b = vertices[(i + 1) % vertices.size()];
+      edges.emplace_back(std::min(a, b), std::max(a, b));
+    }
+  };
+  for (const Triangle& triangle : mesh.triangles) add(triangle.vertices);
+  for (const Quad& quad : mesh.quads) add(quad.vertices);
+  std::sort(edges.begin(), edges.end());
+  const auto distinct = std::unique(edges.begin(), edges.end()) - edges.begin();
+  return static_cast<std::int64_t>(mesh.positions.size()) - distinct +
+         static_cast<std::int64_t>(mesh.triangles.size() + mesh.quads.size());
+}
+
 }  // namespace
 
 template <class TreeT>
 AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
                    const cut::CutRule& rule, base::Job& job) {
   const BaseSurface<TreeT> surface(base, forest.levels[0], job);
-  const std::function<double(const openvdb::Vec3d&)> tolerance =
-      [&rule](const openvdb::Vec3d& point) {
-        return rule.scale ? rule.tolerance * rule.scale(point) : rule.tolerance;
-      };
   cut::CellFlags forbidden(forest);
   for (int round = 1;; ++round) {
-    cut::CellFlags merged = cut::mergeCells(forest, base.topology, rule, forbidden, job);
+    const cut::CellFlags merged = cut::mergeCells(forest, base.topology, rule, forbidden, job);
     const cut::Cut cut = cut::makeCut(forest, base.topology, merged, job);
     polygons::CutMesh made = polygons::meshCut(forest, cut, base.mesh, base.affine, job);
     const Deviation deviation =
-        measureDeviation(base, surface, {cut, made.mesh}, tolerance, job);
+        measureDeviation(base, surface, {cut, made}, rule, job);
     if (!splitCells(deviation.coarse, cut, rule.minLevel, forbidden)) {
-      return {std::move(made.mesh), std::move(merged), deviation.largest, deviation.mean, round};
+      return {std::move(made.mesh), cut::countLeaves(forest, base.topology, merged),
+              deviation.largest, deviation.mean, round};
     }
   }
+}
+
+Certificate certificateOf(const AdaptiveMesh& adaptive, double voxelSize) {
+  Certificate certificate;
+  certificate.maxErrorVoxels = adaptive.largestError;
+  certificate.meanErrorVoxels = adaptive.meanError;
+  certificate.maxErrorWorld = adaptive.largestError * voxelSize;
+  certificate.eulerCharacteristic = eulerCharacteristic(adaptive.mesh);
+  certificate.leafLevels = adaptive.leafLevels;
+  certificate.rounds = adaptive.rounds;
+  return certificate;
 }
 
 template AdaptiveMesh adapt(const forest::Base<openvdb::FloatTree>&, const forest::Forest&,

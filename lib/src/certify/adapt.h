@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tufa/contour.h>
+
 #include "certify/certificate.h"
 #include "cut/leaves.h"
 #include "forest/forest.h"
@@ -10,7 +12,7 @@ namespace tufa::certify {
 /// The coarsest mesh found that keeps a rule, and how far it is from the base mesh.
 struct AdaptiveMesh {
   Mesh mesh;
-  cut::CellFlags merged;  ///< the octree it was taken from
+  std::vector<std::size_t> leafLevels;  ///< surface cells that are leaves, by level
   double largestError = 0;  ///< voxels
   double meanError = 0;     ///< voxels
   int rounds = 0;           ///< meshes made and measured
@@ -21,5 +23,8 @@ struct AdaptiveMesh {
 template <class TreeT>
 [[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
                                  const cut::CutRule& rule, base::Job& job);
+
+/// The certificate of an adaptive mesh; `voxelSize` is in world units.
+[[nodiscard]] Certificate certificateOf(const AdaptiveMesh& adaptive, double voxelSize);
 
 }  // namespace tufa::certify

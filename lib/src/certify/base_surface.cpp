@@ -22,6 +22,29 @@ constexpr double kFacing = 0.2;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
+// The blocks around a point, each looked up once: entry by the lowest bits of its coordinates.
+class BlockCache {
+ public:
+  explicit BlockCache(const forest::Level& blocks) : blocks_(blocks) {}
+
+  [[nodiscard]] std::uint32_t at(const Coord& cell) {
+    const Coord wanted(cell[0] >> 3, cell[1] >> 3, cell[2] >> 3);
+    const int slot = (wanted[0] & 1) * 4 + (wanted[1] & 1) * 2 + (wanted[2] & 1);
+    Entry& entry = entries_[slot];
+    if (!entry.filled || entry.cell != wanted) entry = {true, wanted, blocks_.find(wanted)};
+    return entry.block;
+  }
+
+ private:
+  struct Entry {
+    bool filled = false;
+    Coord cell;
+    std::uint32_t block = forest::kNone;
+  };
+  const forest::Level& blocks_;
+  std::array<Entry, 8> entries_;
+};
+
 }  // namespace
 
 template <class TreeT>
@@ -79,6 +102,7 @@ typename BaseSurface<TreeT>::Near BaseSurface<TreeT>::nearestVertex(const Vec3d&
   const Vec3d at =
       base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + Coord::floor(at);
+  BlockCache blocks(blockCells_);
   Near near;
   // Rings of cells outward, one more after the first that holds a vertex: it may hold a nearer one.
   for (int radius = 1; radius <= reach; ++radius) {
@@ -88,7 +112,7 @@ typename BaseSurface<TreeT>::Near BaseSurface<TreeT>::nearestVertex(const Vec3d&
         const bool inside = std::max(std::abs(x), std::abs(y)) < radius && radius > 1;
         for (int z = -radius; z <= radius; z += inside ? 2 * radius : 1) {
           const Coord cell = middle.offsetBy(x, y, z);
-          const std::uint32_t block = blockAt(cell);
+          const std::uint32_t block = blocks.at(cell);
           if (block == forest::kNone) continue;
           const int local = blocks::cellIndex(cell[0] & 7, cell[1] & 7, cell[2] & 7);
           if (base_.topology.blocks[block].cells.get(local)) {
@@ -100,6 +124,21 @@ typename BaseSurface<TreeT>::Near BaseSurface<TreeT>::nearestVertex(const Vec3d&
     if (last || (radius == 1 && near.block != forest::kNone)) break;
   }
   return near;
+}
+
+template <class TreeT>
+double BaseSurface<TreeT>::distanceToQuad(const Vec3d& point, std::size_t quad) const {
+  const auto& v = base_.mesh.quads[quad].vertices;
+  const Vec3d p[4] = {vectorOf(base_.mesh.positions[v[0]]), vectorOf(base_.mesh.positions[v[1]]),
+                      vectorOf(base_.mesh.positions[v[2]]), vectorOf(base_.mesh.positions[v[3]])};
+  double best = std::numeric_limits<double>::infinity();
+  Vec3d weights;
+  for (int i = 1; i <= 2; ++i) {
+    const Vec3d foot =
+        openvdb::math::closestPointOnTriangleToPoint(p[0], p[i], p[i + 1], point, weights);
+    best = std::min(best, (foot - point).lengthSqr());
+  }
+  return std::sqrt(best);
 }
 
 template <class TreeT>
@@ -123,17 +162,9 @@ double BaseSurface<TreeT>::distance(const Vec3d& point, const Vec3d& facing, int
     const std::size_t index = base_.topology.blocks[block].firstQuad +
                               edges_[block].before[axis][x & 7] +
                               static_cast<std::size_t>(base::countBits(crossed & base::bitsBelow(bit)));
-    const auto& v = base_.mesh.quads[index].vertices;
-    const Vec3d p[4] = {vectorOf(base_.mesh.positions[v[0]]), vectorOf(base_.mesh.positions[v[1]]),
-                        vectorOf(base_.mesh.positions[v[2]]), vectorOf(base_.mesh.positions[v[3]])};
-    Vec3d weights;
-    for (int i = 1; i <= 2; ++i) {
-      const Vec3d foot =
-          openvdb::math::closestPointOnTriangleToPoint(p[0], p[i], p[i + 1], point, weights);
-      best = std::min(best, (foot - point).lengthSqr());
-    }
+    best = std::min(best, distanceToQuad(point, index));
   }
-  return std::sqrt(best);
+  return best;
 }
 
 template class BaseSurface<openvdb::FloatTree>;

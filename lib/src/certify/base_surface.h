@@ -19,6 +19,8 @@ class BaseSurface {
   /// `facing`. Looks `reach` cells far; infinite if there is no such vertex. World units.
   [[nodiscard]] double distance(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
                                 int reach) const;
+  /// The distance from `point` to one base quad.
+  [[nodiscard]] double distanceToQuad(const openvdb::Vec3d& point, std::size_t quad) const;
 
  private:
   // Ranks of the crossed edges that start in a block: the quads of the block.
@@ -32,9 +34,6 @@ class BaseSurface {
     double squared = std::numeric_limits<double>::infinity();
   };
 
-  [[nodiscard]] std::uint32_t blockAt(const openvdb::Coord& cell) const {
-    return blockCells_.find(openvdb::Coord(cell[0] >> 3, cell[1] >> 3, cell[2] >> 3));
-  }
   void searchCell(std::uint32_t block, int cell, const openvdb::Vec3d& point,
                   const openvdb::Vec3d& facing, Near& near) const;
   [[nodiscard]] Near nearestVertex(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,

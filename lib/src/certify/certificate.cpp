@@ -18,9 +18,9 @@ constexpr std::size_t kChunk = 2048;
 // a patch from its triangle changes no faster than the patch bends.
 constexpr int kMostSteps = 6;
 
-// Cells to search around a sample, at first and, where nothing was found, at last.
-constexpr double kLongestReach = 32;
-constexpr int kLastReach = 64;
+// Most voxels to search around a sample beyond the nearest cells. What is farther is measured to the
+// base quad that the polygon comes from.
+constexpr double kLongestReach = 16;
 
 // What a chunk of points or polygons found. Summed up in order, so that the mean is the same for any
 // number of threads.
@@ -37,10 +37,10 @@ template <class TreeT>
 class Measure {
  public:
   Measure(const forest::Base<TreeT>& base, const BaseSurface<TreeT>& surface,
-          const Candidate& candidate, const std::function<double(const Vec3d&)>& tolerance,
+          const Candidate& candidate, const cut::CutRule& rule,
           base::Job& job)
-      : base_(base), surface_(surface), cut_(candidate.cut), mesh_(candidate.mesh),
-        tolerance_(tolerance), job_(job) {}
+      : base_(base), surface_(surface), cut_(candidate.cut), made_(candidate.made), mesh_(candidate.made.mesh),
+        rule_(rule), job_(job) {}
 
   Deviation run() {
     collectTriangles();
@@ -65,34 +65,43 @@ class Measure {
   }
 
  private:
+  // The three vertices of a triangle and, if it is half of a quad, the fourth, else the
+  // first again.
+  using Corners = std::array<VertexIndex, 4>;
+  static int countOf(const Corners& corners) { return corners[3] == corners[0] ? 3 : 4; }
+
   [[nodiscard]] bool isFine(VertexIndex vertex) const { return cut_.clusters[vertex].level == 0; }
 
-  // The triangles that are not the base mesh's own, and for each vertex those around it.
+  // The triangles that are not the base mesh's own, and for each vertex those of the polygons around
+  // it.
   void collectTriangles() {
-    const auto take = [&](VertexIndex a, VertexIndex b, VertexIndex c) {
-      vertices_.push_back({a, b, c});
+    const auto take = [&](VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d,
+                          std::uint32_t source) {
+      polygons_.push_back({a, b, c, d});
+      sources_.push_back(source);
       triangles_.emplace_back(vectorOf(mesh_.positions[a]), vectorOf(mesh_.positions[b]),
                               vectorOf(mesh_.positions[c]));
     };
     // A triangle from a base quad has lost a corner, so at least one of its own is of a larger cell.
-    for (const Triangle& triangle : mesh_.triangles) {
-      take(triangle.vertices[0], triangle.vertices[1], triangle.vertices[2]);
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const auto& v = mesh_.triangles[i].vertices;
+      take(v[0], v[1], v[2], v[0], made_.triangleSources[i]);
     }
-    for (const Quad& quad : mesh_.quads) {
-      const auto& v = quad.vertices;
-      if (std::all_of(v.begin(), v.end(), [&](VertexIndex i) { return isFine(i); })) continue;
-      take(v[0], v[1], v[2]);
-      take(v[0], v[2], v[3]);
+    for (std::size_t i = 0; i < mesh_.quads.size(); ++i) {
+      const auto& v = mesh_.quads[i].vertices;
+      if (std::all_of(v.begin(), v.end(), [&](VertexIndex vertex) { return isFine(vertex); })) continue;
+      take(v[0], v[1], v[2], v[3], made_.quadSources[i]);
+      take(v[0], v[2], v[3], v[1], made_.quadSources[i]);
     }
     firstAround_.assign(mesh_.positions.size() + 1, 0);
-    for (const auto& triangle : vertices_) {
-      for (const VertexIndex vertex : triangle) ++firstAround_[vertex + 1];
+    for (const Corners& corners : polygons_) {
+      for (int i = 0; i < countOf(corners); ++i) ++firstAround_[corners[i] + 1];
     }
     for (std::size_t i = 1; i < firstAround_.size(); ++i) firstAround_[i] += firstAround_[i - 1];
-    around_.resize(3 * vertices_.size());
+    around_.resize(firstAround_.back());
     std::vector<std::uint32_t> next(firstAround_.begin(), firstAround_.end() - 1);
-    for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
-      for (const VertexIndex vertex : vertices_[i]) around_[next[vertex]++] = i;
+    for (std::uint32_t t = 0; t < polygons_.size(); ++t) {
+      for (int i = 0; i < countOf(polygons_[t]); ++i) around_[next[polygons_[t][i]]++] = t;
     }
   }
 
@@ -138,9 +147,15 @@ class Measure {
   }
 
   void checkTriangle(std::size_t index, Part& part) const {
-    const auto& v = vertices_[index];
+    const Corners& v = polygons_[index];
     const Vec3d a = vectorOf(mesh_.positions[v[0]]), b = vectorOf(mesh_.positions[v[1]]),
                 c = vectorOf(mesh_.positions[v[2]]);
+    Vec3d facing(0.0);
+    for (const VertexIndex vertex : v) {
+      const Normal& n = mesh_.normals[vertex];
+      facing += Vec3d(n.x, n.y, n.z);
+    }
+    facing.normalize();
     const double voxel = base_.affine.voxelSize();
     const double longest =
         std::sqrt(std::max({(b - a).lengthSqr(), (c - b).lengthSqr(), (a - c).lengthSqr()})) / voxel;
@@ -149,21 +164,20 @@ class Measure {
       for (int j = 0; i + j <= steps; ++j) {
         const Vec3d point = a + (b - a) * (static_cast<double>(i) / steps) +
                             (c - a) * (static_cast<double>(j) / steps);
-        const double bound = tolerance_(latticePoint(point)) * voxel;
+        const double bound = toleranceAt(point) * voxel;
         const int reach = 3 + static_cast<int>(std::min(kLongestReach, bound / voxel));
-        double distance = surface_.distance(point, triangles_[index].normal(), reach);
-        if (std::isinf(distance)) {
-          distance = surface_.distance(point, triangles_[index].normal(), kLastReach);
-        }
+        const double distance = std::min(surface_.distance(point, facing, reach),
+                                         surface_.distanceToQuad(point, sources_[index]));
         note(point, distance, static_cast<std::uint32_t>(index), false, part);
       }
     }
   }
 
-  [[nodiscard]] Vec3d latticePoint(const Vec3d& point) const {
+  [[nodiscard]] double toleranceAt(const Vec3d& point) const {
+    if (!rule_.scale) return rule_.tolerance;
     const openvdb::Coord& origin = base_.affine.origin();
-    return base_.affine.latticePoint({point[0], point[1], point[2]}, origin) +
-           origin.asVec3d();
+    return rule_.toleranceAt(base_.affine.latticePoint({point[0], point[1], point[2]}, origin) +
+                             origin.asVec3d());
   }
 
   // Takes a distance, in world units, into account; too large, the largest cells at `triangle` must be
@@ -173,12 +187,12 @@ class Measure {
     const double voxels = distance / base_.affine.voxelSize();
     part.largest = std::max(part.largest, voxels);
     if (mean) part.sum += voxels;
-    if (voxels <= tolerance_(latticePoint(point))) return;
+    if (voxels <= toleranceAt(point)) return;
     int level = 0;
-    for (const VertexIndex vertex : vertices_[triangle]) {
+    for (const VertexIndex vertex : polygons_[triangle]) {
       level = std::max(level, int{cut_.clusters[vertex].level});
     }
-    for (const VertexIndex vertex : vertices_[triangle]) {
+    for (const VertexIndex vertex : polygons_[triangle]) {
       if (level > 0 && cut_.clusters[vertex].level == level) part.coarse.push_back(vertex);
     }
   }
@@ -198,10 +212,12 @@ class Measure {
   const forest::Base<TreeT>& base_;
   const BaseSurface<TreeT>& surface_;
   const Cut& cut_;
+  const polygons::CutMesh& made_;
   const Mesh& mesh_;
-  const std::function<double(const Vec3d&)>& tolerance_;
+  const cut::CutRule& rule_;
   base::Job& job_;
-  std::vector<std::array<VertexIndex, 3>> vertices_;
+  std::vector<Corners> polygons_;  ///< of each triangle
+  std::vector<std::uint32_t> sources_;  ///< the base quad of each triangle
   std::vector<FlatTriangle> triangles_;
   std::vector<std::uint32_t> firstAround_;
   std::vector<std::uint32_t> around_;
@@ -212,15 +228,15 @@ class Measure {
 template <class TreeT>
 Deviation measureDeviation(const forest::Base<TreeT>& base, const BaseSurface<TreeT>& surface,
                            const Candidate& candidate,
-                           const std::function<double(const Vec3d&)>& tolerance, base::Job& job) {
-  return Measure<TreeT>(base, surface, candidate, tolerance, job).run();
+                           const cut::CutRule& rule, base::Job& job) {
+  return Measure<TreeT>(base, surface, candidate, rule, job).run();
 }
 
 template Deviation measureDeviation(const forest::Base<openvdb::FloatTree>&,
                                     const BaseSurface<openvdb::FloatTree>&, const Candidate&,
-                                    const std::function<double(const Vec3d&)>&, base::Job&);
+                                    const cut::CutRule&, base::Job&);
 template Deviation measureDeviation(const forest::Base<openvdb::DoubleTree>&,
                                     const BaseSurface<openvdb::DoubleTree>&, const Candidate&,
-                                    const std::function<double(const Vec3d&)>&, base::Job&);
+                                    const cut::CutRule&, base::Job&);
 
 }  // namespace tufa::certify

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <tufa/mesh.h>
 #include <vector>
 
@@ -8,13 +7,14 @@
 #include "certify/base_surface.h"
 #include "cut/cut.h"
 #include "forest/forest.h"
+#include "polygons/cut_polygons.h"
 
 namespace tufa::certify {
 
 /// A mesh made from a cut, as the certificate sees it.
 struct Candidate {
   const cut::Cut& cut;
-  const Mesh& mesh;
+  const polygons::CutMesh& made;
 };
 
 /// How far a mesh is from the base mesh, both ways, and where it is too far.
@@ -26,13 +26,12 @@ struct Deviation {
 
 /// Measures a mesh against its base mesh: every base vertex and the middle of every base quad against
 /// the polygons around its own clusters, and samples of every polygon against the base polygons below
-/// it. Each distance is one to a point found, so none is too small. `tolerance` gives the bound, in
-/// voxels, at a lattice point.
+/// it. Each distance is one to a point found, so none is too small. The bound is the rule's tolerance.
 template <class TreeT>
 [[nodiscard]] Deviation measureDeviation(const forest::Base<TreeT>& base,
                                          const BaseSurface<TreeT>& surface,
                                          const Candidate& candidate,
-                                         const std::function<double(const openvdb::Vec3d&)>& tolerance,
+                                         const cut::CutRule& rule,
                                          base::Job& job);
 
 }  // namespace tufa::certify

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/bits.h"
+
 namespace tufa::cut {
 
 using components::SurfaceBlock;
@@ -40,12 +42,9 @@ class Merger {
                                const openvdb::Vec3d& middle) const {
     if (level > rule_.maxLevel) return false;
     if (level <= rule_.minLevel) return true;
-    double tolerance = rule_.tolerance;
-    if (rule_.scale) {
-      tolerance *= rule_.scale(middle + openvdb::Vec3d(cluster.point[0], cluster.point[1],
-                                                       cluster.point[2]));
-    }
-    return cluster.error <= kErrorShare * tolerance && cluster.angle <= rule_.maxAngle;
+    const openvdb::Vec3d point(cluster.point[0], cluster.point[1], cluster.point[2]);
+    return cluster.error <= kErrorShare * rule_.toleranceAt(middle + point) &&
+           cluster.angle <= rule_.maxAngle;
   }
 
   [[nodiscard]] openvdb::Vec3d middleOf(std::size_t block, int level, int x, int y, int z) const {
@@ -189,6 +188,34 @@ CellFlags::CellFlags(const Forest& forest)
 CellFlags mergeCells(const Forest& forest, const Topology& topology, const CutRule& rule,
                      const CellFlags& forbidden, base::Job& job) {
   return Merger(forest, topology, rule, forbidden, job).merge();
+}
+
+std::vector<std::size_t> countLeaves(const Forest& forest, const Topology& topology,
+                                     const CellFlags& merged) {
+  std::vector<std::size_t> counts(3 + forest.levels.size());
+  for (std::size_t i = 0; i < forest.blocks.size(); ++i) {
+    const std::uint64_t merged1 = merged.level1[i];
+    for (int x = 0; x < blocks::kBlockSize; ++x) {
+      base::forEachBit(topology.blocks[i].cells.slabs[x], [&](int bit) {
+        const int parent = forest::cellIndex1(x >> 1, bit >> 4, (bit & 7) >> 1);
+        if (((merged1 >> parent) & 1) == 0) ++counts[0];
+      });
+    }
+    base::forEachBit(merged1, [&](int cell) {
+      const int parent = forest::cellIndex2(cell >> 5, (cell >> 3) & 1, (cell >> 1) & 1);
+      if (((merged.level2[i] >> parent) & 1) == 0) ++counts[1];
+    });
+    if (merged.levels[0][i] == 0) counts[2] += static_cast<std::size_t>(base::countBits(merged.level2[i]));
+  }
+  for (std::size_t l = 0; l < forest.levels.size(); ++l) {
+    const Level& level = forest.levels[l];
+    for (std::size_t i = 0; i < level.cells.size(); ++i) {
+      const bool below = !level.parentCells.empty() && merged.levels[l + 1][level.parentCells[i]] != 0;
+      if (merged.levels[l][i] != 0 && !below) ++counts[3 + l];
+    }
+  }
+  while (counts.size() > 1 && counts.back() == 0) counts.pop_back();
+  return counts;
 }
 
 }  // namespace tufa::cut

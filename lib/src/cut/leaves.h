@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <tufa/mesh.h>
 #include <vector>
 
 #include "base/job.h"
 #include "components/topology.h"
+#include "cut/cut_rule.h"
 #include "forest/forest.h"
 
 namespace tufa::cut {
@@ -20,16 +20,6 @@ struct CellFlags {
   explicit CellFlags(const forest::Forest& forest);
 };
 
-/// What a cluster must keep for its cell to become a leaf.
-struct CutRule {
-  double tolerance = 0;  ///< voxels; bound on a cluster's estimated error
-  double maxAngle = 4;   ///< radians; bound on the angle between two normals of a cluster
-  int minLevel = 0;      ///< cells up to this level need not keep the bounds above
-  int maxLevel = 31;     ///< no cell above this level
-  /// Multiplies the tolerance at a lattice point; empty: 1 everywhere.
-  std::function<double(const openvdb::Vec3d&)> scale;
-};
-
 /// The cells that a cut merges: the leaves of a restricted octree, and all cells below them. A cell is
 /// merged if it is safe, keeps the rule, is not forbidden, its children are merged, and so are all
 /// surface cells of its children's size that touch it: no two leaves that touch differ by more than
@@ -37,5 +27,10 @@ struct CutRule {
 [[nodiscard]] CellFlags mergeCells(const forest::Forest& forest,
                                    const components::Topology& topology, const CutRule& rule,
                                    const CellFlags& forbidden, base::Job& job);
+
+/// Number of surface cells that are leaves, by level.
+[[nodiscard]] std::vector<std::size_t> countLeaves(const forest::Forest& forest,
+                                                   const components::Topology& topology,
+                                                   const CellFlags& merged);
 
 }  // namespace tufa::cut

@@ -58,9 +58,12 @@ Forest buildForest(const Base<TreeT>& base, int maxLevel, base::Job& job) {
   LevelPatches top = buildBlocks(base, forest.blocks, job);
   while (top.level.level < maxLevel && !top.level.clusters.empty()) {
     LevelPatches above = buildLevelAbove(top, base.affine, job);
+    // Cells that never share a parent, such as those around the origin: larger ones change nothing.
+    if (above.level.cells.size() == top.level.cells.size()) break;
     forest.levels.push_back(std::move(top.level));
     top = std::move(above);
   }
+  top.level.parentCells = {};
   forest.levels.push_back(std::move(top.level));
   return forest;
 }

@@ -164,7 +164,8 @@ bool PatchJoiner::join(const Children& children) {
       return false;
     }
   }
-  for (std::uint32_t i = 0; i < count; ++i) parents_[i] = numbers_[root(i)];
+  // Downward: a root has a lower index than its members and must be there until they are done.
+  for (std::uint32_t i = count; i-- > 0;) parents_[i] = numbers_[root(i)];
   return std::all_of(patches_.begin(), patches_.end(), meetsFacesOnce);
 }
 

@@ -1,0 +1,56 @@
+#include "cut/cut_rule.h"
+
+#include <tufa/error.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "base/number_text.h"
+
+namespace tufa::cut {
+namespace {
+
+int levelOf(int size, const char* name) {
+  if (size >= 1 && std::has_single_bit(static_cast<unsigned>(size))) {
+    return std::countr_zero(static_cast<unsigned>(size));
+  }
+  throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be a power of two of 1 or more, not " +
+                                              std::to_string(size));
+}
+
+void requireRange(double value, double least, double greatest, const char* name) {
+  if (value >= least && value <= greatest) return;
+  throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be from " +
+                                              base::numberText(least) + " to " +
+                                              base::numberText(greatest) + ", not " +
+                                              base::numberText(value));
+}
+
+}  // namespace
+
+CutRule readRule(const ContourOptions& options, const openvdb::math::Transform& transform) {
+  requireRange(options.tolerance, 0, 1e6, "the tolerance");
+  requireRange(options.maxAngle, 0, 180, "the largest angle");
+  CutRule rule;
+  rule.tolerance = options.tolerance;
+  rule.maxAngle = options.maxAngle >= 180 ? 4 : options.maxAngle * std::numbers::pi / 180;
+  rule.minLevel = levelOf(options.minCell, "the smallest cell size");
+  rule.maxLevel = levelOf(options.maxCell, "the largest cell size");
+  if (rule.maxLevel < rule.minLevel) {
+    throw Error(ErrorCode::InvalidArgument, "the largest cell size must not be below the smallest");
+  }
+  if (options.toleranceGrid) {
+    rule.scale = [scales = options.toleranceGrid, transform = transform.copy()](
+                     const openvdb::Vec3d& point) {
+      const openvdb::Vec3d at =
+          scales->transform().worldToIndex(transform->indexToWorld(point));
+      const float value = scales->tree().getValue(openvdb::Coord::round(at));
+      return std::isfinite(value) ? std::max(0.0, static_cast<double>(value)) : 0.0;
+    };
+  }
+  return rule;
+}
+
+}  // namespace tufa::cut

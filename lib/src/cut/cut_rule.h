@@ -1,0 +1,29 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <functional>
+#include <tufa/contour.h>
+
+namespace tufa::cut {
+
+/// What a cluster must keep for its cell to become a leaf.
+struct CutRule {
+  double tolerance = 0;  ///< voxels; bound on a cluster's estimated error
+  double maxAngle = 4;   ///< radians; bound on the angle between two normals of a cluster
+  int minLevel = 0;      ///< cells up to this level need not keep the bounds above
+  int maxLevel = 31;     ///< no cell above this level
+  /// Multiplies the tolerance at a lattice point; empty: 1 everywhere.
+  std::function<double(const openvdb::Vec3d&)> scale;
+
+  [[nodiscard]] double toleranceAt(const openvdb::Vec3d& point) const {
+    return scale ? tolerance * scale(point) : tolerance;
+  }
+};
+
+/// The rule that the options of a call ask for. `transform` is the meshed grid's. Throws
+/// Error(InvalidArgument) for an option out of its range.
+[[nodiscard]] CutRule readRule(const ContourOptions& options,
+                               const openvdb::math::Transform& transform);
+
+}  // namespace tufa::cut
