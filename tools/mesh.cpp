@@ -80,9 +80,10 @@ double readTolerance(const std::string& text, const openvdb::GridBase& grid) {
   const std::string number = world ? text.substr(0, text.size() - 1) : text;
   double value = 0;
   if (!CLI::detail::lexical_cast(number, value) || !(value >= 0)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--tolerance must be a number of voxels, or of world units with the suffix w, not \"" +
-                    text + "\"");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--tolerance must be a number of voxels, or of world units with the suffix w, not \"" +
+            text + "\"");
   }
   return world ? value / std::cbrt(grid.transform().voxelVolume()) : value;
 }
@@ -169,7 +170,8 @@ Json runToJson(const MeshRun& run, const MeshArguments& arguments) {
 
 std::string describeCertificate(const Certificate& certificate) {
   std::string text = "within " + formatNumber(certificate.maxErrorVoxels) + " voxels (" +
-                     formatNumber(certificate.maxErrorWorld) + " world units) of the uniform mesh, " +
+                     formatNumber(certificate.maxErrorWorld) +
+                     " world units) of the uniform mesh, " +
                      formatNumber(certificate.meanErrorVoxels) + " on average; leaves of";
   for (std::size_t level = 0; level < certificate.leafLevels.size(); ++level) {
     text += (level == 0 ? " " : ", ") + std::to_string(std::size_t{1} << level) + ": " +

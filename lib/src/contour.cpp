@@ -58,8 +58,7 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
   job.beginStage("vertices", ends.vertices);
   Mesh mesh;
   const base::Affine affine(grid.transform(), lowestOrigin(blocks));
-  const bool normals =
-      options.normals == Normals::Gradient || scale.distance || !options.uniform;
+  const bool normals = options.normals == Normals::Gradient || scale.distance || !options.uniform;
   creases::VertexSides sides =
       vertices::placeVertices(blocks, scale, topology, affine, normals, mesh, job);
 
@@ -127,7 +126,8 @@ Mesh contour(const openvdb::GridBase& grid, const ContourOptions& options, Conto
   if (grid.isType<openvdb::DoubleGrid>()) {
     return runContour(static_cast<const openvdb::DoubleGrid&>(grid), options, report);
   }
-  (void)blocks::chooseIsovalue(grid, options.isovalue, options.inside);  // throws: not a scalar grid
+  (void)blocks::chooseIsovalue(grid, options.isovalue,
+                               options.inside);  // throws: not a scalar grid
   return {};
 }
 

@@ -55,19 +55,20 @@ struct ContourOptions {
   bool cap = false;
   /// Mesh every cell on its own, at the finest level, instead of adaptively.
   bool uniform = false;
-  /// Largest distance, both ways, between the adaptive mesh and the uniform one, in voxels (the cube
-  /// root of a voxel's world volume). Certified: it is measured, and cells are split until it holds.
+  /// Largest distance, both ways, between the adaptive mesh and the uniform one, in voxels (the
+  /// cube root of a voxel's world volume). Certified: it is measured, and cells are split until it
+  /// holds.
   double tolerance = 0.1;
   /// Largest angle between the normals of the surface that one cell gathers, in degrees: its cost
   /// follows curvature. 180: no bound.
   double maxAngle = 180;
-  /// Size in voxels, a power of two, up to which cells are merged whatever the tolerance, as long as
-  /// topology allows. The certificate then tells the error that came of it. 1: none.
+  /// Size in voxels, a power of two, up to which cells are merged whatever the tolerance, as long
+  /// as topology allows. The certificate then tells the error that came of it. 1: none.
   int minCell = 1;
   /// Size in voxels, a power of two, of the largest cells.
   int maxCell = 1 << 20;
-  /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world space.
-  /// Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
+  /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
+  /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
   openvdb::FloatGrid::ConstPtr toleranceGrid;
   /// Most threads to use; 0: as many as the caller's TBB arena allows. Never changes the result.
   int threads = 0;
@@ -82,9 +83,9 @@ struct StageTime {
 
 /// What is promised of an adaptive mesh.
 struct Certificate {
-  double maxErrorVoxels = 0;   ///< largest distance found, both ways, to the uniform mesh
-  double meanErrorVoxels = 0;  ///< mean over the vertices and quads of the uniform mesh
-  double maxErrorWorld = 0;    ///< maxErrorVoxels in world units
+  double maxErrorVoxels = 0;             ///< largest distance found, both ways, to the uniform mesh
+  double meanErrorVoxels = 0;            ///< mean over the vertices and quads of the uniform mesh
+  double maxErrorWorld = 0;              ///< maxErrorVoxels in world units
   std::int64_t eulerCharacteristic = 0;  ///< vertices - edges + faces
   /// Number of leaf cells of each level that the surface passes; a cell of level l has 2^l voxels
   /// along its edge.
@@ -100,19 +101,19 @@ struct ContourReport {
   std::size_t activeVoxels = 0;     ///< of the grid
   std::size_t nonFiniteValues = 0;  ///< treated as outside
   std::size_t surfaceCells = 0;     ///< cells of eight samples that the surface passes
-  std::size_t creaseCells = 0;    ///< of these, cells whose vertex was placed on a crease or corner
-  std::size_t faceFlips = 0;      ///< ambiguous faces joined against the rule to stay manifold
-  std::size_t cutEdges = 0;       ///< sign changes at the edge of the data, left open
+  std::size_t creaseCells = 0;  ///< of these, cells whose vertex was placed on a crease or corner
+  std::size_t faceFlips = 0;    ///< ambiguous faces joined against the rule to stay manifold
+  std::size_t cutEdges = 0;     ///< sign changes at the edge of the data, left open
   std::optional<Certificate> certificate;  ///< of an adaptive mesh
-  std::vector<StageTime> stages;  ///< in the order they ran
+  std::vector<StageTime> stages;           ///< in the order they ran
 };
 
 /// Meshes the surface of `grid` at the isovalue: dual contouring with one vertex for each surface
 /// component of a cell and one quad for each crossed lattice edge.
 ///
-/// Unless `uniform`, cells are merged into the leaves of a restricted octree where the surface is flat:
-/// each leaf has one vertex for each disk of surface in it, and the mesh keeps the topology of the
-/// uniform one.
+/// Unless `uniform`, cells are merged into the leaves of a restricted octree where the surface is
+/// flat: each leaf has one vertex for each disk of surface in it, and the mesh keeps the topology
+/// of the uniform one.
 ///
 /// The mesh is a closed, consistently oriented 2-manifold whenever the surface does not meet the
 /// edge of the data, in world space, outward by the right-hand rule under any affine transform. A
@@ -120,7 +121,8 @@ struct ContourReport {
 /// of threads. FloatGrid and DoubleGrid are supported.
 ///
 /// Throws Error: UnsupportedGrid (other value types, frustum transforms), NonFiniteValues,
-/// InvalidArgument (isovalue not finite, an option out of its range), LimitExceeded (2^32 vertices or more), Cancelled.
+/// InvalidArgument (isovalue not finite, an option out of its range), LimitExceeded (2^32 vertices
+/// or more), Cancelled.
 [[nodiscard]] Mesh contour(const openvdb::GridBase& grid, const ContourOptions& options = {},
                            ContourReport* report = nullptr);
 

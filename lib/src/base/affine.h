@@ -2,14 +2,14 @@
 
 #include <openvdb/openvdb.h>
 
-#include <cstdint>
 #include <tufa/mesh.h>
+#include <cstdint>
 
 namespace tufa::base {
 
 /// A linear transform from index to world space, taken apart for speed. Positions are counted from
-/// `origin`, a lattice point near the surface, so that they are the same digits wherever in the world
-/// the grid lies; toWorld() moves them there.
+/// `origin`, a lattice point near the surface, so that they are the same digits wherever in the
+/// world the grid lies; toWorld() moves them there.
 class Affine {
  public:
   explicit Affine(const openvdb::math::Transform& transform,

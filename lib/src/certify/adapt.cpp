@@ -15,7 +15,8 @@ bool splitCells(const std::vector<VertexIndex>& vertices, const cut::Cut& cut, i
     if (ref.level <= minLevel) continue;
     any = true;
     if (ref.level == 1) forbidden.level1[ref.parentCell] |= std::uint64_t{1} << ref.cell;
-    if (ref.level == 2) forbidden.level2[ref.parentCell] |= static_cast<std::uint8_t>(1 << ref.cell);
+    if (ref.level == 2)
+      forbidden.level2[ref.parentCell] |= static_cast<std::uint8_t>(1 << ref.cell);
     if (ref.level >= 3) forbidden.levels[ref.level - 3][ref.parentCell] = 1;
   }
   return any;
@@ -44,17 +45,22 @@ std::int64_t eulerCharacteristic(const Mesh& mesh) {
 template <class TreeT>
 AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
                    const cut::CutRule& rule, base::Job& job) {
-  const BaseSurface<TreeT> surface(base, forest.levels[0], job);
+  Certifier<TreeT> certifier(base, forest.levels[0], rule, job);
   cut::CellFlags forbidden(forest);
   for (int round = 1;; ++round) {
     const cut::CellFlags merged = cut::mergeCells(forest, base.topology, rule, forbidden, job);
     const cut::Cut cut = cut::makeCut(forest, base.topology, merged, job);
     polygons::CutMesh made = polygons::meshCut(forest, cut, base.mesh, base.affine, job);
-    const Deviation deviation =
-        measureDeviation(base, surface, {cut, made}, rule, job);
+    const Deviation deviation = certifier.measure(cut, made);
     if (!splitCells(deviation.coarse, cut, rule.minLevel, forbidden)) {
-      return {std::move(made.mesh), cut::countLeaves(forest, base.topology, merged),
-              deviation.largest, deviation.mean, round};
+      double largest = deviation.largest;
+      if (!deviation.coarse.empty()) {
+        // Cells that may not be split are off by more; what was kept from the cuts before is not in
+        // this one's worst.
+        largest = Certifier<TreeT>(base, forest.levels[0], rule, job).measure(cut, made).worst;
+      }
+      return {std::move(made.mesh), cut::countLeaves(forest, base.topology, merged), largest,
+              deviation.mean, round};
     }
   }
 }

@@ -13,9 +13,9 @@ namespace tufa::certify {
 struct AdaptiveMesh {
   Mesh mesh;
   std::vector<std::size_t> leafLevels;  ///< surface cells that are leaves, by level
-  double largestError = 0;  ///< voxels
-  double meanError = 0;     ///< voxels
-  int rounds = 0;           ///< meshes made and measured
+  double largestError = 0;              ///< voxels
+  double meanError = 0;                 ///< voxels
+  int rounds = 0;                       ///< meshes made and measured
 };
 
 /// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the

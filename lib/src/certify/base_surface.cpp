@@ -99,8 +99,7 @@ template <class TreeT>
 typename BaseSurface<TreeT>::Near BaseSurface<TreeT>::nearestVertex(const Vec3d& point,
                                                                     const Vec3d& facing,
                                                                     int reach) const {
-  const Vec3d at =
-      base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
+  const Vec3d at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + Coord::floor(at);
   BlockCache blocks(blockCells_);
   Near near;
@@ -159,9 +158,9 @@ double BaseSurface<TreeT>::distance(const Vec3d& point, const Vec3d& facing, int
     const int bit = (y & 7) * 8 + (z & 7);
     const std::uint64_t crossed = edges_[block].crossed[axis][x & 7];
     if (((crossed >> bit) & 1) == 0) continue;
-    const std::size_t index = base_.topology.blocks[block].firstQuad +
-                              edges_[block].before[axis][x & 7] +
-                              static_cast<std::size_t>(base::countBits(crossed & base::bitsBelow(bit)));
+    const std::size_t index =
+        base_.topology.blocks[block].firstQuad + edges_[block].before[axis][x & 7] +
+        static_cast<std::size_t>(base::countBits(crossed & base::bitsBelow(bit)));
     best = std::min(best, distanceToQuad(point, index));
   }
   return best;

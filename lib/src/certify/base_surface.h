@@ -14,9 +14,9 @@ class BaseSurface {
  public:
   BaseSurface(const forest::Base<TreeT>& base, const forest::Level& blockCells, base::Job& job);
 
-  /// An upper bound of the distance from `point` to the base mesh, exact if the nearest vertex has the
-  /// nearest polygon: to the polygons around the nearest base vertex that does not face away from
-  /// `facing`. Looks `reach` cells far; infinite if there is no such vertex. World units.
+  /// An upper bound of the distance from `point` to the base mesh, exact if the nearest vertex has
+  /// the nearest polygon: to the polygons around the nearest base vertex that does not face away
+  /// from `facing`. Looks `reach` cells far; infinite if there is no such vertex. World units.
   [[nodiscard]] double distance(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
                                 int reach) const;
   /// The distance from `point` to one base quad.

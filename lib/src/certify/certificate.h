@@ -1,37 +1,92 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <array>
 #include <vector>
 
 #include "base/job.h"
 #include "certify/base_surface.h"
+#include "certify/flat_triangle.h"
 #include "cut/cut.h"
 #include "forest/forest.h"
 #include "polygons/cut_polygons.h"
 
 namespace tufa::certify {
 
-/// A mesh made from a cut, as the certificate sees it.
-struct Candidate {
-  const cut::Cut& cut;
-  const polygons::CutMesh& made;
-};
-
 /// How far a mesh is from the base mesh, both ways, and where it is too far.
 struct Deviation {
-  double largest = 0;  ///< voxels
-  double mean = 0;     ///< voxels, over the points of the base mesh
+  double largest = 0;               ///< voxels; of what is within the tolerance
+  double worst = 0;                 ///< voxels; of all
+  double mean = 0;                  ///< voxels, over the vertices and quads of the base mesh
   std::vector<VertexIndex> coarse;  ///< vertices whose cells must be split, sorted
 };
 
-/// Measures a mesh against its base mesh: every base vertex and the middle of every base quad against
-/// the polygons around its own clusters, and samples of every polygon against the base polygons below
-/// it. Each distance is one to a point found, so none is too small. The bound is the rule's tolerance.
+/// Measures meshes taken from cuts against their base mesh: every base vertex and the middle of
+/// every base quad against the polygons around its own clusters; the vertices and samples inside
+/// every polygon against the base polygons below it. Each distance is one to a point found, so none
+/// is too small. The bound is the rule's tolerance.
+///
+/// From one cut to the next only what changed is measured again.
 template <class TreeT>
-[[nodiscard]] Deviation measureDeviation(const forest::Base<TreeT>& base,
-                                         const BaseSurface<TreeT>& surface,
-                                         const Candidate& candidate,
-                                         const cut::CutRule& rule,
-                                         base::Job& job);
+class Certifier {
+ public:
+  Certifier(const forest::Base<TreeT>& base, const forest::Level& blockCells,
+            const cut::CutRule& rule, base::Job& job);
+
+  /// The next cut and its mesh. `largest` counts samples of the cuts before, too.
+  [[nodiscard]] Deviation measure(const cut::Cut& cut, const polygons::CutMesh& made);
+
+ private:
+  // A triangle of the mesh that the base mesh does not have.
+  struct Piece {
+    // The corners of its polygon: the triangle's first, then a quad's fourth or the first again.
+    std::array<VertexIndex, 4> corners;
+    std::uint32_t source;  ///< the base quad its polygon comes from
+    FlatTriangle shape;
+  };
+  // What a range of points or triangles found.
+  struct Part {
+    double largest = 0;
+    double worst = 0;
+    double sum = 0;
+    std::vector<VertexIndex> coarse;
+  };
+
+  [[nodiscard]] bool isFine(VertexIndex vertex) const { return cut_->clusters[vertex].level == 0; }
+  void collectPieces();
+  void findChanges();
+  void measureVertex(std::size_t index, Part& part);
+  void measureQuad(std::size_t index, Part& part);
+  void measurePiece(std::size_t index, Part& part) const;
+  void measureCorner(VertexIndex vertex, Part& part) const;
+  [[nodiscard]] bool findAround(VertexIndex vertex, const openvdb::Vec3d& point, double& squared,
+                                std::uint32_t& nearest) const;
+  [[nodiscard]] float distanceAround(const VertexIndex* vertices, int count,
+                                     const openvdb::Vec3d& point, Part& part) const;
+  void note(const openvdb::Vec3d& point, double voxels, const VertexIndex* corners, int count,
+            Part& part) const;
+  [[nodiscard]] openvdb::Vec3d facing(const VertexIndex* vertices, int count) const;
+  [[nodiscard]] double toleranceAt(const openvdb::Vec3d& point) const;
+  [[nodiscard]] int reachAt(const openvdb::Vec3d& point) const;
+  template <class Body>
+  void forChunks(std::size_t count, const Body& body, Deviation& total, double& sum);
+
+  const forest::Base<TreeT>& base_;
+  BaseSurface<TreeT> surface_;
+  const cut::CutRule& rule_;
+  base::Job& job_;
+  const cut::Cut* cut_ = nullptr;
+  const polygons::CutMesh* made_ = nullptr;
+  std::vector<cut::ClusterRef> clusters_;  ///< of the cut before
+  std::vector<VertexIndex> vertexOf_;      ///< of the cut before
+  std::vector<std::uint8_t> changed_;      ///< vertices that the cut before did not have
+  std::vector<std::uint8_t> touched_;      ///< these and their neighbours
+  std::vector<float> vertexErrors_;        ///< of the base vertices, voxels
+  std::vector<float> quadErrors_;          ///< of the base quads, voxels
+  double largestKept_ = 0;                 ///< of the samples of polygons, over all cuts
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> firstAround_;  ///< of each vertex, its pieces in around_
+  std::vector<std::uint32_t> around_;
+};
 
 }  // namespace tufa::certify

@@ -2,9 +2,9 @@
 
 #include <openvdb/math/Proximity.h>
 
+#include <tufa/mesh.h>
 #include <array>
 #include <cmath>
-#include <tufa/mesh.h>
 
 namespace tufa::certify {
 
@@ -21,24 +21,25 @@ class FlatTriangle {
   }
   [[nodiscard]] const openvdb::Vec3d& normal() const { return normal_; }
 
-  /// Lowers `squared` to the squared distance of `point`, and says whether it did.
-  bool closer(const openvdb::Vec3d& point, double& squared) const {
+  /// Whether the point lies above or below the inside of the triangle. If so, `squared` becomes the
+  /// squared distance to its plane.
+  [[nodiscard]] bool isAbove(const openvdb::Vec3d& point, double& squared) const {
     const openvdb::Vec3d from = point - corners_[0];
-    const double height = normal_.dot(from);
-    if (height * height >= squared) return false;
-    const bool above = inward_[0].dot(from) >= 0 && inward_[1].dot(point - corners_[1]) >= 0 &&
-                       inward_[2].dot(from) >= 0 && normal_.lengthSqr() > 0.5;
-    double distance = height * height;
-    if (!above) {
-      openvdb::Vec3d weights;
-      distance = (openvdb::math::closestPointOnTriangleToPoint(corners_[0], corners_[1],
-                                                               corners_[2], point, weights) -
-                  point)
-                     .lengthSqr();
+    if (inward_[0].dot(from) < 0 || inward_[1].dot(point - corners_[1]) < 0 ||
+        inward_[2].dot(from) < 0 || normal_.lengthSqr() < 0.5) {
+      return false;
     }
-    if (distance >= squared) return false;
-    squared = distance;
+    const double height = normal_.dot(from);
+    squared = height * height;
     return true;
+  }
+  /// Squared distance of the point.
+  [[nodiscard]] double squaredDistance(const openvdb::Vec3d& point) const {
+    openvdb::Vec3d weights;
+    return (openvdb::math::closestPointOnTriangleToPoint(corners_[0], corners_[1], corners_[2],
+                                                         point, weights) -
+            point)
+        .lengthSqr();
   }
 
  private:

@@ -32,10 +32,14 @@ bool chordsMeetInside(const std::array<double, 4>& v) {
 
 bool joinsInside(Ambiguity rule, const std::array<double, 4>& values) {
   switch (rule) {
-    case Ambiguity::Separate: return false;
-    case Ambiguity::Join: return true;
-    case Ambiguity::Asymptotic: return saddleIsInside(values);
-    case Ambiguity::Chord: return chordsMeetInside(values);
+    case Ambiguity::Separate:
+      return false;
+    case Ambiguity::Join:
+      return true;
+    case Ambiguity::Asymptotic:
+      return saddleIsInside(values);
+    case Ambiguity::Chord:
+      return chordsMeetInside(values);
   }
   return false;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <tufa/contour.h>
+#include <array>
 
 namespace tufa::components {
 

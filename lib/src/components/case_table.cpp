@@ -28,9 +28,8 @@ constexpr Group kComponents = [] {
     for (int joined = 0; joined < 64; ++joined) {
       // Bits of faces that are not ambiguous mean nothing: take the entry without them.
       const int meant = joined & kAmbiguousFaces[mask];
-      group[i][joined] = meant == joined
-                             ? joinCrossings(mask, static_cast<FaceBits>(joined), 0)
-                             : group[i][meant];
+      group[i][joined] =
+          meant == joined ? joinCrossings(mask, static_cast<FaceBits>(joined), 0) : group[i][meant];
     }
   }
   return group;

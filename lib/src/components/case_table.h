@@ -119,8 +119,8 @@ inline constexpr Components joinCrossings(CornerMask mask, FaceBits joined, unsi
   for (int face = 0; face < kFaces; ++face) {
     const auto& edges = kFaceEdges[face];
     if (isAmbiguous(mask, face)) {
-      // An arc cuts off corner i between its edges i - 1 and i: around the inside corners, or, where
-      // those are joined, around the outside ones.
+      // An arc cuts off corner i between its edges i - 1 and i: around the inside corners, or,
+      // where those are joined, around the outside ones.
       const bool cutOffInside = ((joined >> face) & 1) == 0;
       const int first = isInside(mask, kFaceCorners[face][0]) == cutOffInside ? 0 : 1;
       join(edges[(first + 3) % 4], edges[first]);

@@ -345,7 +345,8 @@ class TopologyBuilder {
                                                       axis == 2 ? -1 : 0)];
         lowerCorners = blocks_.cornerWords(below->neighbours);
       }
-      if (topology_.ownsBothArcs(*below, lowerCell, cornerMask(lowerCorners, lowerCell), axis * 2 + 1)) {
+      if (topology_.ownsBothArcs(*below, lowerCell, cornerMask(lowerCorners, lowerCell),
+                                 axis * 2 + 1)) {
         bad.set(cell);
       }
     });

@@ -16,9 +16,9 @@ inline constexpr SurfaceBlockIndex kNoSurfaceBlock = ~SurfaceBlockIndex{0};
 
 /// A surface cell with other than one vertex.
 struct CellException {
-  std::uint16_t cell;       ///< cellIndex()
-  std::uint16_t count;      ///< vertices of this cell
-  std::int32_t extraBefore; ///< vertices beyond one a cell, of the cells before it in the block
+  std::uint16_t cell;        ///< cellIndex()
+  std::uint16_t count;       ///< vertices of this cell
+  std::int32_t extraBefore;  ///< vertices beyond one a cell, of the cells before it in the block
 };
 
 /// What few blocks need: how ambiguous faces are joined, which crossings are cut, which cells have
@@ -38,7 +38,7 @@ struct SurfaceBlock {
   blocks::BlockRef block = 0;
   std::int32_t special = -1;  ///< index among Topology::specials, or -1
   blocks::Neighbours neighbours{};
-  blocks::BlockBits cells;                 ///< the surface cells
+  blocks::BlockBits cells;                     ///< the surface cells
   std::array<std::uint16_t, 8> cellsBefore{};  ///< surface cells in the slabs before each
   std::uint32_t cellCount = 0;
   std::uint32_t quadCount = 0;
@@ -59,7 +59,8 @@ struct Topology {
   std::size_t cutEdges = 0;
 
   /// The surface block at an offset of -1..1 blocks, or kNoSurfaceBlock.
-  [[nodiscard]] SurfaceBlockIndex neighbour(const SurfaceBlock& from, int dx, int dy, int dz) const {
+  [[nodiscard]] SurfaceBlockIndex neighbour(const SurfaceBlock& from, int dx, int dy,
+                                            int dz) const {
     const blocks::BlockRef block = from.neighbours[blocks::neighbourIndex(dx, dy, dz)];
     return block < 0 ? kNoSurfaceBlock : surfaceBlockOf[block];
   }
@@ -70,8 +71,7 @@ struct Topology {
   /// A bit for each cut edge of a cell.
   [[nodiscard]] unsigned cutEdgesOf(const SurfaceBlock& block, int cell) const;
   /// The components of a cell of a block, all rules applied.
-  [[nodiscard]] Components componentsAt(const SurfaceBlock& block, int cell,
-                                        CornerMask mask) const;
+  [[nodiscard]] Components componentsAt(const SurfaceBlock& block, int cell, CornerMask mask) const;
   /// Whether one component of the cell owns both arcs of its ambiguous face `face`.
   [[nodiscard]] bool ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask,
                                   int face) const;

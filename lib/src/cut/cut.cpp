@@ -16,8 +16,7 @@ namespace {
 // Numbers the vertices of a cut.
 class Numbering {
  public:
-  Numbering(const Forest& forest, const Topology& topology, const CellFlags& merged,
-            base::Job& job)
+  Numbering(const Forest& forest, const Topology& topology, const CellFlags& merged, base::Job& job)
       : forest_(forest), topology_(topology), merged_(merged), job_(job) {}
 
   Cut make() {
@@ -43,8 +42,7 @@ class Numbering {
     const bool merged3 = merged_.levels[0][index] != 0;
     for (std::uint32_t i = 0; i < block.parents.size(); ++i) {
       const std::uint16_t parent1 = block.parents[i];
-      if (parent1 == BlockForest::kNoParent ||
-          ((merged1 >> block.level1[parent1].cell) & 1) == 0) {
+      if (parent1 == BlockForest::kNoParent || ((merged1 >> block.level1[parent1].cell) & 1) == 0) {
         body(i, 0, i);
         continue;
       }
@@ -82,8 +80,8 @@ class Numbering {
       upper_[l].assign(level.clusters.size(), kNone);
       for (std::uint32_t cell = 0; cell < level.cells.size(); ++cell) {
         if (merged_.levels[l][cell] == 0) continue;
-        const bool leaf = level.parentCells.empty() ||
-                          merged_.levels[l + 1][level.parentCells[cell]] == 0;
+        const bool leaf =
+            level.parentCells.empty() || merged_.levels[l + 1][level.parentCells[cell]] == 0;
         for (std::uint32_t c = level.first[cell]; c < level.first[cell + 1]; ++c) {
           if (!leaf) {
             upper_[l][c] = upper_[l + 1][level.clusters[c].parent];
@@ -110,8 +108,7 @@ class Numbering {
       }
       if (level == 0) {
         vertex = next++;
-        cut_.clusters[vertex] = {0, 0, parent,
-                                 static_cast<std::uint32_t>(surface.firstVertex + i)};
+        cut_.clusters[vertex] = {0, 0, parent, static_cast<std::uint32_t>(surface.firstVertex + i)};
         return;
       }
       VertexIndex& number = level == 1 ? number1[cluster] : number2[cluster];

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <tufa/mesh.h>
+#include <cstdint>
 #include <vector>
 
 #include "cut/leaves.h"
@@ -11,9 +11,11 @@ namespace tufa::cut {
 /// Where the cluster behind an output vertex is in the forest.
 struct ClusterRef {
   std::uint8_t level = 0;
-  std::uint16_t cell = 0;     ///< levels 0 to 2: the cell inside the block
-  std::uint32_t parentCell = 0;  ///< levels 0 to 2: the surface block; above: the cell of that level
-  std::uint32_t cluster = 0;  ///< level 0: the base vertex; above: the cluster of its level (and block)
+  std::uint16_t cell = 0;  ///< levels 0 to 2: the cell inside the block
+  std::uint32_t parentCell =
+      0;  ///< levels 0 to 2: the surface block; above: the cell of that level
+  std::uint32_t cluster =
+      0;  ///< level 0: the base vertex; above: the cluster of its level (and block)
 };
 
 /// A cut of the forest: which cluster stands for each base vertex.
@@ -22,8 +24,8 @@ struct Cut {
   std::vector<ClusterRef> clusters;   ///< for each vertex of the cut
 };
 
-/// Numbers the leaf clusters: those of blocks first, in the order of their base vertices, then those
-/// of larger cells, by level and cell.
+/// Numbers the leaf clusters: those of blocks first, in the order of their base vertices, then
+/// those of larger cells, by level and cell.
 [[nodiscard]] Cut makeCut(const forest::Forest& forest, const components::Topology& topology,
                           const CellFlags& merged, base::Job& job);
 

@@ -16,16 +16,16 @@ int levelOf(int size, const char* name) {
   if (size >= 1 && std::has_single_bit(static_cast<unsigned>(size))) {
     return std::countr_zero(static_cast<unsigned>(size));
   }
-  throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be a power of two of 1 or more, not " +
-                                              std::to_string(size));
+  throw Error(
+      ErrorCode::InvalidArgument,
+      std::string(name) + " must be a power of two of 1 or more, not " + std::to_string(size));
 }
 
 void requireRange(double value, double least, double greatest, const char* name) {
   if (value >= least && value <= greatest) return;
-  throw Error(ErrorCode::InvalidArgument, std::string(name) + " must be from " +
-                                              base::numberText(least) + " to " +
-                                              base::numberText(greatest) + ", not " +
-                                              base::numberText(value));
+  throw Error(ErrorCode::InvalidArgument,
+              std::string(name) + " must be from " + base::numberText(least) + " to " +
+                  base::numberText(greatest) + ", not " + base::numberText(value));
 }
 
 }  // namespace
@@ -42,10 +42,9 @@ CutRule readRule(const ContourOptions& options, const openvdb::math::Transform& 
     throw Error(ErrorCode::InvalidArgument, "the largest cell size must not be below the smallest");
   }
   if (options.toleranceGrid) {
-    rule.scale = [scales = options.toleranceGrid, transform = transform.copy()](
-                     const openvdb::Vec3d& point) {
-      const openvdb::Vec3d at =
-          scales->transform().worldToIndex(transform->indexToWorld(point));
+    rule.scale = [scales = options.toleranceGrid,
+                  transform = transform.copy()](const openvdb::Vec3d& point) {
+      const openvdb::Vec3d at = scales->transform().worldToIndex(transform->indexToWorld(point));
       const float value = scales->tree().getValue(openvdb::Coord::round(at));
       return std::isfinite(value) ? std::max(0.0, static_cast<double>(value)) : 0.0;
     };

@@ -2,8 +2,8 @@
 
 #include <openvdb/openvdb.h>
 
-#include <functional>
 #include <tufa/contour.h>
+#include <functional>
 
 namespace tufa::cut {
 

@@ -17,15 +17,19 @@ using forest::Level;
 
 namespace {
 
-// Share of the tolerance that a cluster's mean error may take. On a curved patch the largest distance
-// is about twice the mean one; what slips through is found and split by the certificate.
+// Share of the tolerance that a cluster's mean error may take. On a curved patch the largest
+// distance is about twice the mean one; what slips through is found and split by the certificate.
 constexpr double kErrorShare = 0.5;
 
 class Merger {
  public:
   Merger(const Forest& forest, const Topology& topology, const CutRule& rule,
          const CellFlags& forbidden, base::Job& job)
-      : forest_(forest), topology_(topology), rule_(rule), forbidden_(forbidden), job_(job),
+      : forest_(forest),
+        topology_(topology),
+        rule_(rule),
+        forbidden_(forbidden),
+        job_(job),
         merged_(forest) {}
 
   CellFlags merge() {
@@ -153,9 +157,9 @@ class Merger {
           merged = keepsRule(level.clusters[c], level.level, middle);
         }
         for (int n = 0; merged && n < 64; ++n) {
-          const std::uint32_t near =
-              below.find(openvdb::Coord(2 * cell[0] + (n >> 4) - 1, 2 * cell[1] + ((n >> 2) & 3) - 1,
-                                        2 * cell[2] + (n & 3) - 1));
+          const std::uint32_t near = below.find(openvdb::Coord(2 * cell[0] + (n >> 4) - 1,
+                                                               2 * cell[1] + ((n >> 2) & 3) - 1,
+                                                               2 * cell[2] + (n & 3) - 1));
           merged = near == forest::kNone || mergedBelow[near] != 0;
         }
         merged_.levels[index][i] = merged ? 1 : 0;
@@ -205,12 +209,14 @@ std::vector<std::size_t> countLeaves(const Forest& forest, const Topology& topol
       const int parent = forest::cellIndex2(cell >> 5, (cell >> 3) & 1, (cell >> 1) & 1);
       if (((merged.level2[i] >> parent) & 1) == 0) ++counts[1];
     });
-    if (merged.levels[0][i] == 0) counts[2] += static_cast<std::size_t>(base::countBits(merged.level2[i]));
+    if (merged.levels[0][i] == 0)
+      counts[2] += static_cast<std::size_t>(base::countBits(merged.level2[i]));
   }
   for (std::size_t l = 0; l < forest.levels.size(); ++l) {
     const Level& level = forest.levels[l];
     for (std::size_t i = 0; i < level.cells.size(); ++i) {
-      const bool below = !level.parentCells.empty() && merged.levels[l + 1][level.parentCells[i]] != 0;
+      const bool below =
+          !level.parentCells.empty() && merged.levels[l + 1][level.parentCells[i]] != 0;
       if (merged.levels[l][i] != 0 && !below) ++counts[3 + l];
     }
   }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <tufa/mesh.h>
+#include <cstdint>
 #include <vector>
 
 #include "base/job.h"
@@ -20,10 +20,10 @@ struct CellFlags {
   explicit CellFlags(const forest::Forest& forest);
 };
 
-/// The cells that a cut merges: the leaves of a restricted octree, and all cells below them. A cell is
-/// merged if it is safe, keeps the rule, is not forbidden, its children are merged, and so are all
-/// surface cells of its children's size that touch it: no two leaves that touch differ by more than
-/// one level, and no coarser octree has these properties.
+/// The cells that a cut merges: the leaves of a restricted octree, and all cells below them. A cell
+/// is merged if it is safe, keeps the rule, is not forbidden, its children are merged, and so are
+/// all surface cells of its children's size that touch it: no two leaves that touch differ by more
+/// than one level, and no coarser octree has these properties.
 [[nodiscard]] CellFlags mergeCells(const forest::Forest& forest,
                                    const components::Topology& topology, const CutRule& rule,
                                    const CellFlags& forbidden, base::Job& job);

@@ -68,8 +68,8 @@ void BlockForestBuilder<TreeT>::readVertices(std::size_t index) {
       const std::uint64_t parent = std::uint64_t{1} << cellIndex1(x >> 1, y >> 1, z >> 1);
       forest_.surface1 |= parent;
       const CornerMask mask = components::cornerMask(corners, cell);
-      const Components components = special ? topology.componentsAt(block, cell, mask)
-                                            : components::componentsOf(mask, 0);
+      const Components components =
+          special ? topology.componentsAt(block, cell, mask) : components::componentsOf(mask, 0);
       const unsigned cut = special ? topology.cutEdgesOf(block, cell) : 0;
       if (cut != 0) forbidden1_ |= parent;
       level.first[cell] = static_cast<std::uint32_t>(level.patches.size());
@@ -111,13 +111,14 @@ void BlockForestBuilder<TreeT>::addVertexPlanes(VertexIndex vertex, const openvd
   if (kind < Kind::Meeting && !flat) return;
   // Several sides that could not be told apart: the vertex itself must be kept.
   for (int axis = 0; axis < 3; ++axis) {
-    patch.planes.addPlane(point, base_.affine.planeInLattice(
-                                     Normal(axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0)));
+    patch.planes.addPlane(point, base_.affine.planeInLattice(Normal(
+                                     axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0)));
   }
 }
 
-// A component that owns both arcs of an ambiguous face forbids the cell across that face to collapse,
-// unless both have one parent: the two pieces of the face would become one edge, used twice.
+// A component that owns both arcs of an ambiguous face forbids the cell across that face to
+// collapse, unless both have one parent: the two pieces of the face would become one edge, used
+// twice.
 template <class TreeT>
 void BlockForestBuilder<TreeT>::forbidBeside(std::size_t index) {
   const SurfaceBlock& block = base_.topology.blocks[index];
@@ -139,8 +140,7 @@ void BlockForestBuilder<TreeT>::forbidBeside(std::size_t index) {
 }
 
 template <class TreeT>
-bool BlockForestBuilder<TreeT>::neighbourOwnsBothArcs(std::size_t index, int cell,
-                                                      int face) const {
+bool BlockForestBuilder<TreeT>::neighbourOwnsBothArcs(std::size_t index, int cell, int face) const {
   const components::Topology& topology = base_.topology;
   const SurfaceBlock* owner = &topology.blocks[index];
   const int axis = face / 2, shift = 6 - 3 * axis, step = (face & 1) != 0 ? 1 : -1;
@@ -171,8 +171,8 @@ bool BlockForestBuilder<TreeT>::tryCell(int level, int x, int y, int z,
   PatchJoiner::Children children;
   std::array<int, 8> slots{};
   for (int child = 0; child < 8; ++child) {
-    slots[child] = slot(level - 1, 2 * x + (child >> 2), 2 * y + ((child >> 1) & 1),
-                        2 * z + (child & 1));
+    slots[child] =
+        slot(level - 1, 2 * x + (child >> 2), 2 * y + ((child >> 1) & 1), 2 * z + (child & 1));
     const std::uint32_t count = below.count[slots[child]];
     if (count != 0) children[child] = {below.patches.data() + below.first[slots[child]], count};
   }

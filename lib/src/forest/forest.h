@@ -2,10 +2,10 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/mesh.h>
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <tufa/mesh.h>
 #include <unordered_map>
 #include <vector>
 
@@ -23,10 +23,10 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 struct Cluster {
   std::array<float, 3> point;   ///< the vertex, in voxels from the middle of the cell
   std::array<float, 3> normal;  ///< outward unit normal, world space
-  float error = 0;              ///< root mean square distance of the vertex to the gathered planes, voxels
-  float angle = 0;              ///< bound on the angle between two gathered normals, radians
-  std::uint32_t parent = kNone; ///< the cluster one level up that holds this one
-  std::uint16_t cell = 0;       ///< levels 1 and 2: the cell inside the block
+  float error = 0;  ///< root mean square distance of the vertex to the gathered planes, voxels
+  float angle = 0;  ///< bound on the angle between two gathered normals, radians
+  std::uint32_t parent = kNone;  ///< the cluster one level up that holds this one
+  std::uint16_t cell = 0;        ///< levels 1 and 2: the cell inside the block
 };
 
 /// Number of a level-1 cell (x, y, z each 0..3) or level-2 cell (0..1) inside its block.
@@ -51,7 +51,8 @@ struct Level {
   int level = 3;
   std::vector<openvdb::Coord> cells;  ///< lower corner, in cells of this level
   std::vector<std::uint8_t> safe;     ///< may become a leaf
-  std::vector<std::uint32_t> first;   ///< clusters of cell i: first[i] to first[i + 1]; none unless safe
+  std::vector<std::uint32_t>
+      first;  ///< clusters of cell i: first[i] to first[i + 1]; none unless safe
   std::vector<Cluster> clusters;
   std::vector<std::uint32_t> parentCells;  ///< in the next level; empty at the last
 
@@ -63,9 +64,9 @@ struct Level {
   std::unordered_map<openvdb::Coord, std::uint32_t> indices;
 };
 
-/// The surface as clusters of all sizes, each with the vertex that would stand for it: what every cut
-/// is taken from. Depends on no tolerance. A cell is there if all its patches, at every level below,
-/// pass the safety test; see PatchJoiner.
+/// The surface as clusters of all sizes, each with the vertex that would stand for it: what every
+/// cut is taken from. Depends on no tolerance. A cell is there if all its patches, at every level
+/// below, pass the safety test; see PatchJoiner.
 struct Forest {
   std::vector<BlockForest> blocks;  ///< for each surface block of the topology
   std::vector<Level> levels;        ///< level 3 (cell i is surface block i), 4, and so on
@@ -85,7 +86,8 @@ struct Base {
   }
 };
 
-/// Builds the levels from the base mesh up, until none has a safe cell or cells have 2^maxLevel voxels.
+/// Builds the levels from the base mesh up, until none has a safe cell or cells have 2^maxLevel
+/// voxels.
 template <class TreeT>
 [[nodiscard]] Forest buildForest(const Base<TreeT>& base, int maxLevel, base::Job& job);
 

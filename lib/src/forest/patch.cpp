@@ -23,8 +23,8 @@ constexpr int sideOfChild(int child, int axis) {
   return ((child >> (2 - u)) & 1) << 1 | ((child >> (2 - v)) & 1);
 }
 
-// Pairs of edges that coincide where two cells meet in a face across `axis`: upper face of the lower
-// cell, lower face of the upper one.
+// Pairs of edges that coincide where two cells meet in a face across `axis`: upper face of the
+// lower cell, lower face of the upper one.
 struct SharedEdge {
   int ofLower, ofUpper;
 };
@@ -47,8 +47,8 @@ double angleBetween(const openvdb::Vec3d& a, const openvdb::Vec3d& b) {
   return lengths > 0 ? std::acos(std::clamp(a.dot(b) / lengths, -1.0, 1.0)) : std::numbers::pi;
 }
 
-// The Euler characteristic is summed times 4: a crossing in the middle is seen from four children, a
-// curve from both its ends.
+// The Euler characteristic is summed times 4: a crossing in the middle is seen from four children,
+// a curve from both its ends.
 constexpr int kPerPatch = 4, kPerSharedCrossing = -2, kPerInnerCrossing = 1, kDisk = 4;
 
 // Whether the patch has no or two crossings around each face of its cell, and three at least.
@@ -74,8 +74,9 @@ void NormalCone::add(const NormalCone& other) {
     return;
   }
   const openvdb::Vec3d sum = axis + other.axis;
-  angle = std::min(std::max(angle + angleBetween(axis, sum), other.angle + angleBetween(other.axis, sum)),
-                   std::numbers::pi);
+  angle = std::min(
+      std::max(angle + angleBetween(axis, sum), other.angle + angleBetween(other.axis, sum)),
+      std::numbers::pi);
   axis = sum;
 }
 

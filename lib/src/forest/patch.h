@@ -38,8 +38,8 @@ struct Patch {
 ///
 /// Patches of two children are one if they share a crossing on the face between them. A cell may
 /// become a leaf only if each of its patches is a disk that meets each neighbour in one piece
-/// (Schaefer, Ju and Warren 2007): its Euler characteristic is 1, it has at most one crossing on each
-/// edge of the cell, none or two on the boundary of each face, and three at least.
+/// (Schaefer, Ju and Warren 2007): its Euler characteristic is 1, it has at most one crossing on
+/// each edge of the cell, none or two on the boundary of each face, and three at least.
 ///
 /// The characteristic comes from the children alone, each a disk: every face between two of them
 /// takes one off for each curve on it, which shows as two shared crossings on the boundary of that
@@ -49,8 +49,8 @@ class PatchJoiner {
  public:
   using Children = std::array<std::span<const Patch>, components::kCorners>;
 
-  /// Children in the order of components' corners. Returns whether the cell may become a leaf; if so,
-  /// the results below hold its patches, without planes and cones.
+  /// Children in the order of components' corners. Returns whether the cell may become a leaf; if
+  /// so, the results below hold its patches, without planes and cones.
   [[nodiscard]] bool join(const Children& children);
 
   [[nodiscard]] std::vector<Patch>& patches() { return patches_; }

@@ -9,9 +9,9 @@
 
 namespace tufa::forest {
 
-/// A quadratic error function with its constant term: the sum of squared distances, in voxels, to the
-/// tangent planes gathered so far. Additive; coordinates are lattice coordinates of one cell, in
-/// double, so that the error at the solution does not drown in the sums of a large cell.
+/// A quadratic error function with its constant term: the sum of squared distances, in voxels, to
+/// the tangent planes gathered so far. Additive; coordinates are lattice coordinates of one cell,
+/// in double, so that the error at the solution does not drown in the sums of a large cell.
 struct Quadric {
   std::array<double, 6> a{};  ///< sum of n n^T: xx, xy, xz, yy, yz, zz
   openvdb::Vec3d b{0.0};      ///< sum of n (n . p)

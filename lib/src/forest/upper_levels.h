@@ -11,8 +11,8 @@ struct LevelPatches {
   std::vector<Patch> patches;  ///< planes seen from the lower corner of the cell
 };
 
-/// The level above: its cells, and the clusters of those that may become leaves. Fills in the parents
-/// of the clusters and cells below.
+/// The level above: its cells, and the clusters of those that may become leaves. Fills in the
+/// parents of the clusters and cells below.
 [[nodiscard]] LevelPatches buildLevelAbove(LevelPatches& below, const base::Affine& affine,
                                            base::Job& job);
 

@@ -22,8 +22,8 @@ struct QuadContext {
 };
 
 /// Writes the level-0 quads: one for each crossed lattice edge, joining the vertices that own the
-/// crossing in the four cells around it, counter-clockwise seen from outside. Away from creases each
-/// starts where its better diagonal does; see SplitChooser.
+/// crossing in the four cells around it, counter-clockwise seen from outside. Away from creases
+/// each starts where its better diagonal does; see SplitChooser.
 template <class TreeT>
 void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job);
 

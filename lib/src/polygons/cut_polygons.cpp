@@ -7,8 +7,8 @@
 namespace tufa::polygons {
 namespace {
 
-using cut::Cut;
 using cut::ClusterRef;
+using cut::Cut;
 using forest::Cluster;
 using forest::Forest;
 
@@ -52,9 +52,9 @@ void placeVertices(const Forest& forest, const Cut& cut, const Mesh& base,
       const Located at = locate(forest, ref);
       const double half = 0.5 * (1 << ref.level);
       const auto& p = at.cluster->point;
-      mesh.positions[i] = affine.position(at.corner, half + static_cast<double>(p[0]),
-                                          half + static_cast<double>(p[1]),
-                                          half + static_cast<double>(p[2]));
+      mesh.positions[i] =
+          affine.position(at.corner, half + static_cast<double>(p[0]),
+                          half + static_cast<double>(p[1]), half + static_cast<double>(p[2]));
       mesh.normals[i] = {at.cluster->normal[0], at.cluster->normal[1], at.cluster->normal[2]};
     }
   });
@@ -93,8 +93,8 @@ LatticeCrossing middleOf(const Mesh& base, const Quad& quad, double voxelSize) {
   return {(p[0] + p[2]) * 0.5, outward * voxelSize};
 }
 
-void startAtBetterDiagonal(const Mesh& mesh, const Mesh& base, const Quad& source,
-                           double voxelSize, Quad& quad) {
+void startAtBetterDiagonal(const Mesh& mesh, const Mesh& base, const Quad& source, double voxelSize,
+                           Quad& quad) {
   const SplitChooser chooser(mesh, quad, voxelSize);
   if (!chooser.isSecondDiagonalBetter([&] { return middleOf(base, source, voxelSize); })) return;
   std::rotate(quad.vertices.begin(), quad.vertices.begin() + 1, quad.vertices.end());

@@ -2,8 +2,8 @@
 
 #include <openvdb/openvdb.h>
 
-#include <array>
 #include <tufa/mesh.h>
+#include <array>
 
 #include "creases/vertex_sides.h"
 
@@ -18,10 +18,10 @@ struct LatticeCrossing {
 /// Compares the two ways to split one quad: along its diagonal from corner 0 to corner 2, or along
 /// the second, from 1 to 3.
 ///
-/// Beside a crease the better diagonal is the one whose triangles lie on one smooth side each. Else,
-/// if the two differ by more than a fiftieth of a voxel, it is the one nearer to the crossing, where
-/// the surface is known to be, unless that folds a triangle over; else the shorter one, which has the
-/// better angles.
+/// Beside a crease the better diagonal is the one whose triangles lie on one smooth side each.
+/// Else, if the two differ by more than a fiftieth of a voxel, it is the one nearer to the
+/// crossing, where the surface is known to be, unless that folds a triangle over; else the shorter
+/// one, which has the better angles.
 class SplitChooser {
  public:
   SplitChooser(const Mesh& mesh, const Quad& quad, double voxelSize);
@@ -58,8 +58,8 @@ class SplitChooser {
     const double gap = across.dot(corners_[1] - corners_[0]);
     const double limit = kSameDistance * voxelSize_;
     if (gap * gap >= limit * limit * squared) return false;
-    // `across` is the sum of the normals of the two triangles; both must have a part in it. The scalar
-    // product of two cross products, by Lagrange's identity.
+    // `across` is the sum of the normals of the two triangles; both must have a part in it. The
+    // scalar product of two cross products, by Lagrange's identity.
     const openvdb::Vec3d& chosen = diagonals[second ? 1 : 0];
     const openvdb::Vec3d other = second ? -diagonals[0] : diagonals[1];
     const openvdb::Vec3d side = second ? corners_[2] - corners_[1] : corners_[1] - corners_[0];
