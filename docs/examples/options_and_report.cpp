@@ -13,6 +13,7 @@ int main() {
     options.isovalue = 0.5;                           // in the grid's own unit
     options.inside = tufa::Inside::Above;             // a density: the solid is where there is more
     options.ambiguity = tufa::Ambiguity::Asymptotic;  // how ambiguous cell faces are joined
+    options.tolerance = 0.25;                         // voxels: larger cells where that is kept
     options.threads = 2;                              // never changes the result
     options.progress = [](std::string_view stage, double fraction) {
       std::clog << stage << " " << static_cast<int>(100 * fraction) << " %\r";

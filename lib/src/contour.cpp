@@ -77,7 +77,7 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
     const forest::Forest forest = forest::buildForest(base, rule.maxLevel, job);
     job.beginStage("cut", ends.cut);
     certify::AdaptiveMesh adaptive = certify::adapt(base, forest, rule, job);
-    report.certificate = certify::certificateOf(adaptive, affine.voxelSize());
+    report.certificate = certify::certificateOf(adaptive, affine.voxelSize(), options.keepLeaves);
     mesh = std::move(adaptive.mesh);
   }
   if (options.normals == Normals::Faces) vertices::setFaceNormals(mesh, job);

@@ -15,6 +15,7 @@ namespace {
 Contender tufaUniform(const openvdb::FloatGrid& grid) {
   return {"tufa", [&grid](int threads) {
             ContourOptions options;
+            options.uniform = true;
             options.threads = threads;
             ContourReport report;
             const auto mesh = std::make_shared<Mesh>(contour(grid, options, &report));

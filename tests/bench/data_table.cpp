@@ -94,6 +94,7 @@ std::string manifold(const CheckReport& report) {
 std::string row(const std::string& file, const std::string& source, const openvdb::GridBase& grid,
                 const std::optional<double>& isovalue) {
   ContourOptions options;
+  options.uniform = true;
   options.isovalue = isovalue;
   ContourReport report;
   const auto start = std::chrono::steady_clock::now();

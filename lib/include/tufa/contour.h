@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <tufa/mesh.h>
+#include <tufa/octree.h>
 #include <tufa/progress.h>
 #include <cstddef>
 #include <cstdint>
@@ -67,6 +68,8 @@ struct ContourOptions {
   int minCell = 1;
   /// Size in voxels, a power of two, of the largest cells.
   int maxCell = 1 << 20;
+  /// Keep the leaves of the octree in the certificate.
+  bool keepLeaves = false;
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
   /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
   openvdb::FloatGrid::ConstPtr toleranceGrid;
@@ -90,6 +93,7 @@ struct Certificate {
   /// Number of leaf cells of each level that the surface passes; a cell of level l has 2^l voxels
   /// along its edge.
   std::vector<std::size_t> leafLevels;
+  std::vector<LeafCell> leaves;  ///< if ContourOptions::keepLeaves, in the order of their levels
   int rounds = 0;  ///< meshes made and measured until the tolerance held
 };
 

@@ -5,6 +5,7 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <tufa/mesh.h>
+#include <tufa/octree.h>
 #include <tufa/progress.h>
 #include <tufa/shapes.h>
 #include <tufa/version.h>

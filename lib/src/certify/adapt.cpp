@@ -59,19 +59,24 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
         // this one's worst.
         largest = Certifier<TreeT>(base, forest.levels[0], rule, job).measure(cut, made).worst;
       }
-      return {std::move(made.mesh), cut::countLeaves(forest, base.topology, merged), largest,
+      return {std::move(made.mesh), cut::collectLeaves(forest, base.topology, merged), largest,
               deviation.mean, round};
     }
   }
 }
 
-Certificate certificateOf(const AdaptiveMesh& adaptive, double voxelSize) {
+Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves) {
   Certificate certificate;
   certificate.maxErrorVoxels = adaptive.largestError;
   certificate.meanErrorVoxels = adaptive.meanError;
   certificate.maxErrorWorld = adaptive.largestError * voxelSize;
   certificate.eulerCharacteristic = eulerCharacteristic(adaptive.mesh);
-  certificate.leafLevels = adaptive.leafLevels;
+  for (const LeafCell& leaf : adaptive.leaves) {
+    const auto level = static_cast<std::size_t>(leaf.level);
+    if (certificate.leafLevels.size() <= level) certificate.leafLevels.resize(level + 1);
+    ++certificate.leafLevels[level];
+  }
+  if (keepLeaves) certificate.leaves = std::move(adaptive.leaves);
   certificate.rounds = adaptive.rounds;
   return certificate;
 }

@@ -12,7 +12,7 @@ namespace tufa::certify {
 /// The coarsest mesh found that keeps a rule, and how far it is from the base mesh.
 struct AdaptiveMesh {
   Mesh mesh;
-  std::vector<std::size_t> leafLevels;  ///< surface cells that are leaves, by level
+  std::vector<LeafCell> leaves;  ///< surface cells that are leaves, by level
   double largestError = 0;              ///< voxels
   double meanError = 0;                 ///< voxels
   int rounds = 0;                       ///< meshes made and measured
@@ -24,7 +24,8 @@ template <class TreeT>
 [[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
                                  const cut::CutRule& rule, base::Job& job);
 
-/// The certificate of an adaptive mesh; `voxelSize` is in world units.
-[[nodiscard]] Certificate certificateOf(const AdaptiveMesh& adaptive, double voxelSize);
+/// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if they
+/// are to be kept.
+[[nodiscard]] Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves);
 
 }  // namespace tufa::certify

@@ -194,34 +194,47 @@ CellFlags mergeCells(const Forest& forest, const Topology& topology, const CutRu
   return Merger(forest, topology, rule, forbidden, job).merge();
 }
 
-std::vector<std::size_t> countLeaves(const Forest& forest, const Topology& topology,
-                                     const CellFlags& merged) {
-  std::vector<std::size_t> counts(3 + forest.levels.size());
+std::vector<LeafCell> collectLeaves(const Forest& forest, const Topology& topology,
+                                    const CellFlags& merged) {
+  std::vector<std::vector<LeafCell>> byLevel(3 + forest.levels.size());
   for (std::size_t i = 0; i < forest.blocks.size(); ++i) {
     const std::uint64_t merged1 = merged.level1[i];
+    const openvdb::Coord& block = forest.levels[0].cells[i];
+    const auto add = [&](int level, int x, int y, int z) {
+      byLevel[level].push_back({{(block[0] << 3) + (x << level), (block[1] << 3) + (y << level),
+                                 (block[2] << 3) + (z << level)},
+                                level});
+    };
     for (int x = 0; x < blocks::kBlockSize; ++x) {
       base::forEachBit(topology.blocks[i].cells.slabs[x], [&](int bit) {
-        const int parent = forest::cellIndex1(x >> 1, bit >> 4, (bit & 7) >> 1);
-        if (((merged1 >> parent) & 1) == 0) ++counts[0];
+        const int y = bit >> 3, z = bit & 7;
+        const int parent = forest::cellIndex1(x >> 1, y >> 1, z >> 1);
+        if (((merged1 >> parent) & 1) == 0) add(0, x, y, z);
       });
     }
     base::forEachBit(merged1, [&](int cell) {
-      const int parent = forest::cellIndex2(cell >> 5, (cell >> 3) & 1, (cell >> 1) & 1);
-      if (((merged.level2[i] >> parent) & 1) == 0) ++counts[1];
+      const int x = cell >> 4, y = (cell >> 2) & 3, z = cell & 3;
+      const int parent = forest::cellIndex2(x >> 1, y >> 1, z >> 1);
+      if (((merged.level2[i] >> parent) & 1) == 0) add(1, x, y, z);
     });
-    if (merged.levels[0][i] == 0)
-      counts[2] += static_cast<std::size_t>(base::countBits(merged.level2[i]));
+    if (merged.levels[0][i] != 0) continue;
+    base::forEachBit(merged.level2[i],
+                     [&](int cell) { add(2, cell >> 2, (cell >> 1) & 1, cell & 1); });
   }
   for (std::size_t l = 0; l < forest.levels.size(); ++l) {
     const Level& level = forest.levels[l];
     for (std::size_t i = 0; i < level.cells.size(); ++i) {
       const bool below =
           !level.parentCells.empty() && merged.levels[l + 1][level.parentCells[i]] != 0;
-      if (merged.levels[l][i] != 0 && !below) ++counts[3 + l];
+      if (merged.levels[l][i] == 0 || below) continue;
+      const openvdb::Coord& cell = level.cells[i];
+      byLevel[3 + l].push_back(
+          {{cell[0] << level.level, cell[1] << level.level, cell[2] << level.level}, level.level});
     }
   }
-  while (counts.size() > 1 && counts.back() == 0) counts.pop_back();
-  return counts;
+  std::vector<LeafCell> leaves;
+  for (const auto& cells : byLevel) leaves.insert(leaves.end(), cells.begin(), cells.end());
+  return leaves;
 }
 
 }  // namespace tufa::cut

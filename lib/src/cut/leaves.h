@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tufa/mesh.h>
+#include <tufa/octree.h>
 #include <cstdint>
 #include <vector>
 
@@ -28,9 +28,9 @@ struct CellFlags {
                                    const components::Topology& topology, const CutRule& rule,
                                    const CellFlags& forbidden, base::Job& job);
 
-/// Number of surface cells that are leaves, by level.
-[[nodiscard]] std::vector<std::size_t> countLeaves(const forest::Forest& forest,
-                                                   const components::Topology& topology,
-                                                   const CellFlags& merged);
+/// The surface cells that are leaves, by level.
+[[nodiscard]] std::vector<LeafCell> collectLeaves(const forest::Forest& forest,
+                                                  const components::Topology& topology,
+                                                  const CellFlags& merged);
 
 }  // namespace tufa::cut

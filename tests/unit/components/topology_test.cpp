@@ -66,6 +66,7 @@ void expectPatternIsMeshed(const FloatGrid& grid, const CoordBBox& box, Ambiguit
   CoordBBox cells = box;
   cells.expand(1);
   ContourOptions options;
+  options.uniform = true;
   options.isovalue = 0;
   options.inside = Inside::Below;
   options.ambiguity = rule;

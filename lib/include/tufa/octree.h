@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tufa {
+
+/// A leaf of the octree behind an adaptive mesh that the surface passes: a cube of 2^level lattice
+/// steps along each edge, aligned to multiples of its size.
+struct LeafCell {
+  std::array<std::int32_t, 3> corner{};  ///< lowest lattice point
+  int level = 0;
+};
+
+/// Whether no two leaves that touch, by a face, an edge or a corner, differ by more than one level,
+/// and no leaf holds another.
+[[nodiscard]] bool isRestricted(const std::vector<LeafCell>& leaves);
+
+}  // namespace tufa

@@ -1,0 +1,322 @@
+// What every adaptive mesh must be, whatever the field and the tolerance.
+
+#include <gtest/gtest.h>
+
+#include <openvdb/math/Proximity.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <tufa/check.h>
+#include <tufa/contour.h>
+#include <tufa/error.h>
+#include <tufa/shapes.h>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "support/fields.h"
+#include "support/mesh_oracle.h"
+
+namespace tufa {
+namespace {
+
+openvdb::FloatGrid::Ptr shape(Shape kind, double voxelSize) {
+  ShapeOptions options;
+  options.voxelSize = voxelSize;
+  return makeShape(kind, options);
+}
+
+Mesh uniformMesh(const openvdb::GridBase& grid, ContourOptions options = {}) {
+  options.uniform = true;
+  return contour(grid, options);
+}
+
+// The Euler characteristics of a mesh's components, sorted.
+std::vector<long long> eulerOfComponents(const Mesh& mesh) {
+  std::vector<long long> all;
+  for (const CheckComponent& component : check(mesh).components) {
+    all.push_back(component.eulerCharacteristic);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+void expectSameTopology(const Mesh& adaptive, const Mesh& uniform) {
+  const test::MeshTopology found = test::inspect(adaptive), wanted = test::inspect(uniform);
+  EXPECT_TRUE(found.manifold()) << found;
+  EXPECT_TRUE(found.closed()) << found;
+  EXPECT_EQ(found.components, wanted.components);
+  EXPECT_EQ(found.euler(), wanted.euler());
+  EXPECT_EQ(eulerOfComponents(adaptive), eulerOfComponents(uniform));
+}
+
+double distanceToMesh(const openvdb::Vec3d& point, const Mesh& mesh) {
+  double squared = std::numeric_limits<double>::infinity();
+  const auto at = [&](VertexIndex vertex) {
+    const Position& p = mesh.positions[vertex];
+    return openvdb::Vec3d(p.x, p.y, p.z);
+  };
+  for (const Triangle& triangle : triangulate(mesh)) {
+    const auto& v = triangle.vertices;
+    openvdb::Vec3d weights;
+    const openvdb::Vec3d foot =
+        openvdb::math::closestPointOnTriangleToPoint(at(v[0]), at(v[1]), at(v[2]), point, weights);
+    squared = std::min(squared, (foot - point).lengthSqr());
+  }
+  return std::sqrt(squared);
+}
+
+// The largest distance of vertices and triangle middles of one mesh to the other, in world units.
+double largestDistance(const Mesh& from, const Mesh& to) {
+  double largest = 0;
+  for (const Position& p : from.positions) {
+    largest = std::max(largest, distanceToMesh({p.x, p.y, p.z}, to));
+  }
+  for (const Triangle& triangle : triangulate(from)) {
+    openvdb::Vec3d middle(0.0);
+    for (const VertexIndex vertex : triangle.vertices) {
+      const Position& p = from.positions[vertex];
+      middle += openvdb::Vec3d(p.x, p.y, p.z) / 3;
+    }
+    largest = std::max(largest, distanceToMesh(middle, to));
+  }
+  return largest;
+}
+
+class AdaptiveNoise : public testing::TestWithParam<Ambiguity> {};
+
+TEST_P(AdaptiveNoise, KeepsTheTopologyAtAnyTolerance) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    test::NoiseOptions noise;
+    noise.size = seed == 1 ? 64 : 24;
+    noise.seed = seed;
+    const auto grid = test::noise<openvdb::FloatGrid>(noise);
+    ContourOptions options;
+    options.ambiguity = GetParam();
+    options.keepLeaves = true;
+    const Mesh uniform = uniformMesh(*grid, options);
+    for (const double tolerance : {0.3, 1e6}) {
+      if (seed == 1 && tolerance < 1) continue;
+      options.tolerance = tolerance;
+      ContourReport report;
+      const Mesh mesh = contour(*grid, options, &report);
+      EXPECT_LT(mesh.triangleCount(), uniform.triangleCount());
+      expectSameTopology(mesh, uniform);
+      ASSERT_TRUE(report.certificate);
+      EXPECT_TRUE(isRestricted(report.certificate->leaves));
+      EXPECT_LE(report.certificate->maxErrorVoxels, tolerance);
+      EXPECT_EQ(report.certificate->eulerCharacteristic, test::inspect(uniform).euler());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryRule, AdaptiveNoise,
+                         testing::Values(Ambiguity::Separate, Ambiguity::Join,
+                                         Ambiguity::Asymptotic, Ambiguity::Chord));
+
+TEST(Adaptive, KeepsTheTopologyOfShapes) {
+  for (const Shape kind : {Shape::Sphere, Shape::Torus, Shape::Box, Shape::Bracket, Shape::Gyroid,
+                           Shape::Terrain, Shape::Fog}) {
+    const auto grid = shape(kind, 0.04);
+    const Mesh uniform = uniformMesh(*grid);
+    for (const double tolerance : {0.0, 0.1, 2.0}) {
+      ContourOptions options;
+      options.tolerance = tolerance;
+      options.keepLeaves = true;
+      ContourReport report;
+      const Mesh mesh = contour(*grid, options, &report);
+      SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + " at " + std::to_string(tolerance));
+      expectSameTopology(mesh, uniform);
+      EXPECT_TRUE(isRestricted(report.certificate->leaves));
+      EXPECT_LE(report.certificate->maxErrorVoxels, tolerance);
+    }
+  }
+}
+
+TEST(Adaptive, IsTheSameForAnyNumberOfThreads) {
+  for (const Shape kind : {Shape::Bracket, Shape::Gyroid, Shape::Noise}) {
+    const auto grid = shape(kind, 0.05);
+    ContourOptions options;
+    options.threads = 1;
+    const Mesh one = contour(*grid, options);
+    options.threads = 2;
+    EXPECT_TRUE(test::sameBytes(one, contour(*grid, options)));
+  }
+}
+
+TEST(Adaptive, IsTheSameForAnyOrderOfLeaves) {
+  const auto grid = shape(Shape::Bracket, 0.05);
+  std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
+  grid->tree().getNodes(leaves);
+  std::shuffle(leaves.begin(), leaves.end(), std::mt19937(7));
+  auto other = openvdb::FloatGrid::create(grid->background());
+  other->setTransform(grid->transform().copy());
+  other->setGridClass(grid->getGridClass());
+  openvdb::FloatGrid::Accessor inside = grid->getAccessor();
+  for (const auto* leaf : leaves) {
+    other->tree().addLeaf(new openvdb::FloatTree::LeafNodeType(*leaf));
+  }
+  openvdb::tools::changeBackground(other->tree(), other->background());
+  other->tree().prune(0.0F);
+  // Inside tiles are part of the data.
+  for (auto tile = grid->cbeginValueAll(); tile; ++tile) {
+    if (!tile.isTileValue() || *tile > 0) continue;
+    const openvdb::CoordBBox box = tile.getBoundingBox();
+    other->tree().addTile(tile.getLevel(), box.min(), *tile, false);
+  }
+  EXPECT_TRUE(test::sameBytes(contour(*grid), contour(*other)));
+}
+
+TEST(Adaptive, CertificateHoldsAgainstBruteForce) {
+  for (const Shape kind : {Shape::Sphere, Shape::Box, Shape::Gyroid}) {
+    const auto grid = shape(kind, 0.1);
+    const double voxel = grid->voxelSize()[0];
+    const Mesh uniform = uniformMesh(*grid);
+    for (const double tolerance : {0.1, 0.5}) {
+      ContourOptions options;
+      options.tolerance = tolerance;
+      ContourReport report;
+      const Mesh mesh = contour(*grid, options, &report);
+      EXPECT_LE(largestDistance(uniform, mesh) / voxel, tolerance * 1.05);
+      EXPECT_LE(largestDistance(mesh, uniform) / voxel, tolerance * 1.05);
+      EXPECT_LE(report.certificate->meanErrorVoxels, report.certificate->maxErrorVoxels);
+    }
+  }
+}
+
+TEST(Adaptive, FlatFacesCollapseToCellsLargerThanALeaf) {
+  const auto grid = shape(Shape::Box, 0.01);
+  ContourReport report;
+  const Mesh mesh = contour(*grid, {}, &report);
+  EXPECT_GE(report.certificate->leafLevels.size(), 5U);
+  EXPECT_LT(10 * mesh.triangleCount(), uniformMesh(*grid).triangleCount());
+}
+
+TEST(Adaptive, FarFromTheOriginIsTheSameMeshShifted) {
+  const auto grid = shape(Shape::Bracket, 0.04);
+  const openvdb::Coord shift(1000000, -1000000, 1000000);
+  auto far = openvdb::FloatGrid::create(grid->background());
+  far->setTransform(grid->transform().copy());
+  far->setGridClass(grid->getGridClass());
+  for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
+    auto* copy = new openvdb::FloatTree::LeafNodeType(*leaf);
+    copy->setOrigin(leaf->origin() + shift);
+    far->tree().addLeaf(copy);
+  }
+  for (auto tile = grid->cbeginValueAll(); tile; ++tile) {
+    if (!tile.isTileValue() || *tile > 0) continue;
+    const openvdb::CoordBBox box = tile.getBoundingBox();
+    far->tree().sparseFill({box.min() + shift, box.max() + shift}, *tile, false);
+  }
+  const Mesh here = contour(*grid), there = contour(*far);
+  // Vertices and faces are numbered in another order, as the tree's nodes are aligned to multiples
+  // of 4096.
+  EXPECT_EQ(here.quads.size(), there.quads.size());
+  EXPECT_EQ(here.triangles.size(), there.triangles.size());
+  ASSERT_EQ(here.positions.size(), there.positions.size());
+  const openvdb::Vec3d moved = grid->indexToWorld(shift) - grid->indexToWorld(openvdb::Coord(0));
+  // Each rounded to 1e-4 voxels.
+  const auto rounded = [](const Mesh& mesh, const openvdb::Vec3d& offset) {
+    std::vector<std::array<long long, 3>> all;
+    for (const Position& p : mesh.positions) {
+      all.push_back({std::llround((p.x - offset[0]) / 4e-6), std::llround((p.y - offset[1]) / 4e-6),
+                     std::llround((p.z - offset[2]) / 4e-6)});
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  const auto near = rounded(here, openvdb::Vec3d(0.0)), away = rounded(there, moved);
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(near[i][axis] - away[i][axis]) > 1) ++different;
+    }
+  }
+  EXPECT_EQ(different, 0U);
+}
+
+TEST(Adaptive, OptionsBoundTheCells) {
+  const auto grid = shape(Shape::Sphere, 0.02);
+  ContourOptions options;
+  options.tolerance = 1;
+  ContourReport report;
+  const std::size_t plain = contour(*grid, options, &report).triangleCount();
+  EXPECT_GT(report.certificate->leafLevels.size(), 4U);
+
+  options.maxCell = 4;
+  (void)contour(*grid, options, &report);
+  EXPECT_LE(report.certificate->leafLevels.size(), 3U);
+
+  options.maxCell = 1 << 20;
+  options.maxAngle = 10;
+  EXPECT_GT(contour(*grid, options).triangleCount(), plain);
+
+  options = {};
+  options.tolerance = 0;
+  options.minCell = 4;
+  const Mesh forced = contour(*grid, options, &report);
+  EXPECT_EQ(report.certificate->leafLevels[0], 0U);
+  EXPECT_GT(report.certificate->maxErrorVoxels, 0);
+  expectSameTopology(forced, uniformMesh(*grid));
+}
+
+TEST(Adaptive, CellsGrowWithTheSquareRootOfTheRadiusAtOneAngle) {
+  ContourOptions options;
+  options.tolerance = 0.1;
+  std::size_t triangles[2] = {};
+  for (const int i : {0, 1}) {
+    const auto grid = shape(Shape::Sphere, i == 0 ? 0.04 : 0.01);
+    triangles[i] = contour(*grid, options).triangleCount();
+  }
+  // Four times the radius, twice the cell: four times the triangles, not sixteen.
+  EXPECT_LT(triangles[1], 7 * triangles[0]);
+  EXPECT_GT(triangles[1], 2 * triangles[0]);
+}
+
+TEST(Adaptive, ToleranceGridScalesInSpace) {
+  const auto grid = shape(Shape::Sphere, 0.02);
+  // Fine where x > 0.
+  auto mask = openvdb::FloatGrid::create(1.0F);
+  mask->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
+  mask->sparseFill({openvdb::Coord(0, -30, -30), openvdb::Coord(30, 30, 30)}, 0.0F, true);
+  ContourOptions options;
+  options.tolerance = 1;
+  options.toleranceGrid = mask;
+  const Mesh mesh = contour(*grid, options);
+  const auto count = [&](bool fine) {
+    return std::count_if(mesh.positions.begin(), mesh.positions.end(),
+                         [&](const Position& p) { return fine ? p.x > 0.05 : p.x < -0.05; });
+  };
+  EXPECT_GT(count(true), 10 * count(false));
+  expectSameTopology(mesh, uniformMesh(*grid));
+}
+
+TEST(Adaptive, RefusesOptionsOutOfTheirRange) {
+  const auto grid = shape(Shape::Sphere, 0.1);
+  const auto refused = [&](const std::function<void(ContourOptions&)>& spoil) {
+    ContourOptions options;
+    spoil(options);
+    try {
+      (void)contour(*grid, options);
+    } catch (const Error& error) {
+      return error.code() == ErrorCode::InvalidArgument;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused([](ContourOptions& o) { o.tolerance = -1; }));
+  EXPECT_TRUE(refused([](ContourOptions& o) { o.tolerance = std::nan(""); }));
+  EXPECT_TRUE(refused([](ContourOptions& o) { o.maxAngle = 181; }));
+  EXPECT_TRUE(refused([](ContourOptions& o) { o.minCell = 3; }));
+  EXPECT_TRUE(refused([](ContourOptions& o) { o.maxCell = 0; }));
+  EXPECT_TRUE(refused([](ContourOptions& o) { o.minCell = 8, o.maxCell = 4; }));
+}
+
+TEST(Restricted, KnowsWhatTouches) {
+  EXPECT_TRUE(isRestricted({}));
+  EXPECT_TRUE(isRestricted({{{0, 0, 0}, 1}, {{2, 2, 2}, 0}}));
+  EXPECT_TRUE(isRestricted({{{0, 0, 0}, 2}, {{5, 0, 0}, 0}}));
+  EXPECT_FALSE(isRestricted({{{0, 0, 0}, 2}, {{4, 4, 4}, 0}}));   // by a corner
+  EXPECT_FALSE(isRestricted({{{-4, 0, 0}, 2}, {{0, 0, 0}, 0}}));  // by a face
+  EXPECT_FALSE(isRestricted({{{0, 0, 0}, 1}, {{1, 1, 1}, 0}}));   // inside
+}
+
+}  // namespace
+}  // namespace tufa
