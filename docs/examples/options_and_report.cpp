@@ -14,6 +14,7 @@ int main() {
     options.inside = tufa::Inside::Above;             // a density: the solid is where there is more
     options.ambiguity = tufa::Ambiguity::Asymptotic;  // how ambiguous cell faces are joined
     options.tolerance = 0.25;                         // voxels: larger cells where that is kept
+    options.tolerance = 0.05;                         // voxels; the default is 0.1
     options.threads = 2;                              // never changes the result
     options.progress = [](std::string_view stage, double fraction) {
       std::clog << stage << " " << static_cast<int>(100 * fraction) << " %\r";
@@ -23,6 +24,10 @@ int main() {
     tufa::ContourReport report;
     const tufa::Mesh mesh = tufa::contour(*fog, options, &report);
     std::cout << report.surfaceCells << " surface cells of " << report.activeVoxels << " voxels\n";
+    if (report.certificate) {
+      std::cout << "at most " << report.certificate->maxErrorVoxels
+                << " voxels off the uniform mesh\n";
+    }
     for (const tufa::StageTime& time : report.stages) {
       std::cout << "  " << time.stage << ": " << time.seconds << " s\n";
     }

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     const tufa::Mesh mesh = tufa::contour(*grid);
     tufa::write(mesh, argc > 1 ? argv[1] : "bracket.ply");
 
-    std::cout << mesh.quads.size() << " quads, " << mesh.positions.size() << " vertices\n";
+    std::cout << mesh.triangleCount() << " triangles, " << mesh.positions.size() << " vertices\n";
   } catch (const tufa::Error& error) {
     std::cerr << error.what() << "\n";
     return 1;

@@ -47,7 +47,9 @@ int main(int argc, char** argv) {
     tufa::ShapeOptions shape;
     shape.voxelSize = 0.03;
     const openvdb::FloatGrid::Ptr grid = tufa::makeShape(tufa::Shape::Bracket, shape);
-    const tufa::Mesh theirs = volumeToMesh(*grid), ours = tufa::contour(*grid);
+    tufa::ContourOptions options;
+    options.uniform = true;  // as theirs
+    const tufa::Mesh theirs = volumeToMesh(*grid), ours = tufa::contour(*grid, options);
     if (argc > 1) {
       const std::filesystem::path folder = argv[1];
       tufa::write(theirs, folder / "volume_to_mesh.ply");

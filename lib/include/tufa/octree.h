@@ -10,7 +10,7 @@ namespace tufa {
 /// steps along each edge, aligned to multiples of its size.
 struct LeafCell {
   std::array<std::int32_t, 3> corner{};  ///< lowest lattice point
-  int level = 0;
+  int level = 0;                         ///< log2 of the size in lattice steps
 };
 
 /// Whether no two leaves that touch, by a face, an edge or a corner, differ by more than one level,
