@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "check/exact.h"
@@ -14,23 +16,39 @@ using openvdb::Vec3d;
 
 Vec3d toVector(const Position& p) { return {p.x, p.y, p.z}; }
 
-/// The first vertex of each piece.
-std::vector<VertexIndex> firstVertices(const Pieces& pieces) {
-  std::vector<VertexIndex> first(pieces.count, Pieces::kNone);
-  for (VertexIndex v = 0; v < pieces.ofVertex.size(); ++v) {
-    const VertexIndex piece = pieces.ofVertex[v];
-    if (piece != Pieces::kNone && first[piece] == Pieces::kNone) first[piece] = v;
+/// Rays to settle by majority whether a piece lies in a hole; odd, so that there is one.
+constexpr std::size_t kMostRays = 33;
+
+/// The vertices of each piece, in rising order.
+class Members {
+ public:
+  explicit Members(const Pieces& pieces) : begins_(pieces.count + 1) {
+    for (const VertexIndex piece : pieces.ofVertex) {
+      if (piece != Pieces::kNone) ++begins_[piece + 1];
+    }
+    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+    vertices_.resize(begins_.back());
+    std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
+    for (VertexIndex v = 0; v < pieces.ofVertex.size(); ++v) {
+      const VertexIndex piece = pieces.ofVertex[v];
+      if (piece != Pieces::kNone) vertices_[next[piece]++] = v;
+    }
   }
-  return first;
-}
+  [[nodiscard]] std::span<const VertexIndex> of(std::size_t piece) const {
+    return {vertices_.data() + begins_[piece], begins_[piece + 1] - begins_[piece]};
+  }
+
+ private:
+  std::vector<std::size_t> begins_;
+  std::vector<VertexIndex> vertices_;
+};
 
 /// Six times the signed volume of each piece, taken about a vertex of its own.
-std::vector<double> pieceVolumes(const Faces& faces, const Pieces& pieces,
-                                 const std::vector<VertexIndex>& firstVertex) {
+std::vector<double> pieceVolumes(const Faces& faces, const Pieces& pieces, const Members& members) {
   std::vector<double> volumes(pieces.count);
   for (const Triangle& face : faces.proper) {
     const VertexIndex piece = pieces.ofVertex[face.vertices[0]];
-    const Vec3d origin = toVector(faces.positions[firstVertex[piece]]);
+    const Vec3d origin = toVector(faces.positions[members.of(piece).front()]);
     const Vec3d a = toVector(faces.positions[face.vertices[0]]) - origin;
     const Vec3d b = toVector(faces.positions[face.vertices[1]]) - origin;
     const Vec3d c = toVector(faces.positions[face.vertices[2]]) - origin;
@@ -59,6 +77,19 @@ std::size_t depthOf(VertexIndex vertex, const Faces& faces, const Pieces& pieces
   return depth;
 }
 
+/// Whether most of a piece lies in an odd number of others. Vertices disagree only where pieces
+/// intersect: a vertex that pokes through its neighbour must not turn the answer around.
+bool liesInHole(std::span<const VertexIndex> members, const Faces& faces, const Pieces& pieces,
+                const Bvh& tree) {
+  const std::size_t rays = std::min(kMostRays, (members.size() - 1) | 1);
+  std::size_t odd = 0;
+  for (std::size_t ray = 0; ray < rays; ++ray) {
+    const VertexIndex vertex = members[ray * members.size() / rays];
+    odd += depthOf(vertex, faces, pieces, tree) % 2;
+  }
+  return 2 * odd > rays;
+}
+
 /// Pieces that face the way their depth asks for, and the opposite way.
 struct Directions {
   std::size_t right = 0;
@@ -73,14 +104,14 @@ struct Directions {
 }  // namespace
 
 Nesting studyNesting(const Faces& faces, const Pieces& pieces, const Bvh& tree, base::Job& job) {
-  const std::vector<VertexIndex> first = firstVertices(pieces);
-  const std::vector<double> volumes = pieceVolumes(faces, pieces, first);
+  const Members members(pieces);
+  const std::vector<double> volumes = pieceVolumes(faces, pieces, members);
   const auto directions =
       sumRanges<Directions>(job, pieces.count, 64, [&](std::size_t begin, std::size_t end) {
         Directions part;
         for (std::size_t piece = begin; piece < end; ++piece) {
           const bool isHole =
-              pieces.count > 1 && depthOf(first[piece], faces, pieces, tree) % 2 == 1;
+              pieces.count > 1 && liesInHole(members.of(piece), faces, pieces, tree);
           if (volumes[piece] > 0) ++(isHole ? part.wrong : part.right);
           if (volumes[piece] < 0) ++(isHole ? part.right : part.wrong);
         }

@@ -15,9 +15,9 @@ struct Nesting {
   bool alternates = false;
 };
 
-/// Finds for each piece how many others hold it, by a vertical ray from one of its vertices
-/// (exact), and its direction by the sign of its volume. Where pieces intersect the answer is the
-/// one for that vertex.
+/// Finds for each piece whether an odd number of others hold it, by vertical rays (exact) from some
+/// of its vertices, and its direction by the sign of its volume. Where pieces intersect the majority
+/// of those vertices decides.
 [[nodiscard]] Nesting studyNesting(const Faces& faces, const Pieces& pieces, const Bvh& tree,
                                    base::Job& job);
 

@@ -264,6 +264,20 @@ TEST(CheckNesting, SolidInsideACavityFacesOutward) {
   EXPECT_EQ(report.components.size(), 7U);
 }
 
+/// White noise showed this: dual vertices of neighbouring pieces poke through each other.
+TEST(CheckNesting, PiecesThatPokeThroughOthersAreJudgedByTheirMajority) {
+  const Mesh large = box(Position(0, 0, 0), Position(9, 9, 9));
+  // The corner with the first vertex, which alone decided once.
+  const Mesh beside = box(Position(8, 8, 8), Position(12, 12, 12));
+  EXPECT_TRUE(check(joined(large, beside)).outward);
+  EXPECT_FALSE(check(joined(large, inverted(beside))).outward);
+  const Mesh hollow = box(Position(3, 3, 3), Position(6, 6, 6));
+  Mesh poking = hollow;
+  poking.positions[0] = Position(-1, -1, -1);
+  EXPECT_TRUE(check(joined(large, inverted(poking))).outward);
+  EXPECT_FALSE(check(joined(large, poking)).outward);
+}
+
 TEST(CheckNesting, ManyPiecesAgreeWithTheAnswerForFew) {
   Mesh row;
   for (int i = 0; i < 600; ++i) {
