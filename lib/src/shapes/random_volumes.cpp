@@ -108,13 +108,13 @@ openvdb::FloatGrid::Ptr makeNoise(const ShapeOptions& options) {
 
 openvdb::FloatGrid::Ptr makeFog(const ShapeOptions& options) {
   const double voxelSize = options.voxelSize;
+  BlockSource source;
+  source.halfExtentVoxels = extentInVoxels(kPuffSpread + kGreatestPuff, voxelSize, 1);
   auto grid = openvdb::FloatGrid::create(0.0f);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxelSize));
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
 
   const std::vector<Puff> puffs = makePuffs(options.seed);
-  BlockSource source;
-  source.halfExtentVoxels = extentInVoxels(kPuffSpread + kGreatestPuff, voxelSize, 1);
   source.mayBeActive = [&](const openvdb::Coord& origin, int side) {
     return !puffsNear(puffs, origin, side, voxelSize).empty();
   };

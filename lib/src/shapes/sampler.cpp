@@ -122,12 +122,12 @@ int extentInVoxels(double worldLength, double voxelSize, double margin) {
 openvdb::FloatGrid::Ptr sampleLevelSet(const DistanceField& field, const ShapeOptions& options) {
   const double voxelSize = options.voxelSize;
   const double band = options.halfWidth * voxelSize;
+  BlockSource source;
+  // First of all: it refuses voxel sizes that OpenVDB would not take for a transform.
+  source.halfExtentVoxels = extentInVoxels(field.halfExtent(), voxelSize, options.halfWidth);
   auto grid = openvdb::FloatGrid::create(static_cast<float>(band));
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxelSize));
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
-
-  BlockSource source;
-  source.halfExtentVoxels = extentInVoxels(field.halfExtent(), voxelSize, options.halfWidth);
   source.mayBeActive = [&](const openvdb::Coord& origin, int side) {
     // The samples of a cube fill it but for its last layer.
     const double half = 0.5 * (side - 1);
