@@ -53,7 +53,8 @@ void VdbReader::guarded(const std::string& what, const std::function<void()>& wo
 void VdbReader::requireVdb() {
   std::error_code error;
   const auto status = std::filesystem::status(path_, error);
-  if (!std::filesystem::exists(status)) fail(error ? error.message() : "no such file");
+  if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+  if (error) fail(error.message());
   if (std::filesystem::is_directory(status)) fail("it is a folder");
   if (!std::filesystem::is_regular_file(status)) fail("it is not a regular file");
   stream_.open(path_, std::ios_base::binary);
