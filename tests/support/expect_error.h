@@ -5,7 +5,7 @@
 #include <tufa/error.h>
 #include <string>
 
-namespace tufa::testing {
+namespace tufa::test {
 
 /// Expects that `work` throws an Error with that code, in one line that holds `part`.
 template <class Work>
@@ -21,4 +21,4 @@ void expectError(ErrorCode code, const std::string& part, Work&& work) {
   }
 }
 
-}  // namespace tufa::testing
+}  // namespace tufa::test

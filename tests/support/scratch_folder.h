@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace tufa::testing {
+namespace tufa::test {
 
 /// A folder of its own for one test, gone afterwards.
 class ScratchFolder {
@@ -55,4 +55,4 @@ inline std::string readBytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-}  // namespace tufa::testing
+}  // namespace tufa::test

@@ -16,9 +16,9 @@
 namespace tufa {
 namespace {
 
-using testing::readBytes;
-using testing::ScratchFolder;
-using testing::writeBytes;
+using test::readBytes;
+using test::ScratchFolder;
+using test::writeBytes;
 
 struct Outcome {
   int exitCode = -1;

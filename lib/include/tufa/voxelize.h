@@ -15,9 +15,11 @@ struct VoxelizeOptions {
   Progress progress;     ///< called from the calling thread; may cancel
 };
 
-/// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. The mesh should be
-/// closed; an open one gives an unsigned shell that OpenVDB decides the inside of. Throws Error:
-/// InvalidArgument (voxel size, half width, empty mesh), Cancelled.
+/// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. Distances are exact
+/// within a voxel of the mesh; farther out, beyond its edges, they may be too large by about a
+/// tenth of a voxel. The mesh should be closed; an open one gives an unsigned shell that OpenVDB
+/// decides the inside of. Throws Error: InvalidArgument (voxel size, half width, empty mesh),
+/// Cancelled.
 [[nodiscard]] openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options);
 
 }  // namespace tufa

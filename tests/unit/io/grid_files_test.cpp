@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 
 #include <tufa/io.h>
 #include <tufa/shapes.h>
+#include <fstream>
 #include <limits>
 
 #include "support/expect_error.h"
@@ -12,10 +14,10 @@
 namespace tufa {
 namespace {
 
-using testing::expectError;
-using testing::readBytes;
-using testing::ScratchFolder;
-using testing::writeBytes;
+using test::expectError;
+using test::readBytes;
+using test::ScratchFolder;
+using test::writeBytes;
 
 openvdb::FloatGrid::Ptr makeBall(const std::string& name) {
   ShapeOptions options;

@@ -14,10 +14,10 @@
 namespace tufa {
 namespace {
 
-using testing::expectError;
-using testing::readBytes;
-using testing::ScratchFolder;
-using testing::writeBytes;
+using test::expectError;
+using test::readBytes;
+using test::ScratchFolder;
+using test::writeBytes;
 
 /// A pyramid: one quad below, four triangles above; shifted, so that precision can be tested.
 Mesh makePyramid(double shift = 0) {
@@ -97,7 +97,7 @@ TEST_P(EveryFormat, SurvivesDamage) {
   };
   for (std::size_t length = 0; length < whole.size(); ++length) tryToRead(whole.substr(0, length));
   for (std::size_t at = 0; at < whole.size(); ++at) {
-    for (const int flip : {0x01, 0x10, 0x80, 0xFF}) {
+    for (const int flip : {0x01, 0x80}) {
       std::string changed = whole;
       changed[at] = static_cast<char>(changed[at] ^ flip);
       tryToRead(changed);

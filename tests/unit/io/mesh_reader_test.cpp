@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <tufa/io.h>
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -12,9 +13,9 @@
 namespace tufa {
 namespace {
 
-using testing::expectError;
-using testing::ScratchFolder;
-using testing::writeBytes;
+using test::expectError;
+using test::ScratchFolder;
+using test::writeBytes;
 
 Mesh readText(const std::string& name, const std::string& text) {
   const ScratchFolder folder;
@@ -193,7 +194,7 @@ std::string glb(const std::string& json, const std::string& binary = "") {
 std::string glbScene(const std::string& nodes, std::uint32_t indexCount = 3) {
   std::string binary;
   for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) append(binary, x);
-  for (const std::uint8_t index : {0, 1, 2, 0}) append(binary, index);
+  for (const int index : {0, 1, 2, 0}) append(binary, static_cast<std::uint8_t>(index));
   return glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
                  R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
               "buffers":[{"byteLength":40}],

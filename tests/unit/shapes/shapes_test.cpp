@@ -12,7 +12,7 @@
 namespace tufa {
 namespace {
 
-using testing::expectError;
+using test::expectError;
 
 openvdb::FloatGrid::Ptr make(Shape shape, double voxelSize, int threads = 0) {
   ShapeOptions options;

@@ -11,7 +11,7 @@
 namespace tufa {
 namespace {
 
-using testing::expectError;
+using test::expectError;
 
 /// A cube of half side 1 in quads.
 Mesh makeCube() {
@@ -37,8 +37,13 @@ TEST(Voxelize, GivesTheSignedDistance) {
   EXPECT_EQ(grid->getName(), "surface");
   EXPECT_NEAR(grid->background(), 0.21, 1e-6);
   EXPECT_GT(grid->activeVoxelCount(), 10000u);
+  // OpenVDB widens the band from the voxels at the surface outward by the faces that it meets on
+  // the way: beyond an edge it may miss the nearest one by a little.
   for (auto value = grid->cbeginValueOn(); value; ++value) {
-    ASSERT_NEAR(*value, cubeDistance(grid->indexToWorld(value.getCoord())), 1e-5);
+    const double truth = cubeDistance(grid->indexToWorld(value.getCoord()));
+    const double tolerance = std::abs(truth) < options.voxelSize ? 1e-5 : 0.15 * options.voxelSize;
+    ASSERT_NEAR(*value, truth, tolerance) << value.getCoord();
+    ASSERT_GE(std::abs(*value), std::abs(truth) - 1e-5) << value.getCoord();
   }
 }
 
