@@ -21,8 +21,8 @@ typename GridT::Ptr sampled(const openvdb::CoordBBox& box, typename GridT::Value
 }
 
 /// A level set of a function of the lattice point that is a distance in voxels: active where
-/// |distance| < halfWidth, clamped to the background on its side elsewhere. The values are scaled by
-/// the voxel size.
+/// |distance| < halfWidth, clamped to the background on its side elsewhere. The values are scaled
+/// by the voxel size.
 template <class GridT, class Function>
 typename GridT::Ptr levelSet(const openvdb::CoordBBox& box, double halfWidth,
                              const Function& distance, double voxelSize = 1) {
@@ -42,7 +42,7 @@ typename GridT::Ptr levelSet(const openvdb::CoordBBox& box, double halfWidth,
 
 /// What noise() makes.
 struct NoiseOptions {
-  int size = 64;            ///< samples along each axis
+  int size = 64;  ///< samples along each axis
   std::uint32_t seed = 1;
   openvdb::Coord first{-13, 5, -40};  ///< not on a block's corner
   /// Values are whole numbers from -2 to 2, else uniform between -1 and 1.
@@ -57,9 +57,10 @@ typename GridT::Ptr noise(const NoiseOptions& options) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::uniform_int_distribution<int> whole(-2, 2);
   const openvdb::CoordBBox box(options.first, options.first.offsetBy(options.size - 1));
-  return sampled<GridT>(
-      box, static_cast<typename GridT::ValueType>(options.border),
-      [&](const openvdb::Coord&) { return options.wholeNumbers ? whole(random) : uniform(random); });
+  return sampled<GridT>(box, static_cast<typename GridT::ValueType>(options.border),
+                        [&](const openvdb::Coord&) {
+                          return options.wholeNumbers ? whole(random) : uniform(random);
+                        });
 }
 
 /// What randomTree() makes.
@@ -70,8 +71,8 @@ struct RandomTreeOptions {
   double background = 1;
 };
 
-/// A cube of blocks each of which is, by chance, nothing, a tile of either side, or a leaf: uniform,
-/// striped along an axis or noise. Tiles and samples are active or not by chance.
+/// A cube of blocks each of which is, by chance, nothing, a tile of either side, or a leaf:
+/// uniform, striped along an axis or noise. Tiles and samples are active or not by chance.
 template <class GridT>
 typename GridT::Ptr randomTree(const RandomTreeOptions& options) {
   using Value = typename GridT::ValueType;

@@ -56,8 +56,7 @@ std::vector<LatticeEdge> crossedEdgesOf(const blocks::Blocks<TreeT>& blocks,
     const auto block = static_cast<blocks::BlockRef>(i);
     const auto corners = blocks.cornerWords(blocks.upperNeighbours(block, accessor));
     for (int cell = 0; cell < blocks::kBlockCells; ++cell) {
-      const openvdb::Coord at =
-          blocks.origin(block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
+      const openvdb::Coord at = blocks.origin(block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
       const auto crossed = components::crossedEdges(corners, cell >> 6);
       for (int axis = 0; axis < 3; ++axis) {
         if (((crossed[axis] >> (cell & 63)) & 1) == 0) continue;

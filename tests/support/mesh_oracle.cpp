@@ -45,7 +45,8 @@ void countEdges(const std::vector<Face>& faces, MeshTopology& topology) {
   std::sort(uses.begin(), uses.end());
   for (std::size_t i = 0; i < uses.size();) {
     std::size_t end = i;
-    while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high) ++end;
+    while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high)
+      ++end;
     ++topology.edges;
     if (end - i == 1) ++topology.boundaryEdges;
     if (end - i > 2) ++topology.nonManifoldEdges;
@@ -54,8 +55,8 @@ void countEdges(const std::vector<Face>& faces, MeshTopology& topology) {
   }
 }
 
-// Whether the links of a vertex, one pair of neighbours for each face around it, are one path or one
-// cycle.
+// Whether the links of a vertex, one pair of neighbours for each face around it, are one path or
+// one cycle.
 bool isFan(const std::vector<std::pair<VertexIndex, VertexIndex>>& links) {
   std::map<VertexIndex, std::vector<VertexIndex>> around;
   for (const auto& [a, b] : links) {

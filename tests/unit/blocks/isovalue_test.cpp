@@ -59,8 +59,8 @@ TEST(Isovalue, IgnoresNonFiniteSamples) {
 
 TEST(Isovalue, MustBeFinite) {
   const auto grid = rampGrid(0, openvdb::GRID_FOG_VOLUME);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW((void)chooseIsovalue(*grid, bad, Inside::Auto), Error);
   }
 }

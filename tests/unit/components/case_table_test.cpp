@@ -152,9 +152,9 @@ TEST(CaseTable, CellsThatShareAFaceSeeTheSameArcs) {
         }
         if (!fits) continue;
         for (int joined = 0; joined < 2; ++joined) {
-          const auto below = facePartition(static_cast<CornerMask>(lower),
-                                           static_cast<FaceBits>(joined << (axis * 2 + 1)),
-                                           axis * 2 + 1);
+          const auto below =
+              facePartition(static_cast<CornerMask>(lower),
+                            static_cast<FaceBits>(joined << (axis * 2 + 1)), axis * 2 + 1);
           const auto above = facePartition(static_cast<CornerMask>(upper),
                                            static_cast<FaceBits>(joined << (axis * 2)), axis * 2);
           ASSERT_EQ(movedAlong(below, axis), above) << lower << " " << upper;

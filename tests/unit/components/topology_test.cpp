@@ -51,7 +51,8 @@ std::size_t surfaceCellsIn(const FloatGrid& grid, const CoordBBox& cells) {
   return count;
 }
 
-// Samples inside and outside by the bits of `pattern`, in the order of the box, surrounded by outside.
+// Samples inside and outside by the bits of `pattern`, in the order of the box, surrounded by
+// outside.
 FloatGrid::Ptr patternGrid(const CoordBBox& box, unsigned pattern, std::mt19937& random) {
   std::uniform_real_distribution<double> size(0.05, 1);
   unsigned bit = 0;
@@ -154,7 +155,8 @@ struct Stages {
     const base::Affine affine(grid.transform());
     const creases::VertexSides sides(topology.vertexCount);
     polygons::connectQuads(
-        polygons::QuadContext<openvdb::FloatTree>{blocks, topology, scale, affine, sides}, mesh, job);
+        polygons::QuadContext<openvdb::FloatTree>{blocks, topology, scale, affine, sides}, mesh,
+        job);
     return mesh;
   }
 };
@@ -212,8 +214,8 @@ TEST(Topology, RandomCutsLeaveAManifoldWithBoundary) {
       ASSERT_GT(stages.topology.cutEdges, 0U);
       const auto found = tufa::test::inspect(stages.faces(*grid));
       EXPECT_GT(found.boundaryEdges, 0U);
-      EXPECT_TRUE(found.manifold()) << "seed " << seed << " rule " << static_cast<int>(rule) << ": "
-                                    << found;
+      EXPECT_TRUE(found.manifold())
+          << "seed " << seed << " rule " << static_cast<int>(rule) << ": " << found;
     }
   }
 }
