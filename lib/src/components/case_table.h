@@ -89,18 +89,18 @@ class Components {
 
   /// The component, from 0, that owns the crossing of `edge`, which must be crossed and not cut.
   [[nodiscard]] constexpr int of(int edge) const {
-    return static_cast<int>(packed_ >> (2 * edge)) & 3;
+    return static_cast<int>(packed_ >> (3 * edge)) & 7;
   }
-  /// Number of components, 0 to 4.
-  [[nodiscard]] constexpr int count() const { return static_cast<int>(packed_ >> 24); }
+  /// Number of components: 0 to 4 loops, or up to 6 chains where crossings are cut.
+  [[nodiscard]] constexpr int count() const { return static_cast<int>(packed_ >> 36); }
 
   constexpr void set(int edge, int component) {
-    packed_ |= static_cast<std::uint32_t>(component) << (2 * edge);
+    packed_ |= static_cast<std::uint64_t>(component) << (3 * edge);
   }
-  constexpr void setCount(int count) { packed_ |= static_cast<std::uint32_t>(count) << 24; }
+  constexpr void setCount(int count) { packed_ |= static_cast<std::uint64_t>(count) << 36; }
 
  private:
-  std::uint32_t packed_ = 0;
+  std::uint64_t packed_ = 0;
 };
 
 /// Joins the crossings of a cell. `cutEdges` has a bit for each crossing that is left out because
