@@ -80,9 +80,7 @@ void addCheckCommand(CLI::App& app, Command& chosen) {
   check->add_option("--grid", arguments->grid, "the grid's name")->needs(against);
   check->add_option("--iso", arguments->isovalue, "the grid's value on the surface")
       ->needs(against);
-  check->add_option("--threads", arguments->threads, "most threads, 0: all")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  addThreadsOption(*check, arguments->threads);
   check->add_flag("--json", arguments->json, "one JSON object on standard output");
   check->add_flag("--quiet", arguments->quiet, "no text, only the exit code");
   check->callback([arguments, &chosen] { chosen = [arguments] { return runCheck(*arguments); }; });

@@ -19,6 +19,9 @@ void addInfoCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);
 void addCheckCommand(CLI::App& app, Command& chosen);
 
+/// Declares `--threads`, which all of them have.
+void addThreadsOption(CLI::App& app, int& threads);
+
 /// Exit codes of the command.
 inline constexpr int kDone = 0;
 inline constexpr int kPromiseBroken = 1;  ///< the mesh is not what it should be

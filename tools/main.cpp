@@ -51,6 +51,13 @@ std::string oneLine(std::string text) {
 
 }  // namespace
 
+void tufa::tools::addThreadsOption(CLI::App& app, int& threads) {
+  constexpr int kMost = 4096;
+  app.add_option("--threads", threads, "most threads, 0: all")
+      ->check(CLI::Range(0, kMost))
+      ->capture_default_str();
+}
+
 int main(int argc, char** argv) {
   installSignalHandlers();
   CLI::App app("Watertight 2-manifold meshes from sparse OpenVDB volumes", "tufa");

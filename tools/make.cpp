@@ -49,9 +49,7 @@ void addMakeCommand(CLI::App& app, Command& chosen) {
   make->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")
       ->capture_default_str();
   make->add_option("--seed", options.seed, "of terrain, noise and fog")->capture_default_str();
-  make->add_option("--threads", options.threads, "most threads, 0: all")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  addThreadsOption(*make, options.threads);
   make->callback([arguments, &chosen] { chosen = [arguments] { return runMake(*arguments); }; });
 }
 

@@ -301,9 +301,7 @@ void addContourOptions(CLI::App& app, ContourOptions& options) {
                        {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
                        "what to do with NaN and infinite values (default refuse)");
   app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
-  app.add_option("--threads", options.threads, "most threads, 0: all")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  addThreadsOption(app, options.threads);
 }
 
 }  // namespace

@@ -53,9 +53,7 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen) {
   voxelize
       ->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")
       ->capture_default_str();
-  voxelize->add_option("--threads", options.threads, "most threads, 0: all")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  addThreadsOption(*voxelize, options.threads);
   voxelize->callback(
       [arguments, &chosen] { chosen = [arguments] { return runVoxelize(*arguments); }; });
 }

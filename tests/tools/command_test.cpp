@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/points/PointDataGrid.h>
+#include <sys/mount.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <tufa/io.h>
+#include <tufa/shapes.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -20,6 +23,26 @@ using test::readBytes;
 using test::ScratchFolder;
 using test::writeBytes;
 
+/// A small file system in memory, mounted on a folder; not every place lets a test mount one.
+class Mount {
+ public:
+  Mount(std::filesystem::path folder, unsigned long flags, const char* options)
+      : folder_(std::move(folder)) {
+    std::filesystem::create_directory(folder_);
+    mounted_ = ::mount("tufa-test", folder_.c_str(), "tmpfs", flags, options) == 0;
+  }
+  ~Mount() {
+    if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
+  }
+  Mount(const Mount&) = delete;
+  Mount& operator=(const Mount&) = delete;
+  [[nodiscard]] bool mounted() const { return mounted_; }
+
+ private:
+  std::filesystem::path folder_;
+  bool mounted_ = false;
+};
+
 struct Outcome {
   int exitCode = -1;
   std::string out;
@@ -28,11 +51,11 @@ struct Outcome {
 
 class Command : public ::testing::Test {
  protected:
-  /// Runs `tufa ARGUMENTS` in the scratch folder.
-  Outcome run(const std::string& arguments) {
-    const std::string line = "cd '" + (folder / "").string() + "' && '" TUFA_COMMAND "' " +
+  /// Runs `tufa ARGUMENTS` in the scratch folder. `after` is shell text behind its redirections.
+  Outcome run(const std::string& arguments, const std::string& after = "") {
+    const std::string line = "cd '" + (folder / "").string() + "' || exit; '" TUFA_COMMAND "' " +
                              arguments + " >'" + (logs / "out").string() + "' 2>'" +
-                             (logs / "err").string() + "'";
+                             (logs / "err").string() + "' " + after;
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readBytes(logs / "out"),
             readBytes(logs / "err")};
@@ -124,6 +147,7 @@ TEST_F(Command, RefusesWrongUsage) {
   expectFailure("mesh s.vdb -o m.ply --iso nan", 2, "isovalue");
   expectFailure("mesh s.vdb -o m.ply --inside out", 2, "out");
   expectFailure("mesh s.vdb -o m.ply --threads -1", 2, "threads");
+  expectFailure("mesh s.vdb -o m.ply --threads many", 2, "threads");
 }
 
 TEST_F(Command, RefusesUnusableInput) {
@@ -154,6 +178,24 @@ TEST_F(Command, RefusesGridsThatCannotBeMeshed) {
   vectors->tree().setValueOn(openvdb::Coord(0), openvdb::Vec3f(1));
   writeGrids({vectors}, folder / "vectors.vdb");
   expectFailure("mesh vectors.vdb -o m.ply", 3, "vec3s");
+  auto mask = openvdb::BoolGrid::create();
+  mask->tree().setValueOn(openvdb::Coord(0), true);
+  writeGrids({mask}, folder / "mask.vdb");
+  expectFailure("mesh mask.vdb -o m.ply", 3, "bool");
+  auto points = openvdb::points::PointDataGrid::create();
+  points->tree().touchLeaf(openvdb::Coord(0));
+  writeGrids({points}, folder / "points.vdb");
+  expectFailure("mesh points.vdb -o m.ply", 3, "ptdataidx32");
+  auto indices = openvdb::Int32Grid::create();
+  indices->tree().setValueOn(openvdb::Coord(0), 1);
+  writeGrids({indices}, folder / "indices.vdb");
+  expectFailure("mesh indices.vdb -o m.ply", 3, "int32");
+  auto frustum = openvdb::FloatGrid::create(1.0f);
+  frustum->tree().setValueOn(openvdb::Coord(0), -1.0f);
+  frustum->setTransform(openvdb::math::Transform::createFrustumTransform(
+      openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(10)), 0.5, 10, 1));
+  writeGrids({frustum}, folder / "frustum.vdb");
+  expectFailure("mesh frustum.vdb -o m.ply", 3, "frustum");
 
   writeGrids({openvdb::FloatGrid::create(1.0f)}, folder / "empty.vdb");
   expectFailure("mesh empty.vdb -o m.ply", 3, "no active voxels");
@@ -162,7 +204,8 @@ TEST_F(Command, RefusesGridsThatCannotBeMeshed) {
   auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(readGrid(folder / "s.vdb"));
   grid->tree().setValueOn(openvdb::Coord(10, 0, 0), std::nanf(""));
   writeGrids({grid}, folder / "nan.vdb");
-  expectFailure("mesh nan.vdb -o m.ply", 3, "10");
+  expectFailure("mesh nan.vdb -o m.ply", 3, "10, 0, 0");
+  expectFailure("mesh nan.vdb -o m.ply", 3, "1 ");
   EXPECT_EQ(run("mesh nan.vdb -o m.ply --nan outside").exitCode, 0);
 }
 
@@ -191,11 +234,118 @@ TEST_F(Command, ExitsWithOneForBrokenPromises) {
   EXPECT_EQ(run("check open.obj").exitCode, 1);
 }
 
+TEST_F(Command, TellsOfAFullDisk) {
+  makeSphere();
+  const Mount disk(folder / "disk", 0, "size=16k");
+  if (!disk.mounted()) GTEST_SKIP() << "no file system may be mounted here";
+  for (const char* arguments : {"mesh s.vdb -o disk/m.ply", "mesh s.vdb -o disk/m.obj",
+                                "make sphere -o disk/s.vdb", "mesh s.vdb -o disk/m.glb"}) {
+    expectFailure(arguments, 3, "No space left");
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "disk")) << arguments;
+  }
+}
+
+TEST_F(Command, TellsOfAReadOnlyDisk) {
+  makeSphere();
+  const Mount disk(folder / "disk", MS_RDONLY, "");
+  if (!disk.mounted()) GTEST_SKIP() << "no file system may be mounted here";
+  expectFailure("mesh s.vdb -o disk/m.ply", 3, "Read-only");
+  expectFailure("make sphere -o disk/s.vdb", 3, "Read-only");
+}
+
+TEST_F(Command, ChoosesAmongSeveralGrids) {
+  ShapeOptions options;
+  options.voxelSize = 0.1;
+  auto fog = makeShape(Shape::Fog, options);
+  auto sphere = makeShape(Shape::Sphere, options);
+  auto box = makeShape(Shape::Box, options);
+  writeGrids({fog, sphere, box}, folder / "all.vdb");
+  const auto gridOf = [&](const std::string& arguments) {
+    const Outcome outcome = run("mesh all.vdb -o m.ply --json " + arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out).at("grid").get<std::string>();
+  };
+  EXPECT_EQ(gridOf(""), "sphere");
+  EXPECT_EQ(gridOf("--grid fog"), "fog");
+  EXPECT_EQ(gridOf("--grid box"), "box");
+  expectFailure("mesh all.vdb -o n.ply --grid bow", 3, "\"fog\", \"sphere\", \"box\"");
+  const Outcome info = run("info all.vdb --json");
+  const auto grids = nlohmann::json::parse(info.out).at("grids");
+  ASSERT_EQ(grids.size(), 3U);
+  for (const char* key : {"name", "class", "value_type", "transform", "voxel_size", "active_voxels",
+                          "tiles", "non_finite_values", "meshable"}) {
+    EXPECT_TRUE(grids[0].contains(key)) << key;
+  }
+}
+
+TEST_F(Command, SaysNothingWhenQuiet) {
+  makeSphere();
+  for (const char* arguments : {"mesh s.vdb -o m.ply --check --quiet", "check m.ply --quiet"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_EQ(outcome.out + outcome.err, "") << arguments;
+  }
+}
+
+TEST_F(Command, CheckComparesWithTheVolume) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o m.ply --quiet").exitCode, 0);
+  const Outcome outcome = run("check m.ply --against s.vdb --json");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto distance = nlohmann::json::parse(outcome.out).at("distance");
+  for (const char* side : {"mesh_to_surface", "surface_to_mesh"}) {
+    EXPECT_LT(distance.at(side).at("largest").get<double>(), 0.1) << side;
+    EXPECT_GT(distance.at(side).at("samples").get<int>(), 1000) << side;
+  }
+  expectFailure("check m.ply --against none.vdb", 3, "none.vdb");
+}
+
+TEST_F(Command, NamesTheEdgeOfTheDataAndCapsIt) {
+  ShapeOptions options;
+  options.voxelSize = 0.1;
+  const auto grid = makeShape(Shape::Sphere, options);
+  grid->clip(openvdb::CoordBBox(openvdb::Coord(-20), openvdb::Coord(20, 20, 3)));
+  writeGrids({grid}, folder / "cut.vdb");
+  const Outcome open = run("mesh cut.vdb -o m.ply --check --json");
+  EXPECT_EQ(open.exitCode, 1);
+  EXPECT_NE(open.err.find("runs out of the data"), std::string::npos) << open.err;
+  EXPECT_NE(open.err.find("boundary edges"), std::string::npos) << open.err;
+  const auto json = nlohmann::json::parse(open.out);
+  EXPECT_GT(json.at("cut_edges"), 0);
+  EXPECT_GT(json.at("check").at("boundary_edges"), 0);
+  EXPECT_EQ(run("mesh cut.vdb -o m.ply --check --cap").exitCode, 0);
+}
+
+/// Waits until the command hears signals, not for a time: a signal before that would be lost.
 TEST_F(Command, StopsWhenAsked) {
-  const Outcome outcome =
-      run("make gyroid --voxel 0.0015 -o g.vdb & sleep 0.5; kill -INT $!; wait $!");
-  EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
-  EXPECT_EQ(folder.fileCount(), 0);
+  if (!std::filesystem::exists("/proc/self/status")) GTEST_SKIP() << "no /proc to look into";
+  ASSERT_EQ(run("make sphere --voxel 0.01 -o s.vdb").exitCode, 0);
+  const std::string interrupt =
+      "& until grep -q '^SigCgt:.*[2367abef]$' /proc/$!/status; do :; done; kill -INT $!; wait $!";
+  for (const char* arguments : {"make gyroid --voxel 0.0015 -o g.vdb",
+                                "mesh s.vdb -o m.ply --check", "mesh s.vdb -o m.stl --json"}) {
+    const Outcome outcome = run(arguments, interrupt);
+    EXPECT_EQ(outcome.exitCode, 130) << arguments << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find("cancelled"), std::string::npos) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(folder.fileCount(), 1) << arguments;
+  }
+}
+
+TEST_F(Command, SurvivesAReaderThatWentAway) {
+  makeSphere();
+  int ends[2] = {};
+  ASSERT_EQ(::pipe(ends), 0);
+  ::close(ends[0]);
+  constexpr int kFree = 9;  // the shell takes numbers of one digit
+  ASSERT_EQ(::dup2(ends[1], kFree), kFree);
+  ::close(ends[1]);
+  for (const char* arguments : {"mesh s.vdb -o m.ply --json", "info s.vdb"}) {
+    const Outcome outcome = run(arguments, ">&9");
+    EXPECT_EQ(outcome.exitCode, 3) << arguments;
+    EXPECT_NE(outcome.err.find("standard output: Broken pipe"), std::string::npos) << outcome.err;
+  }
+  ::close(kFree);
 }
 
 }  // namespace
