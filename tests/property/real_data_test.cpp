@@ -1,0 +1,124 @@
+// Every mesh and volume of the sample folder goes through the whole pipeline.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <tufa/check.h>
+#include <tufa/contour.h>
+#include <tufa/error.h>
+#include <tufa/io.h>
+#include <tufa/voxelize.h>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/expect_error.h"
+
+namespace tufa {
+namespace {
+
+const std::filesystem::path kFolder = TUFA_TEST_DATA;
+const char* const kNone = "none";
+
+/// Names of the sample files with one of these endings; one name that stands for none if there are
+/// no samples, so that the test is listed and says that it was skipped.
+std::vector<std::string> filesOf(const std::set<std::string>& endings) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(kFolder, error)) {
+    std::string ending = entry.path().extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (endings.count(ending) != 0) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  if (names.empty()) names.emplace_back(kNone);
+  return names;
+}
+
+std::string testName(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
+}
+
+class Sample : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == kNone) GTEST_SKIP() << "no sample files in " << kFolder;
+  }
+  [[nodiscard]] static std::filesystem::path path() { return kFolder / GetParam(); }
+};
+
+/// Checks that need not search for intersections, which is the work of the command and its table.
+CheckReport checkTopology(const Mesh& mesh, bool weld = false) {
+  CheckOptions options;
+  options.selfIntersections = false;
+  options.weld = weld;
+  return check(mesh, options);
+}
+
+double extentOf(const Mesh& mesh) {
+  openvdb::BBoxd box;
+  for (const Position& p : mesh.positions) box.expand(openvdb::Vec3d(p.x, p.y, p.z));
+  return box.extents()[static_cast<int>(box.maxExtent())];
+}
+
+class SampleMesh : public Sample {};
+INSTANTIATE_TEST_SUITE_P(Files, SampleMesh,
+                         ::testing::ValuesIn(filesOf({".obj", ".off", ".stl", ".glb", ".ply"})),
+                         testName);
+
+TEST_P(SampleMesh, ComesBackFromItsVolumeAsAManifold) {
+  const Mesh input = readMesh(path());
+  ASSERT_GT(input.triangleCount(), 0U);
+  const CheckReport truth = checkTopology(input, true);
+  for (const int voxels : {60, 130}) {
+    VoxelizeOptions options;
+    options.voxelSize = extentOf(input) / voxels;
+    ContourReport report;
+    const auto grid = voxelize(input, options);
+    const Mesh mesh = contour(*grid, {}, &report);
+    const CheckReport found = checkTopology(mesh);
+    EXPECT_TRUE(found.manifold && found.oriented) << voxels;
+    EXPECT_EQ(found.duplicateFaces + found.collapsedFaces + found.invalidFaces, 0U) << voxels;
+    if (!truth.closed) continue;
+    EXPECT_EQ(report.cutEdges, 0U) << voxels;
+    EXPECT_TRUE(found.closed) << voxels;
+    if (!truth.oriented) continue;
+    // The surface is off by less than half a voxel, so the volume by less than that times the area.
+    EXPECT_NEAR(found.volume, truth.volume, 0.5 * options.voxelSize * truth.area) << voxels;
+  }
+}
+
+class SampleVolume : public Sample {};
+INSTANTIATE_TEST_SUITE_P(Files, SampleVolume, ::testing::ValuesIn(filesOf({".vdb"})), testName);
+
+TEST_P(SampleVolume, GivesAManifold) {
+  const auto grid = readGrid(path());
+  ContourReport report;
+  const Mesh mesh = contour(*grid, {}, &report);
+  ASSERT_GT(mesh.triangleCount(), 0U);
+  const CheckReport found = checkTopology(mesh);
+  EXPECT_TRUE(found.manifold && found.oriented);
+  EXPECT_EQ(found.closed, report.cutEdges == 0);
+  EXPECT_EQ(found.duplicateFaces + found.collapsedFaces + found.invalidFaces, 0U);
+  EXPECT_GT(found.volume, 0);
+}
+
+class SampleOfOthers : public Sample {};
+INSTANTIATE_TEST_SUITE_P(Files, SampleOfOthers, ::testing::ValuesIn(filesOf({".nvdb", ".mhd"})),
+                         testName);
+
+TEST_P(SampleOfOthers, IsRefusedByName) {
+  test::expectError(ErrorCode::UnreadableFile, GetParam(), [] { (void)readGrid(path()); });
+}
+
+}  // namespace
+}  // namespace tufa

@@ -1,0 +1,173 @@
+// The surface is found wherever it passes, and comes out right under any transform.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Prune.h>
+
+#include <tufa/contour.h>
+#include <cmath>
+#include <vector>
+
+#include "support/fields.h"
+#include "support/mesh_oracle.h"
+
+namespace tufa {
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using openvdb::FloatGrid;
+using openvdb::Mat4d;
+using openvdb::Vec3d;
+
+/// Lattice edges in a window whose ends lie on different sides: the quads that there must be.
+std::size_t crossedEdges(const FloatGrid& grid, const CoordBBox& window, double isovalue) {
+  std::size_t count = 0;
+  const auto accessor = grid.getConstAccessor();
+  for (auto at = window.begin(); at; ++at) {
+    const bool here = accessor.getValue(*at) < isovalue;
+    for (int axis = 0; axis < 3; ++axis) {
+      Coord next = *at;
+      ++next[axis];
+      count += here != (accessor.getValue(next) < isovalue) ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+void expectWholeSurface(const FloatGrid& grid, const CoordBBox& window, const char* what) {
+  ContourOptions options;
+  options.isovalue = 0;
+  options.inside = Inside::Below;
+  const Mesh mesh = contour(grid, options);
+  EXPECT_EQ(mesh.quads.size(), crossedEdges(grid, window, 0)) << what;
+  const test::MeshTopology topology = test::inspect(mesh);
+  EXPECT_TRUE(topology.manifold() && topology.closed()) << what << " " << topology;
+  EXPECT_GT(test::volume(mesh), 0) << what;
+}
+
+TEST(ContourPlaces, BetweenALeafAndATile) {
+  auto grid = FloatGrid::create(1);
+  grid->tree().addTile(1, Coord(0), -1, true);
+  grid->tree().setValueOn(Coord(8, 2, 2), -1);
+  grid->tree().setValueOn(Coord(-3, 2, 2), -1);
+  expectWholeSurface(*grid, CoordBBox(Coord(-12), Coord(20)), "leaf and tile");
+}
+
+TEST(ContourPlaces, BetweenTilesOfEverySize) {
+  for (const openvdb::Index level : {1U, 2U}) {
+    auto grid = FloatGrid::create(1);
+    grid->tree().addTile(level, Coord(0), -1, false);
+    const int size = level == 1 ? 8 : 128;
+    expectWholeSurface(*grid, CoordBBox(Coord(-2), Coord(size + 2)), "tile");
+    grid->tree().addTile(1, Coord(size, 0, 0), -1, true);
+    expectWholeSurface(*grid, CoordBBox(Coord(-2), Coord(size + 10)), "small beside large");
+  }
+}
+
+TEST(ContourPlaces, OneStepBelowTheOriginOfALeaf) {
+  for (int mask = 1; mask < 8; ++mask) {
+    // The only sample inside is the first of its leaf on some axes.
+    const Coord at((mask & 1) != 0 ? 8 : 11, (mask & 2) != 0 ? 8 : 11, (mask & 4) != 0 ? 8 : 11);
+    auto grid = FloatGrid::create(1);
+    grid->tree().setValueOn(at, -1);
+    expectWholeSurface(*grid, CoordBBox(Coord(0), Coord(20)), "first sample");
+  }
+}
+
+TEST(ContourPlaces, InRandomTrees) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const auto grid = test::randomTree<FloatGrid>({.seed = seed});
+    expectWholeSurface(*grid, CoordBBox(Coord(-30), Coord(40)), "random tree");
+  }
+}
+
+TEST(ContourPlaces, InNarrowBandsFromHalfWidthOne) {
+  const double radius = 12.3;
+  for (const double halfWidth : {1.0, 1.5, 2.0, 5.0}) {
+    const auto grid =
+        test::levelSet<FloatGrid>(CoordBBox(Coord(-20), Coord(20)), halfWidth,
+                                  [&](const Coord& at) { return at.asVec3d().length() - radius; });
+    ContourReport report;
+    const Mesh mesh = contour(*grid, {}, &report);
+    EXPECT_EQ(report.cutEdges, 0U) << halfWidth;
+    const test::MeshTopology topology = test::inspect(mesh);
+    EXPECT_TRUE(topology.manifold() && topology.closed()) << halfWidth << " " << topology;
+    EXPECT_EQ(topology.euler(), 2);
+    for (const Position& p : mesh.positions) {
+      // The narrowest band has no sample beside those of a crossing to take a slope from.
+      EXPECT_NEAR(std::hypot(p.x, p.y, p.z), radius, halfWidth == 1 ? 0.2 : 0.05) << halfWidth;
+    }
+  }
+}
+
+TEST(ContourPlaces, PrunedAndDenseGridsGiveTheSameSurface) {
+  auto grid = test::levelSet<FloatGrid>(CoordBBox(Coord(-30), Coord(30)), 3, [](const Coord& at) {
+    return at.asVec3d().length() - 25.2;
+  });
+  const Mesh before = contour(*grid);
+  openvdb::tools::pruneLevelSet(grid->tree());
+  const Mesh after = contour(*grid);
+  EXPECT_EQ(before.quads.size(), after.quads.size());
+  EXPECT_NEAR(test::volume(before), test::volume(after), 1e-6 * test::volume(before));
+}
+
+struct NamedTransform {
+  const char* name;
+  Mat4d matrix;
+};
+
+std::vector<NamedTransform> transforms() {
+  const Mat4d identity = Mat4d::identity();
+  Mat4d uniform = identity, scaled = identity, turned = identity, sheared = identity;
+  uniform.preScale(Vec3d(0.01));
+  scaled.preScale(Vec3d(0.5, 1, 3));
+  turned.preRotate(openvdb::math::X_AXIS, 0.7);
+  turned.preRotate(openvdb::math::Z_AXIS, 1.9);
+  turned.preTranslate(Vec3d(1000, -500, 2));
+  sheared.preShear(openvdb::math::X_AXIS, openvdb::math::Y_AXIS, 0.6);
+  sheared.preScale(Vec3d(2, 1, 0.7));
+  std::vector<NamedTransform> all = {
+      {"uniform", uniform}, {"scaled", scaled}, {"turned", turned}, {"sheared", sheared}};
+  for (const NamedTransform& plain : std::vector<NamedTransform>(all)) {
+    Mat4d mirrored = plain.matrix;
+    mirrored.preScale(Vec3d(-1, 1, 1));
+    all.push_back({"mirrored", mirrored});
+  }
+  return all;
+}
+
+TEST(ContourPlaces, AnyAffineTransformKeepsTheSurfaceOutward) {
+  const double radius = 9.7;
+  for (const auto& [name, matrix] : transforms()) {
+    auto grid = test::sampled<FloatGrid>(CoordBBox(Coord(-13), Coord(13)), 5, [&](const Coord& at) {
+      return std::min(at.asVec3d().length() - radius, 5.0);
+    });
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+    ContourOptions options;
+    options.isovalue = 0;
+    const Mesh mesh = contour(*grid, options);
+    const test::MeshTopology topology = test::inspect(mesh);
+    EXPECT_TRUE(topology.manifold() && topology.closed()) << name << " " << topology;
+    const double truth = 4.18879020478639 * std::pow(radius, 3) * std::abs(matrix.det());
+    EXPECT_NEAR(test::volume(mesh) / truth, 1, 0.01) << name;
+    // Back in index space every vertex is on the ball, and normals are orthogonal to its tangents.
+    const Mat4d inverse = matrix.inverse();
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Position& p = mesh.positions[v];
+      const Vec3d index = inverse.transform(Vec3d(p.x, p.y, p.z));
+      ASSERT_NEAR(index.length(), radius, 0.05) << name;
+      const Vec3d tangentA =
+          index.cross(std::abs(index[0]) < radius / 2 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0));
+      const Vec3d tangentB = index.cross(tangentA);
+      const Vec3d normal(mesh.normals[v].x, mesh.normals[v].y, mesh.normals[v].z);
+      ASSERT_NEAR(normal.length(), 1, 1e-5);
+      ASSERT_LT(std::abs(normal.dot(matrix.transform3x3(tangentA).unit())), 0.03) << name;
+      ASSERT_LT(std::abs(normal.dot(matrix.transform3x3(tangentB).unit())), 0.03) << name;
+      ASSERT_GT(normal.dot(matrix.transform3x3(index)), 0) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tufa
