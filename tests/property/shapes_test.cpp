@@ -1,6 +1,7 @@
 // Meshes of shapes whose truth is known: topology, area, volume, and how far the surface is off.
 
 #include <gtest/gtest.h>
+#include <openvdb/math/Proximity.h>
 #include <openvdb/openvdb.h>
 
 #include <tufa/contour.h>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "support/fields.h"
 #include "support/mesh_oracle.h"
 
 namespace tufa {
@@ -125,13 +127,52 @@ TEST(ShapeTopology, IsThatOfTheShape) {
   EXPECT_EQ(bracket.euler(), 2 - 2 * 6);
 }
 
-TEST(ShapeTopology, OfTheGyroidDoesNotDependOnTheVoxelSize) {
-  const test::MeshTopology coarse = test::inspect(meshOf(Shape::Gyroid, 0.02));
-  const test::MeshTopology fine = test::inspect(meshOf(Shape::Gyroid, 0.0137));
-  EXPECT_TRUE(fine.manifold() && fine.closed()) << fine;
-  EXPECT_EQ(coarse.euler(), fine.euler());
-  EXPECT_EQ(coarse.components, fine.components);
-  EXPECT_LT(fine.euler(), -20) << "a gyroid has many handles";
+/// Euler characteristic of a gyroid labyrinth of periods^3 cubic cells, cut out of its lattice.
+long long eulerOfGyroid(int periods) {
+  constexpr int kPeriod = 16;
+  const openvdb::CoordBBox box(openvdb::Coord(0), openvdb::Coord(kPeriod * periods - 1));
+  const auto grid = test::sampled<openvdb::FloatGrid>(box, 1, [](const openvdb::Coord& at) {
+    const Vec3d p = (at.asVec3d() + Vec3d(0.37)) * (2 * std::numbers::pi / kPeriod);
+    return std::sin(p[0]) * std::cos(p[1]) + std::sin(p[1]) * std::cos(p[2]) +
+           std::sin(p[2]) * std::cos(p[0]);
+  });
+  ContourOptions options;
+  options.isovalue = 0;
+  const test::MeshTopology topology = test::inspect(contour(*grid, options));
+  EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
+  return topology.euler();
+}
+
+/// A gyroid has Euler characteristic -8 a cubic cell. What the cut adds grows with the faces, edges
+/// and corners of the block, so the third difference knows the cells alone.
+TEST(ShapeTopology, OfAGyroidGrowsByItsCells) {
+  const long long third =
+      eulerOfGyroid(4) - 3 * eulerOfGyroid(3) + 3 * eulerOfGyroid(2) - eulerOfGyroid(1);
+  EXPECT_EQ(third, 6 * -8);
+}
+
+/// Counts that a change may only move on purpose. Euler characteristics follow from the shapes.
+TEST(ShapeSummaries, AreThoseOfBefore) {
+  const struct {
+    Shape shape;
+    double voxelSize;
+    std::size_t vertices, quads;
+    long long euler;
+  } expected[] = {
+      {Shape::Sphere, 0.05, 7472, 7470, 2},        {Shape::Torus, 0.05, 8384, 8384, 0},
+      {Shape::Box, 0.05, 7220, 7218, 2},           {Shape::Bracket, 0.03, 15474, 15484, -10},
+      {Shape::Gyroid, 0.04, 49512, 49998, -486},  {Shape::Terrain, 0.05, 6404, 6402, 2},
+      {Shape::Noise, 0.0625, 48748, 50534, -1786}, {Shape::Fog, 0.05, 4004, 3988, 16},
+  };
+  for (const auto& golden : expected) {
+    const Mesh mesh = meshOf(golden.shape, golden.voxelSize);
+    const test::MeshTopology topology = test::inspect(mesh);
+    const auto name = shapeNames()[static_cast<std::size_t>(golden.shape)];
+    EXPECT_EQ(topology.vertices, golden.vertices) << name;
+    EXPECT_EQ(mesh.quads.size(), golden.quads) << name;
+    EXPECT_EQ(topology.euler(), golden.euler) << name;
+    EXPECT_TRUE(topology.manifold() && topology.closed()) << name << " " << topology;
+  }
 }
 
 TEST(ShapeMeasures, ConvergeToTheTruth) {
