@@ -124,6 +124,36 @@ TEST(Crossings, BesideCreasesComeFromOneSide) {
   EXPECT_LT(offSide, static_cast<int>(found.size()) / 10);
 }
 
+template <int axis>
+void expectBatchesAgree(const BlockField<>& field) {
+  const CrossingFinder finder(field.samples(), field.scale());
+  std::vector<Found> found;
+  addCrossings<axis>(field, found);
+  ASSERT_GE(found.size(), static_cast<std::size_t>(CrossingBatch::kSize));
+  for (std::size_t first = 0; first + CrossingBatch::kSize <= found.size(); ++first) {
+    CrossingBatch batch;
+    for (std::size_t lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      const Vec3d& p = found[first + lane].start;
+      batch.lower[lane] = static_cast<std::uint16_t>(BlockSamples::index(
+          static_cast<int>(p[0]), static_cast<int>(p[1]), static_cast<int>(p[2])));
+    }
+    finder.findAll<axis>(batch);
+    for (std::size_t lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      const Crossing& one = found[first + lane].crossing;
+      ASSERT_EQ(batch.along[lane], one.along);
+      for (int i = 0; i < 3; ++i) ASSERT_EQ(batch.normals[i][lane], one.normal[i]);
+      ASSERT_EQ(((batch.creases >> lane) & 1) != 0, one.crease);
+    }
+  }
+}
+
+TEST(Crossings, InBatchesAreThoseFoundOneByOne) {
+  const auto field = distanceAroundBlock(test::boxWithCornerInBlock());
+  expectBatchesAgree<0>(field);
+  expectBatchesAgree<1>(field);
+  expectBatchesAgree<2>(field);
+}
+
 TEST(Crossings, OfADensityAreNeverCreases) {
   const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
   const openvdb::CoordBBox around(Coord(-8), Coord(16));

@@ -243,6 +243,24 @@ TEST(Qef, BoundedSolutionIsNotTheClampedOne) {
   EXPECT_LE(errorAt(planes, x), errorAt(planes, clamped) + 1e-6);
 }
 
+TEST(Qef, SolvedInBatchesAreThoseSolvedOneByOne) {
+  Planes random(8);
+  std::vector<Qef> qefs;
+  std::vector<Vector> origins;
+  for (int n = 0; n < 203; ++n) {
+    qefs.push_back(
+        sumOf(random.about(random.direction(), random.number(0, 2), random.count(1, 9))));
+    origins.push_back(toVector(random.point(0.3)));
+  }
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{7}, qefs.size()}) {
+    std::vector<Vector> solutions(count);
+    solveAll(qefs.data(), origins.data(), count, 0.8F, solutions.data());
+    for (std::size_t n = 0; n < count; ++n) {
+      ASSERT_EQ(solutions[n], solve(qefs[n].seenFrom(origins[n]), 0.8F)) << n;
+    }
+  }
+}
+
 TEST(Qef, SumsDoNotDependOnTheOrigin) {
   Planes random(7);
   for (int n = 0; n < 100; ++n) {
