@@ -72,7 +72,7 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
     polygons::splitAtCreases(quads, mesh, job);
   }
   if (!options.uniform && !mesh.positions.empty()) {
-    const forest::Base<TreeT> base{blocks, topology, affine, mesh, sides};
+    const forest::Base<TreeT> base{blocks, topology, affine, mesh, sides, options.maxAngle < 180};
     job.beginStage("forest", ends.forest);
     const forest::Forest forest = forest::buildForest(base, rule.maxLevel, job);
     job.beginStage("cut", ends.cut);

@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Samples inside a triangle: one each two voxels of its longest side, but not more than this along
 // it. The base points, which are dense, are measured too; samples find what sticks out between
 // them.
-constexpr int kMostSteps = 5;
+constexpr int kMostSteps = 3;
 constexpr double kSampleSpacing = 2;
 // Most voxels to search around a sample beyond the nearest cells. What is farther is measured to
 // the base quad that the polygon comes from.
@@ -128,19 +128,18 @@ void Certifier<TreeT>::findChanges() {
   }
 }
 
-// The piece around `vertex` that is nearest to the point, if nearer than `squared`. Returns whether
-// it is near enough to stop.
+// A piece around `vertex` that the point lies above and within `enough`, else the nearest one if it
+// is nearer than `squared`. Returns whether it is the former, and the search may end.
 template <class TreeT>
-bool Certifier<TreeT>::findAround(VertexIndex vertex, const Vec3d& point, double& squared,
-                                  std::uint32_t& nearest) const {
-  const double enough = kNearShare * rule_.tolerance * base_.affine.voxelSize();
+bool Certifier<TreeT>::findAround(VertexIndex vertex, const Vec3d& point, double enough,
+                                  double& squared, std::uint32_t& nearest) const {
   const std::uint32_t begin = firstAround_[vertex], end = firstAround_[vertex + 1];
   for (std::uint32_t i = begin; i < end; ++i) {
     double height = 0;
-    if (!pieces_[around_[i]].shape.isAbove(point, height) || height >= squared) continue;
+    if (!pieces_[around_[i]].shape.isAbove(point, height) || height > enough) continue;
     squared = height;
     nearest = around_[i];
-    if (squared <= enough * enough) return true;
+    return true;
   }
   for (std::uint32_t i = begin; i < end; ++i) {
     const double distance = pieces_[around_[i]].shape.squaredDistance(point);
@@ -157,9 +156,10 @@ float Certifier<TreeT>::distanceAround(const VertexIndex* vertices, int count, c
                                        Part& part) const {
   double squared = kInfinity;
   std::uint32_t nearest = 0;
+  const double bound = toleranceAt(point) * base_.affine.voxelSize();
   for (int i = 0; i < count; ++i) {
     if (std::find(vertices, vertices + i, vertices[i]) != vertices + i) continue;
-    if (findAround(vertices[i], point, squared, nearest)) break;
+    if (findAround(vertices[i], point, bound * bound, squared, nearest)) break;
   }
   if (std::isinf(squared)) {  // no polygon is left around them
     part.coarse.insert(part.coarse.end(), vertices, vertices + count);

@@ -59,8 +59,8 @@ class Certifier {
   void measureQuad(std::size_t index, Part& part);
   void measurePiece(std::size_t index, Part& part) const;
   void measureCorner(VertexIndex vertex, Part& part) const;
-  [[nodiscard]] bool findAround(VertexIndex vertex, const openvdb::Vec3d& point, double& squared,
-                                std::uint32_t& nearest) const;
+  [[nodiscard]] bool findAround(VertexIndex vertex, const openvdb::Vec3d& point, double enough,
+                                double& squared, std::uint32_t& nearest) const;
   [[nodiscard]] float distanceAround(const VertexIndex* vertices, int count,
                                      const openvdb::Vec3d& point, Part& part) const;
   void note(const openvdb::Vec3d& point, double voxels, const VertexIndex* corners, int count,

@@ -103,7 +103,7 @@ void BlockForestBuilder<TreeT>::addVertexPlanes(VertexIndex vertex, const openvd
       patch.planes.addPlane(point, base_.affine.planeInLattice(sides.normals[i]));
       NormalCone side;
       side.axis = {sides.normals[i].x, sides.normals[i].y, sides.normals[i].z};
-      patch.cone.add(side);
+      if (base_.angles) patch.cone.add(side);
     }
     if (sides.count > 0) return;
   }
@@ -188,7 +188,7 @@ bool BlockForestBuilder<TreeT>::tryCell(int level, int x, int y, int z,
     for (std::uint32_t i = 0; i < children[child].size(); ++i) {
       const std::uint32_t parent = first + joiner_.parents()[next++];
       here.patches[parent].planes += children[child][i].planes;
-      here.patches[parent].cone.add(children[child][i].cone);
+      if (base_.angles) here.patches[parent].cone.add(children[child][i].cone);
       setParent(level - 1, below.first[slots[child]] + i, parent);
     }
   }

@@ -80,6 +80,7 @@ struct Base {
   const base::Affine& affine;
   const Mesh& mesh;  ///< with normals
   const creases::VertexSides& sides;
+  bool angles = true;  ///< gather the angles between normals, too; else they are 0
 
   [[nodiscard]] const openvdb::Coord& origin(std::size_t surfaceBlock) const {
     return blocks.origin(topology.blocks[surfaceBlock].block);
