@@ -14,19 +14,17 @@
 
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
+#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
+
+using test::uniformMesh;
 
 openvdb::FloatGrid::Ptr shape(Shape kind, double voxelSize) {
   ShapeOptions options;
   options.voxelSize = voxelSize;
   return makeShape(kind, options);
-}
-
-Mesh uniformMesh(const openvdb::GridBase& grid, ContourOptions options = {}) {
-  options.uniform = true;
-  return contour(grid, options);
 }
 
 // The Euler characteristics of a mesh's components, sorted.

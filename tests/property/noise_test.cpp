@@ -13,6 +13,7 @@
 
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
+#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
@@ -41,7 +42,7 @@ Mesh meshOf(const openvdb::GridBase& grid, Ambiguity rule, int threads,
   options.inside = Inside::Below;
   options.ambiguity = rule;
   options.threads = threads;
-  return contour(grid, options, report);
+  return tufa::test::uniformMesh(grid, options, report);
 }
 
 /// A closed, oriented 2-manifold in both senses, as quads and as the triangles that programs see.

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "support/expect_error.h"
+#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
@@ -85,7 +86,7 @@ TEST_P(SampleMesh, ComesBackFromItsVolumeAsAManifold) {
     options.voxelSize = extentOf(input) / voxels;
     ContourReport report;
     const auto grid = voxelize(input, options);
-    const Mesh mesh = contour(*grid, {}, &report);
+    const Mesh mesh = tufa::test::uniformMesh(*grid, {}, &report);
     const CheckReport found = checkTopology(mesh);
     // A plate thinner than a voxel may have no sample inside.
     if (mesh.triangleCount() == 0 && voxels < kFine) continue;
@@ -106,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Files, SampleVolume, ::testing::ValuesIn(filesOf({".vdb
 TEST_P(SampleVolume, GivesAManifold) {
   const auto grid = readGrid(path());
   ContourReport report;
-  const Mesh mesh = contour(*grid, {}, &report);
+  const Mesh mesh = tufa::test::uniformMesh(*grid, {}, &report);
   ASSERT_GT(mesh.triangleCount(), 0U);
   const CheckReport found = checkTopology(mesh);
   EXPECT_TRUE(found.manifold && found.oriented);

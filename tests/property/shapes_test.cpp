@@ -15,6 +15,7 @@
 
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
+#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
@@ -24,7 +25,7 @@ using openvdb::Vec3d;
 Mesh meshOf(Shape shape, double voxelSize, ContourReport* report = nullptr) {
   ShapeOptions options;
   options.voxelSize = voxelSize;
-  return contour(*makeShape(shape, options), {}, report);
+  return tufa::test::uniformMesh(*makeShape(shape, options), {}, report);
 }
 
 Vec3d toVec3d(const Position& p) { return {p.x, p.y, p.z}; }
@@ -138,7 +139,7 @@ long long eulerOfGyroid(int periods) {
   });
   ContourOptions options;
   options.isovalue = 0;
-  const test::MeshTopology topology = test::inspect(contour(*grid, options));
+  const test::MeshTopology topology = test::inspect(tufa::test::uniformMesh(*grid, options));
   EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
   return topology.euler();
 }

@@ -238,7 +238,7 @@ TEST_F(Command, TellsOfAFullDisk) {
   makeSphere();
   const Mount disk(folder / "disk", 0, "size=16k");
   if (!disk.mounted()) GTEST_SKIP() << "no file system may be mounted here";
-  for (const char* arguments : {"mesh s.vdb -o disk/m.ply", "mesh s.vdb -o disk/m.obj",
+  for (const char* arguments : {"mesh s.vdb --uniform -o disk/m.ply", "mesh s.vdb -o disk/m.obj",
                                 "make sphere -o disk/s.vdb", "mesh s.vdb -o disk/m.glb"}) {
     expectFailure(arguments, 3, "No space left");
     EXPECT_TRUE(std::filesystem::is_empty(folder / "disk")) << arguments;
@@ -249,7 +249,7 @@ TEST_F(Command, TellsOfAReadOnlyDisk) {
   makeSphere();
   const Mount disk(folder / "disk", MS_RDONLY, "");
   if (!disk.mounted()) GTEST_SKIP() << "no file system may be mounted here";
-  expectFailure("mesh s.vdb -o disk/m.ply", 3, "Read-only");
+  expectFailure("mesh s.vdb --uniform -o disk/m.ply", 3, "Read-only");
   expectFailure("make sphere -o disk/s.vdb", 3, "Read-only");
 }
 
@@ -289,7 +289,7 @@ TEST_F(Command, SaysNothingWhenQuiet) {
 
 TEST_F(Command, CheckComparesWithTheVolume) {
   makeSphere();
-  ASSERT_EQ(run("mesh s.vdb -o m.ply --quiet").exitCode, 0);
+  ASSERT_EQ(run("mesh s.vdb --uniform -o m.ply --quiet").exitCode, 0);
   const Outcome outcome = run("check m.ply --against s.vdb --json");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   const auto distance = nlohmann::json::parse(outcome.out).at("distance");

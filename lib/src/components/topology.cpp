@@ -101,15 +101,18 @@ Components Topology::componentsAt(const SurfaceBlock& block, int cell, CornerMas
 bool Topology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask, int face) const {
   const unsigned cut = cutEdgesOf(block, cell);
   const auto& edges = kFaceEdges[face];
-  for (const int edge : edges) {
-    if (((cut >> edge) & 1) != 0) return false;
-  }
   const FaceBits joined = faceBits(block, cell) & ambiguousFaces(mask);
   const Components components =
       cut == 0 ? componentsOf(mask, joined) : joinCrossings(mask, joined, cut);
   const bool cutOffInside = ((joined >> face) & 1) == 0;
   const int first = isInside(mask, kFaceCorners[face][0]) == cutOffInside ? 0 : 1;
-  return components.of(edges[first]) == components.of(edges[first + 1]);
+  // An arc belongs to the component of either of its ends that is not cut.
+  const auto ownerOf = [&](int a, int b) {
+    if (((cut >> a) & 1) == 0) return components.of(a);
+    return ((cut >> b) & 1) == 0 ? components.of(b) : -1;
+  };
+  const int owner = ownerOf(edges[(first + 3) % 4], edges[first]);
+  return owner >= 0 && owner == ownerOf(edges[first + 1], edges[first + 2]);
 }
 
 namespace {

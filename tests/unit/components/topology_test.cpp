@@ -13,6 +13,7 @@
 #include "support/fields.h"
 #include "support/lattice.h"
 #include "support/mesh_oracle.h"
+#include "support/uniform_mesh.h"
 #include "unit/components/cell_oracle.h"
 
 namespace tufa::components {
@@ -81,13 +82,12 @@ void expectRowIsMeshed(const FloatGrid& grid, const CoordBBox& box, Ambiguity ru
   CoordBBox cells = box;
   cells.expand(1);
   ContourOptions options;
-  options.uniform = true;
   options.isovalue = 0;
   options.inside = Inside::Below;
   options.ambiguity = rule;
   options.threads = 1;
   ContourReport report;
-  const Mesh mesh = contour(grid, options, &report);
+  const Mesh mesh = tufa::test::uniformMesh(grid, options, &report);
   const blocks::IsoChoice iso{0, true};
   ASSERT_EQ(mesh.quads.size(), tufa::test::crossedEdgesOf(grid.tree(), iso, cells).size());
   ASSERT_EQ(report.surfaceCells, surfaceCellsIn(grid, cells));

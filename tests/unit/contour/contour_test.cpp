@@ -14,6 +14,7 @@
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
+#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
@@ -46,7 +47,7 @@ void expectSolid(const Mesh& mesh, const char* what = "") {
 TEST(Contour, ReportsWhatItDid) {
   const auto grid = ball();
   ContourReport report;
-  const Mesh mesh = contour(*grid, {}, &report);
+  const Mesh mesh = tufa::test::uniformMesh(*grid, {}, &report);
   expectSolid(mesh);
   EXPECT_EQ(report.isovalue, 0);
   EXPECT_TRUE(report.insideIsBelow);
@@ -72,11 +73,11 @@ TEST(Contour, FindsTheIsovalueAndTheInsideByTheClass) {
   grid->tree().root().setBackground(0, false);
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   ContourReport report;
-  expectSolid(contour(*grid, {}, &report));
+  expectSolid(tufa::test::uniformMesh(*grid, {}, &report));
   EXPECT_NEAR(report.isovalue, 1, 0.01);
   EXPECT_FALSE(report.insideIsBelow);
   grid->setGridClass(openvdb::GRID_UNKNOWN);  // the background is low, so inside is above
-  expectSolid(contour(*grid, {}, &report));
+  expectSolid(tufa::test::uniformMesh(*grid, {}, &report));
   EXPECT_FALSE(report.insideIsBelow);
 }
 
@@ -84,7 +85,7 @@ TEST(Contour, MeshesAnyIsovalue) {
   for (const double isovalue : {-1.2, -0.5, 0.0, 1.0, 1.5}) {
     ContourOptions options;
     options.isovalue = isovalue;
-    const Mesh mesh = contour(*ball(), options);
+    const Mesh mesh = tufa::test::uniformMesh(*ball(), options);
     expectSolid(mesh);
     const double truth = 4 * kPi / 3 * std::pow(10 + isovalue, 3);
     EXPECT_NEAR(test::volume(mesh) / truth, 1, 0.01) << isovalue;
@@ -94,9 +95,9 @@ TEST(Contour, MeshesAnyIsovalue) {
 TEST(Contour, InsideAboveTurnsTheSurfaceAround) {
   ContourOptions options;
   options.inside = Inside::Above;
-  const Mesh mesh = contour(*ball(), options);
+  const Mesh mesh = tufa::test::uniformMesh(*ball(), options);
   EXPECT_TRUE(test::inspect(mesh).manifold());
-  EXPECT_NEAR(test::volume(mesh), -test::volume(contour(*ball())), 1e-6 * 4189);
+  EXPECT_NEAR(test::volume(mesh), -test::volume(tufa::test::uniformMesh(*ball())), 1e-6 * 4189);
 }
 
 TEST(Contour, NormalsAreThoseAskedFor) {
@@ -104,7 +105,7 @@ TEST(Contour, NormalsAreThoseAskedFor) {
   ContourOptions options;
   for (const Normals normals : {Normals::Gradient, Normals::Faces}) {
     options.normals = normals;
-    const Mesh mesh = contour(*grid, options);
+    const Mesh mesh = tufa::test::uniformMesh(*grid, options);
     ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
     for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
       const Position& p = mesh.positions[v];
@@ -114,21 +115,21 @@ TEST(Contour, NormalsAreThoseAskedFor) {
     }
   }
   options.normals = Normals::None;
-  EXPECT_TRUE(contour(*grid, options).normals.empty());
-  const Mesh plain = contour(*grid, options);
-  EXPECT_EQ(plain.positions, contour(*grid).positions);
+  EXPECT_TRUE(tufa::test::uniformMesh(*grid, options).normals.empty());
+  const Mesh plain = tufa::test::uniformMesh(*grid, options);
+  EXPECT_EQ(plain.positions, tufa::test::uniformMesh(*grid).positions);
 }
 
 TEST(Contour, NothingInGivesNothingOut) {
   ContourReport report;
   report.faceFlips = 7;
-  const Mesh mesh = contour(*FloatGrid::create(3), {}, &report);
+  const Mesh mesh = tufa::test::uniformMesh(*FloatGrid::create(3), {}, &report);
   EXPECT_TRUE(mesh.positions.empty() && mesh.quads.empty() && mesh.triangles.empty());
   EXPECT_EQ(report.surfaceCells + report.activeVoxels + report.faceFlips, 0U);
   ContourOptions options;
   options.isovalue = 100;  // past every value
-  EXPECT_EQ(contour(*ball(), options).triangleCount(), 0U);
-  EXPECT_EQ(contour(*DoubleGrid::create(-1)).triangleCount(), 0U);
+  EXPECT_EQ(tufa::test::uniformMesh(*ball(), options).triangleCount(), 0U);
+  EXPECT_EQ(tufa::test::uniformMesh(*DoubleGrid::create(-1)).triangleCount(), 0U);
 }
 
 TEST(Contour, DoubleGridsGiveTheSameMesh) {
@@ -139,7 +140,7 @@ TEST(Contour, DoubleGridsGiveTheSameMesh) {
     if (value.isVoxelValue()) twin->tree().setValueOnly(value.getCoord(), *value);
   }
   twin->setGridClass(openvdb::GRID_LEVEL_SET);
-  const Mesh ofFloat = contour(*grid), ofDouble = contour(*twin);
+  const Mesh ofFloat = tufa::test::uniformMesh(*grid), ofDouble = tufa::test::uniformMesh(*twin);
   EXPECT_EQ(ofFloat.quads, ofDouble.quads);
   ASSERT_EQ(ofFloat.positions.size(), ofDouble.positions.size());
   for (std::size_t v = 0; v < ofFloat.positions.size(); ++v) {
@@ -156,7 +157,7 @@ TEST(Contour, SamplesOnTheIsovalueDoNotHarm) {
         ContourOptions options;
         options.isovalue = isovalue;
         options.inside = inside;
-        const test::MeshTopology topology = test::inspect(contour(*grid, options));
+        const test::MeshTopology topology = test::inspect(tufa::test::uniformMesh(*grid, options));
         EXPECT_TRUE(topology.manifold() && topology.closed()) << isovalue << " " << topology;
       }
     }
@@ -167,12 +168,13 @@ TEST(Contour, RefusesNonFiniteValuesWithTheirCountAndFirstPlace) {
   auto grid = ball();
   grid->tree().setValue(Coord(5, 0, 7), std::numeric_limits<float>::quiet_NaN());
   grid->tree().setValue(Coord(-4, 2, 7), std::numeric_limits<float>::infinity());
-  expectError(ErrorCode::NonFiniteValues, "2 ", [&] { (void)contour(*grid); });
-  expectError(ErrorCode::NonFiniteValues, "-4, 2, 7", [&] { (void)contour(*grid); });
+  expectError(ErrorCode::NonFiniteValues, "2 ", [&] { (void)tufa::test::uniformMesh(*grid); });
+  expectError(ErrorCode::NonFiniteValues, "-4, 2, 7",
+              [&] { (void)tufa::test::uniformMesh(*grid); });
   ContourOptions options;
   options.nonFinite = NonFinite::Outside;
   ContourReport report;
-  const Mesh mesh = contour(*grid, options, &report);
+  const Mesh mesh = tufa::test::uniformMesh(*grid, options, &report);
   EXPECT_EQ(report.nonFiniteValues, 2U);
   expectSolid(mesh);
   for (const Position& p : mesh.positions) EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
@@ -181,21 +183,24 @@ TEST(Contour, RefusesNonFiniteValuesWithTheirCountAndFirstPlace) {
 
 TEST(Contour, RefusesWhatHasNoSurface) {
   expectError(ErrorCode::UnsupportedGrid, "vec3s",
-              [] { (void)contour(*openvdb::Vec3SGrid::create()); });
+              [] { (void)tufa::test::uniformMesh(*openvdb::Vec3SGrid::create()); });
   expectError(ErrorCode::UnsupportedGrid, "bool",
-              [] { (void)contour(*openvdb::BoolGrid::create()); });
+              [] { (void)tufa::test::uniformMesh(*openvdb::BoolGrid::create()); });
   expectError(ErrorCode::UnsupportedGrid, "int32",
-              [] { (void)contour(*openvdb::Int32Grid::create()); });
+              [] { (void)tufa::test::uniformMesh(*openvdb::Int32Grid::create()); });
   auto frustum = ball();
   frustum->setTransform(openvdb::math::Transform::createFrustumTransform(
       openvdb::BBoxd(Vec3d(0), Vec3d(10)), 0.5, 10, 1));
-  expectError(ErrorCode::UnsupportedGrid, "rustum", [&] { (void)contour(*frustum); });
+  expectError(ErrorCode::UnsupportedGrid, "rustum",
+              [&] { (void)tufa::test::uniformMesh(*frustum); });
   ContourOptions options;
   options.isovalue = std::numeric_limits<double>::infinity();
-  expectError(ErrorCode::InvalidArgument, "isovalue", [&] { (void)contour(*ball(), options); });
+  expectError(ErrorCode::InvalidArgument, "isovalue",
+              [&] { (void)tufa::test::uniformMesh(*ball(), options); });
   options = {};
   options.threads = -1;
-  expectError(ErrorCode::InvalidArgument, "threads", [&] { (void)contour(*ball(), options); });
+  expectError(ErrorCode::InvalidArgument, "threads",
+              [&] { (void)tufa::test::uniformMesh(*ball(), options); });
 }
 
 TEST(Contour, ProgressRisesToOneAndCancelsAnywhere) {
@@ -210,13 +215,14 @@ TEST(Contour, ProgressRisesToOneAndCancelsAnywhere) {
     ++calls;
     return true;
   };
-  (void)contour(*grid, options);
+  (void)tufa::test::uniformMesh(*grid, options);
   EXPECT_EQ(last, 1);
   ASSERT_GE(calls, 6);
   for (int stop = 1; stop <= 6; ++stop) {
     int seen = 0;
     options.progress = [&](std::string_view, double) { return ++seen < stop; };
-    expectError(ErrorCode::Cancelled, "cancelled", [&] { (void)contour(*grid, options); });
+    expectError(ErrorCode::Cancelled, "cancelled",
+                [&] { (void)tufa::test::uniformMesh(*grid, options); });
   }
 }
 
@@ -234,7 +240,7 @@ TEST(Contour, CutsTheSurfaceWhereALevelSetEndsOrCapsIt) {
     }
   }
   ContourReport report;
-  const Mesh open = contour(*half, {}, &report);
+  const Mesh open = tufa::test::uniformMesh(*half, {}, &report);
   EXPECT_GT(report.cutEdges, 0U);
   test::MeshTopology topology = test::inspect(open);
   EXPECT_TRUE(topology.manifold()) << topology;
@@ -243,11 +249,11 @@ TEST(Contour, CutsTheSurfaceWhereALevelSetEndsOrCapsIt) {
 
   ContourOptions options;
   options.cap = true;
-  const Mesh capped = contour(*half, options, &report);
+  const Mesh capped = tufa::test::uniformMesh(*half, options, &report);
   EXPECT_EQ(report.cutEdges, 0U);
   topology = test::inspect(capped);
   EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
-  EXPECT_GT(test::volume(capped), test::volume(contour(*grid)) / 2);
+  EXPECT_GT(test::volume(capped), test::volume(tufa::test::uniformMesh(*grid)) / 2);
 }
 
 }  // namespace
