@@ -57,9 +57,9 @@ bool hasUnitGradient(const TreeT& tree, const FieldScale& scale, const IsoChoice
         if (count > 0) gradient[axis] = sum / count * scale.factor;
       }
       if (!crossed || !complete) continue;
-      const double squared = scale.squaredLength(static_cast<float>(gradient[0]),
-                                                 static_cast<float>(gradient[1]),
-                                                 static_cast<float>(gradient[2]));
+      const double squared =
+          scale.squaredLength(static_cast<float>(gradient[0]), static_cast<float>(gradient[1]),
+                              static_cast<float>(gradient[2]));
       ++all;
       units += std::abs(std::sqrt(squared) - 1) < kUnitTolerance ? 1 : 0;
     }

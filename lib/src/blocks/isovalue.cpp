@@ -1,8 +1,8 @@
 #include "blocks/isovalue.h"
 
+#include <tufa/error.h>
 #include <algorithm>
 #include <cmath>
-#include <tufa/error.h>
 
 namespace tufa::blocks {
 namespace {
@@ -31,8 +31,12 @@ IsoChoice choose(const GridT& grid, std::optional<double> isovalue, Inside insid
     choice.isovalue = middleValue(grid);
   }
   switch (inside) {
-    case Inside::Below: choice.insideIsBelow = true; break;
-    case Inside::Above: choice.insideIsBelow = false; break;
+    case Inside::Below:
+      choice.insideIsBelow = true;
+      break;
+    case Inside::Above:
+      choice.insideIsBelow = false;
+      break;
     case Inside::Auto:
       choice.insideIsBelow =
           gridClass == openvdb::GRID_LEVEL_SET ||

@@ -19,9 +19,9 @@ class TileContacts {
   using UpperNode = typename TreeT::RootNodeType::ChildNodeType;
   using LowerNode = typename UpperNode::ChildNodeType;
 
-  static constexpr int kLowerBlocks = 1 << LowerNode::LOG2DIM;         // blocks along a lower node
-  static constexpr int kUpperChildren = 1 << UpperNode::LOG2DIM;       // lower nodes along an upper
-  static constexpr int kLowerSize = kLowerBlocks * kBlockSize;         // voxels along a lower node
+  static constexpr int kLowerBlocks = 1 << LowerNode::LOG2DIM;    // blocks along a lower node
+  static constexpr int kUpperChildren = 1 << UpperNode::LOG2DIM;  // lower nodes along an upper
+  static constexpr int kLowerSize = kLowerBlocks * kBlockSize;    // voxels along a lower node
   static constexpr int kLeafDepth = 3;
   static constexpr int kPadded = kLowerBlocks + 2;
 
@@ -172,8 +172,7 @@ class TileContacts {
   }
 
   static Coord blockOf(const LowerNode& node, int i, int j, int k) {
-    return node.origin().offsetBy((i - 1) * kBlockSize, (j - 1) * kBlockSize,
-                                  (k - 1) * kBlockSize);
+    return node.origin().offsetBy((i - 1) * kBlockSize, (j - 1) * kBlockSize, (k - 1) * kBlockSize);
   }
 
   const TreeT& tree_;
