@@ -1,5 +1,6 @@
 #include "blocks/blocks.h"
 
+#include <tufa/error.h>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -7,7 +8,6 @@
 #include <limits>
 #include <mutex>
 #include <sstream>
-#include <tufa/error.h>
 
 #include "base/bits.h"
 #include "blocks/tile_contacts.h"
@@ -17,21 +17,13 @@ namespace {
 
 using openvdb::Coord;
 
-std::size_t hashOf(const Coord& origin) {
-  const auto mix = [](std::uint64_t hash, std::int32_t value) {
-    hash ^= static_cast<std::uint32_t>(value) >> 3;
-    hash *= 0x9e3779b97f4a7c15u;
-    return hash ^ (hash >> 29);
-  };
-  return mix(mix(mix(0, origin[0]), origin[1]), origin[2]);
-}
-
 // The value v such that "below v" (or "above v") in T means the same as below (above) the isovalue.
 template <class T>
 T threshold(const IsoChoice& iso) {
   const T rounded = static_cast<T>(iso.isovalue);
   const T infinity = std::numeric_limits<T>::infinity();
-  if (iso.insideIsBelow) return rounded < iso.isovalue ? std::nextafter(rounded, infinity) : rounded;
+  if (iso.insideIsBelow)
+    return rounded < iso.isovalue ? std::nextafter(rounded, infinity) : rounded;
   return rounded > iso.isovalue ? std::nextafter(rounded, -infinity) : rounded;
 }
 
@@ -86,7 +78,7 @@ Blocks<TreeT>::Blocks(const TreeT& tree, const IsoChoice& iso, NonFinite nonFini
   readSigns(job);
   readTiles();
   if (nonFiniteValues_ > 0 && nonFinite == NonFinite::Refuse) refuseNonFinite();
-  buildTable();
+  places_.build(tree, iso, job);
   addTileBlocks(job);
 }
 
@@ -156,22 +148,9 @@ void Blocks<TreeT>::refuseNonFinite() const {
 }
 
 template <class TreeT>
-void Blocks<TreeT>::buildTable() {
-  const std::size_t size = std::bit_ceil(2 * origins_.size() + 2);
-  table_.assign(size, 0);
-  for (std::size_t i = 0; i < origins_.size(); ++i) {
-    std::size_t slot = hashOf(origins_[i]) & (size - 1);
-    while (table_[slot] != 0) slot = (slot + 1) & (size - 1);
-    table_[slot] = static_cast<std::uint32_t>(i + 1);
-  }
-}
-
-template <class TreeT>
 BlockRef Blocks<TreeT>::find(const Coord& origin, Accessor& accessor) const {
-  std::size_t slot = hashOf(origin) & (table_.size() - 1);
-  for (; table_[slot] != 0; slot = (slot + 1) & (table_.size() - 1)) {
-    if (origins_[table_[slot] - 1] == origin) return static_cast<BlockRef>(table_[slot] - 1);
-  }
+  const BlockRef block = places_.find(origin);
+  if (block != BlockPlaces<TreeT>::kUnknown) return block;
   return isInside(accessor.getValue(origin), iso_) ? kInsideTile : kOutsideTile;
 }
 
@@ -179,6 +158,7 @@ template <class TreeT>
 Neighbours Blocks<TreeT>::neighbours(BlockRef block, Accessor& accessor) const {
   Neighbours all;
   const Coord& origin = origins_[block];
+  if (places_.forNear(origin, [&](int i, BlockRef near) { all[i] = near; })) return all;
   for (int i = 0; i < 27; ++i) {
     all[i] = find(origin.offsetBy((i / 9 - 1) * kBlockSize, (i / 3 % 3 - 1) * kBlockSize,
                                   (i % 3 - 1) * kBlockSize),
@@ -190,11 +170,14 @@ Neighbours Blocks<TreeT>::neighbours(BlockRef block, Accessor& accessor) const {
 template <class TreeT>
 Neighbours Blocks<TreeT>::upperNeighbours(BlockRef block, Accessor& accessor) const {
   Neighbours upper{};
+  if (places_.forNear(origins_[block], [&](int i, BlockRef near) { upper[i] = near; })) {
+    return upper;
+  }
   upper[neighbourIndex(0, 0, 0)] = block;
   for (int i = 1; i < 8; ++i) {
     const int dx = i >> 2, dy = (i >> 1) & 1, dz = i & 1;
-    upper[neighbourIndex(dx, dy, dz)] = find(
-        origins_[block].offsetBy(dx * kBlockSize, dy * kBlockSize, dz * kBlockSize), accessor);
+    upper[neighbourIndex(dx, dy, dz)] =
+        find(origins_[block].offsetBy(dx * kBlockSize, dy * kBlockSize, dz * kBlockSize), accessor);
   }
   return upper;
 }
@@ -226,11 +209,12 @@ void Blocks<TreeT>::tilesBelowLeaf(BlockRef block, Accessor& accessor,
   constexpr std::uint64_t kFirstY = 0xff;
   constexpr std::uint64_t kFirstZ = 0x0101010101010101u;
   const BlockBits& bits = inside_[block];
+  const Neighbours around = neighbours(block, accessor);
   for (int direction = 1; direction < 8; ++direction) {
     const int dx = direction >> 2, dy = (direction >> 1) & 1, dz = direction & 1;
     const Coord below =
         origins_[block].offsetBy(-dx * kBlockSize, -dy * kBlockSize, -dz * kBlockSize);
-    const BlockRef tile = find(below, accessor);
+    const BlockRef tile = around[neighbourIndex(-dx, -dy, -dz)];
     if (tile >= 0) continue;
     const std::uint64_t touching =
         (dy != 0 ? kFirstY : ~std::uint64_t{0}) & (dz != 0 ? kFirstZ : ~std::uint64_t{0});
@@ -274,7 +258,8 @@ void Blocks<TreeT>::addTileBlocks(base::Job& job) {
   for (std::size_t i = leafCount; i < origins_.size(); ++i) {
     inside_[i].slabs.fill(sides[i - leafCount] == kInsideTile ? ~std::uint64_t{0} : 0);
   }
-  buildTable();
+  places_.addTileBlocks({origins_.begin() + static_cast<std::ptrdiff_t>(leafCount), origins_.end()},
+                        static_cast<BlockRef>(leafCount));
 }
 
 template class Blocks<openvdb::FloatTree>;

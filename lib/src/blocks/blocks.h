@@ -8,14 +8,10 @@
 
 #include "base/job.h"
 #include "blocks/block_bits.h"
+#include "blocks/block_places.h"
 #include "blocks/isovalue.h"
 
 namespace tufa::blocks {
-
-/// Names a block among Blocks::origins, or, where there is none, the side that the tile there is on.
-using BlockRef = std::int32_t;
-inline constexpr BlockRef kOutsideTile = -1;
-inline constexpr BlockRef kInsideTile = -2;
 
 /// A block and the 26 around it: entry (dx + 1) * 9 + (dy + 1) * 3 + dz + 1.
 using Neighbours = std::array<BlockRef, 27>;
@@ -66,7 +62,6 @@ class Blocks {
   [[noreturn]] void refuseNonFinite() const;
   void addTileBlocks(base::Job& job);
   void tilesBelowLeaf(BlockRef block, Accessor& accessor, std::vector<openvdb::Coord>& found) const;
-  void buildTable();
 
   const TreeT* tree_;
   IsoChoice iso_;
@@ -77,7 +72,7 @@ class Blocks {
   std::vector<const Value*> values_;
   std::vector<const typename Leaf::NodeMaskType*> masks_;  ///< null for tiles
   std::vector<BlockBits> inside_;
-  std::vector<std::uint32_t> table_;  ///< open addressing; block + 1, 0 is free
+  BlockPlaces<TreeT> places_;
 };
 
 extern template class Blocks<openvdb::FloatTree>;

@@ -125,7 +125,6 @@ void BlockVertices::addEdges(const CornerWords& corners) {
   using crossings::CrossingBatch;
   collectEdges<axis>(corners);
   CrossingBatch batch;
-  std::array<qef::Qef, CrossingBatch::kSize> planes;
   for (int first = 0; first < edgeCount_; first += CrossingBatch::kSize) {
     const int count = std::min(edgeCount_ - first, CrossingBatch::kSize);
     const std::uint16_t* slots = &edges_[first];
@@ -137,11 +136,11 @@ void BlockVertices::addEdges(const CornerWords& corners) {
     for (int lane = 0; lane < count; ++lane) {
       qef::Vector point = kPointOf[slots[lane]];
       point[axis] += batch.along[lane];
-      planes[lane] =
+      planes_[lane] =
           qef::Qef(point, {batch.normals[0][lane], batch.normals[1][lane], batch.normals[2][lane]});
     }
     for (int lane = 0; lane < count; ++lane) {
-      addCrossing<axis>(slots[lane], planes[lane], ((batch.creases >> lane) & 1) != 0);
+      addCrossing<axis>(slots[lane], planes_[lane], ((batch.creases >> lane) & 1) != 0);
     }
   }
 }

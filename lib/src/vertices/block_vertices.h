@@ -72,6 +72,7 @@ class BlockVertices {
   std::array<std::uint16_t, kSlots> cutEdgesOf_{};             ///< if special_
   std::array<std::uint16_t, kMostEdges + crossings::CrossingBatch::kSize> edges_;  ///< slots
   int edgeCount_ = 0;
+  std::array<qef::Qef, crossings::CrossingBatch::kSize> planes_;  ///< of the batch at hand
   std::vector<std::uint16_t> cells_;
   std::vector<qef::Vector> centers_;  ///< middle of each vertex's cell
   std::vector<qef::Qef> qefs_;

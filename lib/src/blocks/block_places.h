@@ -1,0 +1,99 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "base/job.h"
+#include "blocks/block_bits.h"
+#include "blocks/isovalue.h"
+
+namespace tufa::blocks {
+
+/// Names a block among Blocks::origins, or, where there is none, the side that the tile there is
+/// on.
+using BlockRef = std::int32_t;
+inline constexpr BlockRef kOutsideTile = -1;
+inline constexpr BlockRef kInsideTile = -2;
+
+/// From the origin of a block or region to its number.
+class OriginTable {
+ public:
+  static constexpr std::int32_t kNone = -1;
+
+  /// The numbers are the places in the vector.
+  void build(const std::vector<openvdb::Coord>& origins);
+  [[nodiscard]] std::int32_t find(const openvdb::Coord& origin) const;
+
+ private:
+  struct Entry {
+    openvdb::Coord origin;
+    std::int32_t number = kNone;
+  };
+  std::vector<Entry> entries_;  // open addressing
+};
+
+/// What is at each place of 8^3 samples. One table for each region of 16^3 places that the tree
+/// divides, so that neighbours are mostly found by a step in the same table.
+template <class TreeT>
+class BlockPlaces {
+ public:
+  /// A place in a region that holds no block and that no tile of the region covers.
+  static constexpr BlockRef kUnknown = -3;
+
+  /// Leaves are numbered in the order of the tree.
+  void build(const TreeT& tree, const IsoChoice& iso, base::Job& job);
+  /// Puts blocks, numbered from `first` on, where there are tiles.
+  void addTileBlocks(const std::vector<openvdb::Coord>& origins, BlockRef first);
+
+  /// The block at these coordinates or the side of the tile; kUnknown where a whole region or more
+  /// is one tile.
+  [[nodiscard]] BlockRef find(const openvdb::Coord& origin) const {
+    const BlockRef* region = regionAt(origin);
+    if (region != nullptr) return region[Region::coordToOffset(origin)];
+    const std::int32_t loose = looseTable_.find(origin);
+    return loose == OriginTable::kNone ? kUnknown : looseBlocks_[loose];
+  }
+
+  /// Calls take(i, block) for the places (dx, dy, dz) = -1..1 steps around a block, i being
+  /// (dx + 1) * 9 + (dy + 1) * 3 + dz + 1, if all of them lie in one region; else returns false.
+  template <class Take>
+  bool forNear(const openvdb::Coord& origin, const Take& take) const {
+    constexpr int kLast = (1 << Region::LOG2DIM) - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int local = (origin[axis] / kBlockSize) & kLast;
+      if (local == 0 || local == kLast) return false;
+    }
+    const BlockRef* region = regionAt(origin);
+    if (region == nullptr) return false;
+    const BlockRef* here = region + Region::coordToOffset(origin);
+    constexpr int kStepX = 1 << (2 * Region::LOG2DIM), kStepY = 1 << Region::LOG2DIM;
+    for (int i = 0; i < 27; ++i) {
+      take(i, here[(i / 9 - 1) * kStepX + (i / 3 % 3 - 1) * kStepY + i % 3 - 1]);
+    }
+    return true;
+  }
+
+ private:
+  using Region = typename TreeT::RootNodeType::ChildNodeType::ChildNodeType;
+
+  [[nodiscard]] const BlockRef* regionAt(const openvdb::Coord& origin) const {
+    constexpr int kMask = ~static_cast<int>(Region::DIM - 1);
+    const std::int32_t region =
+        regionTable_.find({origin[0] & kMask, origin[1] & kMask, origin[2] & kMask});
+    return region == OriginTable::kNone
+               ? nullptr
+               : &places_[static_cast<std::size_t>(region) * Region::NUM_VALUES];
+  }
+
+  OriginTable regionTable_;
+  std::vector<BlockRef> places_;  // Region::NUM_VALUES for each region
+  OriginTable looseTable_;        // of the blocks in no region
+  std::vector<BlockRef> looseBlocks_;
+};
+
+extern template class BlockPlaces<openvdb::FloatTree>;
+extern template class BlockPlaces<openvdb::DoubleTree>;
+
+}  // namespace tufa::blocks
