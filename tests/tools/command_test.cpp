@@ -238,8 +238,9 @@ TEST_F(Command, TellsOfAFullDisk) {
   makeSphere();
   const Mount disk(folder / "disk", 0, "size=16k");
   if (!disk.mounted()) GTEST_SKIP() << "no file system may be mounted here";
-  for (const char* arguments : {"mesh s.vdb --uniform -o disk/m.ply", "mesh s.vdb -o disk/m.obj",
-                                "make sphere -o disk/s.vdb", "mesh s.vdb -o disk/m.glb"}) {
+  for (const char* arguments :
+       {"mesh s.vdb --uniform -o disk/m.ply", "mesh s.vdb --uniform -o disk/m.obj",
+        "make sphere -o disk/s.vdb", "mesh s.vdb --uniform -o disk/m.glb"}) {
     expectFailure(arguments, 3, "No space left");
     EXPECT_TRUE(std::filesystem::is_empty(folder / "disk")) << arguments;
   }
@@ -319,7 +320,7 @@ TEST_F(Command, NamesTheEdgeOfTheDataAndCapsIt) {
 /// Waits until the command hears signals, not for a time: a signal before that would be lost.
 TEST_F(Command, StopsWhenAsked) {
   if (!std::filesystem::exists("/proc/self/status")) GTEST_SKIP() << "no /proc to look into";
-  ASSERT_EQ(run("make sphere --voxel 0.01 -o s.vdb").exitCode, 0);
+  ASSERT_EQ(run("make sphere --voxel 0.004 -o s.vdb").exitCode, 0);
   const std::string interrupt =
       "& until grep -q '^SigCgt:.*[2367abef]$' /proc/$!/status; do :; done; kill -INT $!; wait $!";
   for (const char* arguments : {"make gyroid --voxel 0.0015 -o g.vdb",
