@@ -12,15 +12,15 @@
 namespace tufa::bench {
 namespace {
 
-Contender tufaUniform(const openvdb::FloatGrid& grid) {
-  return {"tufa", [&grid](int threads) {
-            ContourOptions options;
-            options.uniform = true;
-            options.threads = threads;
-            ContourReport report;
-            const auto mesh = std::make_shared<Mesh>(contour(grid, options, &report));
-            return Outcome{mesh->positions.size(), mesh->triangleCount(), report.stages, mesh};
-          }};
+// The tolerance of the adaptive mesh in voxels; 0: uniform.
+Outcome runTufa(const openvdb::FloatGrid& grid, double tolerance, int threads) {
+  ContourOptions options;
+  options.threads = threads;
+  options.uniform = tolerance == 0;
+  if (tolerance > 0) options.tolerance = tolerance;
+  ContourReport report;
+  const auto mesh = std::make_shared<Mesh>(contour(grid, options, &report));
+  return {mesh->positions.size(), mesh->triangleCount(), report.stages, mesh};
 }
 
 struct VolumeToMeshResult {
@@ -29,17 +29,13 @@ struct VolumeToMeshResult {
   std::vector<openvdb::Vec4I> quads;
 };
 
-Contender volumeToMesh(const openvdb::FloatGrid& grid, double adaptivity, std::string name) {
-  return {std::move(name), [&grid, adaptivity](int threads) {
-            const auto mesh = std::make_shared<VolumeToMeshResult>();
-            tbb::task_arena arena(threads);
-            arena.execute([&] {
-              openvdb::tools::volumeToMesh(grid, mesh->points, mesh->triangles, mesh->quads, 0.0,
-                                           adaptivity);
-            });
-            return Outcome{
-                mesh->points.size(), mesh->triangles.size() + 2 * mesh->quads.size(), {}, mesh};
-          }};
+Outcome runVolumeToMesh(const openvdb::FloatGrid& grid, double adaptivity, int threads) {
+  const auto mesh = std::make_shared<VolumeToMeshResult>();
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    openvdb::tools::volumeToMesh(grid, mesh->points, mesh->triangles, mesh->quads, 0.0, adaptivity);
+  });
+  return {mesh->points.size(), mesh->triangles.size() + 2 * mesh->quads.size(), {}, mesh};
 }
 
 // In sixteen lanes, which compilers turn into vector additions.
@@ -53,24 +49,11 @@ float sumOf(const float* values) {
   return sum;
 }
 
-}  // namespace
-
-std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid) {
-  std::vector<Contender> all = {tufaUniform(grid), volumeToMesh(grid, 0, "volumeToMesh")};
-  if (const auto run = flyingEdgesOf(grid)) {
-    all.push_back({"vtkFlyingEdges3D on a dense copy", [run](int threads) {
-                     const FlyingEdgesMesh mesh = run(threads);
-                     return Outcome{mesh.vertices, mesh.triangles, {}, mesh.made};
-                   }});
-  }
-  return all;
-}
-
-Contender floorFor(const openvdb::FloatGrid& grid) {
+Contender readOfAllLeaves(const openvdb::FloatGrid& grid, std::size_t peer) {
   using Leaf = openvdb::FloatTree::LeafNodeType;
   const auto leaves = std::make_shared<std::vector<const Leaf*>>();
   grid.tree().getNodes(*leaves);
-  return {"one read of all leaf values", [leaves](int threads) {
+  return {"one read of all leaf values", peer, [leaves](int threads) {
             using Range = tbb::blocked_range<std::size_t>;
             const auto sum = std::make_shared<float>();
             tbb::task_arena arena(threads);
@@ -87,6 +70,28 @@ Contender floorFor(const openvdb::FloatGrid& grid) {
             });
             return Outcome{0, 0, {}, sum};
           }};
+}
+
+}  // namespace
+
+std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid) {
+  constexpr std::size_t kUniformPeer = 1, kAdaptivePeer = 3;
+  std::vector<Contender> all = {
+      {"tufa, uniform", kUniformPeer, [&](int threads) { return runTufa(grid, 0, threads); }},
+      {"volumeToMesh, adaptivity 0", kUniformPeer,
+       [&](int threads) { return runVolumeToMesh(grid, 0, threads); }},
+      {"tufa, tolerance 0.1", kAdaptivePeer,
+       [&](int threads) { return runTufa(grid, 0.1, threads); }},
+      {"volumeToMesh, adaptivity 0.25", kAdaptivePeer,
+       [&](int threads) { return runVolumeToMesh(grid, 0.25, threads); }}};
+  if (const auto run = flyingEdgesOf(grid)) {
+    all.push_back({"vtkFlyingEdges3D on a dense copy", kUniformPeer, [run](int threads) {
+                     const FlyingEdgesMesh mesh = run(threads);
+                     return Outcome{mesh.vertices, mesh.triangles, {}, mesh.made};
+                   }});
+  }
+  all.push_back(readOfAllLeaves(grid, kUniformPeer));
+  return all;
 }
 
 }  // namespace tufa::bench

@@ -22,15 +22,13 @@ struct Outcome {
 /// One way to mesh a grid.
 struct Contender {
   std::string name;
+  std::size_t peer;  ///< place among all contenders of the one that its time is compared with
   std::function<Outcome(int threads)> run;
 };
 
-/// Every way to mesh `grid` there is on this machine, Tufa first, then the one that it is compared
-/// with. What a contender needs beside the grid is made here, outside of what is timed. `grid` must
-/// outlive the result.
+/// Every way to mesh `grid` there is on this machine, and last the floor: one parallel read of all
+/// leaf values, which no mesher that looks at the whole grid can beat. What a contender needs
+/// beside the grid is made here, outside of what is timed. `grid` must outlive the result.
 [[nodiscard]] std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid);
-
-/// Reads every leaf value once, in parallel: what no mesher that looks at the whole grid can beat.
-[[nodiscard]] Contender floorFor(const openvdb::FloatGrid& grid);
 
 }  // namespace tufa::bench

@@ -43,8 +43,7 @@ void addOptions(CLI::App& app, Arguments& arguments) {
 std::vector<Case> measureVolume(const std::string& volume, double millions,
                                 const Arguments& arguments) {
   const openvdb::FloatGrid::Ptr grid = makeVolume(volume, millions * 1e6);
-  std::vector<Contender> contenders = contendersFor(*grid);
-  contenders.push_back(floorFor(*grid));
+  const std::vector<Contender> contenders = contendersFor(*grid);
   std::vector<Case> cases;
   for (const int threads : arguments.threads) {
     cases.push_back({std::filesystem::path(volume).stem().string(),
@@ -65,7 +64,10 @@ void run(const Arguments& arguments) {
       all.insert(all.end(), cases.begin(), cases.end());
     }
   }
-  std::cout << timeTable(all) << "\n" << stageTable(all);
+  std::cout << timeTable(all);
+  for (const char* name : {"tufa, uniform", "tufa, tolerance 0.1"}) {
+    std::cout << "\n" << name << ", share of each stage:\n\n" << stageTable(all, name);
+  }
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ std::vector<Result> measure(const std::vector<Contender>& contenders, int thread
   std::vector<std::vector<std::vector<StageTime>>> stages(contenders.size());
   for (std::size_t i = 0; i < contenders.size(); ++i) {
     results[i].name = contenders[i].name;
+    results[i].peer = contenders[i].peer;
     results[i].extraBytes = extraBytesOf(contenders[i], threads);
   }
   for (int repeat = 0; repeat < repeats; ++repeat) {

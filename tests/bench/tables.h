@@ -7,8 +7,7 @@
 
 namespace tufa::bench {
 
-/// The measurements of one volume at one number of threads. The first result is Tufa's, the second
-/// the one it is compared with, the last the floor.
+/// The measurements of one volume at one number of threads.
 struct Case {
   std::string volume;
   double activeVoxels = 0;
@@ -16,8 +15,10 @@ struct Case {
   std::vector<Result> results;
 };
 
-/// Markdown tables: times and memory of all contenders; share of each stage of Tufa's.
+/// A markdown table of the times and the memory of all contenders.
 [[nodiscard]] std::string timeTable(const std::vector<Case>& cases);
-[[nodiscard]] std::string stageTable(const std::vector<Case>& cases);
+
+/// A markdown table of the share of each stage in the time of the contender of that name.
+[[nodiscard]] std::string stageTable(const std::vector<Case>& cases, const std::string& name);
 
 }  // namespace tufa::bench
