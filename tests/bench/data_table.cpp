@@ -84,6 +84,7 @@ std::string errors(const DistanceSummary& side) {
 }
 
 std::string manifold(const CheckReport& report) {
+  if (report.triangles == 0) return "no surface at this resolution";
   if (!report.manifold) {
     return "no: " + count(report.nonManifoldEdges) + " edges, " +
            count(report.nonManifoldVertices) + " vertices";
