@@ -57,8 +57,8 @@ struct CheckReport {
   bool manifold = false;  ///< no non-manifold edge or vertex
   bool oriented = false;  ///< no misoriented edge
   /// Closed, oriented, and normals point away from the solid: out on outermost pieces, into the
-  /// cavity on pieces inside those, and so on. A piece that intersects others lies where most of its
-  /// vertices do.
+  /// cavity on pieces inside those, and so on. A piece that intersects others lies where most of
+  /// its vertices do.
   bool outward = false;
   /// CGAL's does_bound_a_volume: the directions of nested pieces alternate; a mesh turned inside
   /// out as a whole bounds a volume too. False unless the mesh is closed, manifold, oriented and

@@ -9,8 +9,8 @@ namespace tufa::blocks {
 inline constexpr int kBlockSize = 8;
 inline constexpr int kBlockCells = kBlockSize * kBlockSize * kBlockSize;
 
-/// One bit for each of a block's 512 lattice points or cells: slab x holds bit y * 8 + z. That is the
-/// order of OpenVDB's leaf values and masks.
+/// One bit for each of a block's 512 lattice points or cells: slab x holds bit y * 8 + z. That is
+/// the order of OpenVDB's leaf values and masks.
 struct BlockBits {
   std::array<std::uint64_t, kBlockSize> slabs{};
 
@@ -27,8 +27,8 @@ struct BlockBits {
 /// Index of a cell or lattice point inside its block.
 inline constexpr int cellIndex(int x, int y, int z) { return x * 64 + y * 8 + z; }
 
-/// A slab read one step further in z: what lies beyond comes from `next`, the same slab of the block
-/// above in z.
+/// A slab read one step further in z: what lies beyond comes from `next`, the same slab of the
+/// block above in z.
 inline std::uint64_t stepZ(std::uint64_t slab, std::uint64_t next) {
   constexpr std::uint64_t kFirst = 0x0101010101010101u;
   return ((slab >> 1) & 0x7f7f7f7f7f7f7f7fu) | ((next & kFirst) << 7);

@@ -16,11 +16,11 @@ struct FieldScale {
   /// The field is a distance: its gradient has length 1. Creases can be restored from it.
   bool distance = false;
   /// The field is a level set that holds distances only inside its band: samples at or beyond these
-  /// values say nothing but their side, and a jump of more than a voxel between an active sample and
-  /// an inactive one is the edge of the data, not surface.
+  /// values say nothing but their side, and a jump of more than a voxel between an active sample
+  /// and an inactive one is the edge of the data, not surface.
   bool narrowBand = false;
-  float bandInside = -3e38F;   ///< least value that is a distance, after scaling
-  float bandOutside = 3e38F;   ///< greatest one
+  float bandInside = -3e38F;  ///< least value that is a distance, after scaling
+  float bandOutside = 3e38F;  ///< greatest one
   /// Squared length of an index-space gradient g: the quadratic form with these entries, in the
   /// order xx, xy, xz, yy, yz, zz. The identity for cubic voxels.
   std::array<float, 6> metric{1, 0, 0, 1, 0, 1};

@@ -16,16 +16,19 @@ class SampleReader {
 
   SampleReader(const Blocks<TreeT>& blocks, const FieldScale& scale, BlockRef block,
                const Neighbours& neighbours, Accessor& accessor)
-      : blocks_(blocks), scale_(scale), block_(block), neighbours_(neighbours),
+      : blocks_(blocks),
+        scale_(scale),
+        block_(block),
+        neighbours_(neighbours),
         accessor_(accessor) {}
 
   /// The sample at a lattice point -8..15 steps from the block's origin on each axis.
   [[nodiscard]] double at(int x, int y, int z) const {
     const BlockRef block = neighbours_[neighbourIndex(x >> 3, y >> 3, z >> 3)];
     const auto* values = block < 0 ? nullptr : blocks_.values(block);
-    const double value =
-        values != nullptr ? static_cast<double>(values[cellIndex(x & 7, y & 7, z & 7)])
-                          : accessor_.getValue(blocks_.origin(block_).offsetBy(x, y, z));
+    const double value = values != nullptr
+                             ? static_cast<double>(values[cellIndex(x & 7, y & 7, z & 7)])
+                             : accessor_.getValue(blocks_.origin(block_).offsetBy(x, y, z));
     return scaled(value);
   }
 

@@ -13,9 +13,9 @@ namespace tufa::certify {
 struct AdaptiveMesh {
   Mesh mesh;
   std::vector<LeafCell> leaves;  ///< surface cells that are leaves, by level
-  double largestError = 0;              ///< voxels
-  double meanError = 0;                 ///< voxels
-  int rounds = 0;                       ///< meshes made and measured
+  double largestError = 0;       ///< voxels
+  double meanError = 0;          ///< voxels
+  int rounds = 0;                ///< meshes made and measured
 };
 
 /// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the
@@ -24,8 +24,8 @@ template <class TreeT>
 [[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
                                  const cut::CutRule& rule, base::Job& job);
 
-/// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if they
-/// are to be kept.
+/// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if
+/// they are to be kept.
 [[nodiscard]] Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves);
 
 }  // namespace tufa::certify
