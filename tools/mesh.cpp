@@ -143,6 +143,11 @@ Json runToJson(const MeshRun& run, const MeshArguments& arguments) {
   json["crease_cells"] = run.contour.creaseCells;
   json["cut_edges"] = run.contour.cutEdges;
   json["face_flips"] = run.contour.faceFlips;
+  json["repair"] = {{"pairs_found", run.contour.intersectionsFound},
+                    {"pairs_left", run.contour.intersectionsLeft},
+                    {"moved_vertices", run.contour.movedVertices},
+                    {"turned_quads", run.contour.turnedQuads},
+                    {"fanned_quads", run.contour.fannedQuads}};
   json["vertices"] = run.mesh.positions.size();
   json["triangles"] = run.mesh.triangleCount();
   json["quads"] = run.mesh.quads.size();
@@ -301,6 +306,7 @@ void addContourOptions(CLI::App& app, ContourOptions& options) {
                        {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
                        "what to do with NaN and infinite values (default refuse)");
   app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
+  app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
   addThreadsOption(app, options.threads);
 }
 

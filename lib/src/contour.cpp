@@ -12,7 +12,10 @@
 #include "creases/promote.h"
 #include "cut/cut_rule.h"
 #include "forest/forest.h"
+#include "mend/mend.h"
+#include "base/single_precision.h"
 #include "polygons/base_quads.h"
+#include "polygons/suspects.h"
 #include "vertices/place_vertices.h"
 
 namespace tufa {
@@ -22,8 +25,8 @@ namespace {
 struct StageEnds {
   double blocks, topology, vertices, polygons, creases, forest, cut;
 };
-constexpr StageEnds kUniformEnds = {0.15, 0.3, 0.75, 0.95, 1.0, 1.0, 1.0};
-constexpr StageEnds kAdaptiveEnds = {0.08, 0.15, 0.36, 0.46, 0.5, 0.75, 1.0};
+constexpr StageEnds kUniformEnds = {0.15, 0.3, 0.7, 0.9, 0.95, 0.95, 0.95};
+constexpr StageEnds kAdaptiveEnds = {0.08, 0.15, 0.36, 0.46, 0.5, 0.75, 0.95};
 
 // The lowest corner of all blocks: a grid that is moved by whole blocks keeps it in its place.
 template <class TreeT>
@@ -34,6 +37,37 @@ openvdb::Coord lowestOrigin(const blocks::Blocks<TreeT>& blocks) {
     lowest.minComponent(blocks.origin(static_cast<blocks::BlockRef>(i)));
   }
   return lowest;
+}
+
+// The farthest that rounding to single precision may move a position, in voxels. Vertices keep
+// twice as far from the faces of their cells.
+constexpr double kMostRounding = 5e-4;
+
+// Takes the self-intersections out of the level-0 mesh, whose positions are final.
+template <class TreeT>
+void repair(const polygons::QuadContext<TreeT>& quads, bool singlePrecision, Mesh& mesh,
+            ContourReport& report, base::Job& job) {
+  const auto toWorld = [&](std::vector<Position> points) {
+    for (Position& point : points) point = quads.affine.toWorld(point);
+    return points;
+  };
+  mend::Source source;
+  source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
+    return toWorld(vertices::massPoints(quads.blocks, quads.scale, quads.topology, quads.affine,
+                                        vertices, job));
+  };
+  source.crossings = [&](const std::vector<mend::PolygonIndex>& polygons) {
+    return toWorld(polygons::quadCrossings(quads, polygons, job));
+  };
+  source.voxelSize = quads.affine.voxelSize();
+  source.singlePrecision = singlePrecision;
+  const mend::MendReport mended =
+      mend::mend(mesh, polygons::findSuspects(quads, mesh, job), source, job);
+  report.intersectionsFound = mended.pairsFound;
+  report.intersectionsLeft = mended.left.size();
+  report.movedVertices = mended.movedVertices;
+  report.turnedQuads = mended.turnedQuads;
+  report.fannedQuads = mended.fannedQuads;
 }
 
 template <class TreeT>
@@ -80,11 +114,14 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
     report.certificate = certify::certificateOf(adaptive, affine.voxelSize(), options.keepLeaves);
     mesh = std::move(adaptive.mesh);
   }
-  if (options.normals == Normals::Faces) vertices::setFaceNormals(mesh, job);
-  if (options.normals == Normals::None) mesh.normals = {};
+  job.beginStage("repair", 1.0);
   job.forRanges(mesh.positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);
   });
+  const bool single = base::roundToSingle(mesh, kMostRounding * affine.leastHeight(), job);
+  if (options.repair && options.uniform) repair(quads, single, mesh, report, job);
+  if (options.normals == Normals::Faces) vertices::setFaceNormals(mesh, job);
+  if (options.normals == Normals::None) mesh.normals = {};
 
   report.isovalue = iso.isovalue;
   report.insideIsBelow = iso.insideIsBelow;

@@ -73,6 +73,9 @@ struct ContourOptions {
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
   /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
   openvdb::FloatGrid::ConstPtr toleranceGrid;
+  /// Look for polygons that pass through each other and mend them, by small moves of vertices,
+  /// other diagonals and, rarely, four triangles in place of a quad. Uniform meshes only.
+  bool repair = true;
   /// Most threads to use; 0: as many as the caller's TBB arena allows. Never changes the result.
   int threads = 0;
   Progress progress;  ///< called from the calling thread; may cancel
@@ -94,7 +97,7 @@ struct Certificate {
   /// along its edge.
   std::vector<std::size_t> leafLevels;
   std::vector<LeafCell> leaves;  ///< if ContourOptions::keepLeaves, in the order of their levels
-  int rounds = 0;  ///< meshes made and measured until the tolerance held
+  int rounds = 0;                ///< meshes made and measured until the tolerance held
 };
 
 /// What contour() did, beside the mesh.
@@ -109,6 +112,11 @@ struct ContourReport {
   std::size_t faceFlips = 0;    ///< ambiguous faces joined against the rule to stay manifold
   std::size_t cutEdges = 0;     ///< sign changes at the edge of the data, left open
   std::optional<Certificate> certificate;  ///< of an adaptive mesh
+  std::size_t intersectionsFound = 0;      ///< pairs of polygons that met where they should not
+  std::size_t intersectionsLeft = 0;       ///< of these or their like, pairs that still do
+  std::size_t movedVertices = 0;           ///< by the repair
+  std::size_t turnedQuads = 0;             ///< split along their other diagonal by the repair
+  std::size_t fannedQuads = 0;             ///< replaced by four triangles around a new vertex
   std::vector<StageTime> stages;           ///< in the order they ran
 };
 

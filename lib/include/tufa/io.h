@@ -21,11 +21,11 @@ struct WriteOptions {
 /// Writes a mesh in the format that the file name's ending says: .ply (binary), .obj, .stl
 /// (binary), .off or .glb. Quads stay quads in .ply, .obj and .off.
 ///
-/// .ply and .obj keep double precision where single precision would lose more than a millionth of
-/// the mesh's extent; .glb stores positions relative to the node's translation; .stl is single
-/// precision always. The file appears whole or not at all: it is written under a temporary name in
-/// the same folder and renamed. A pipe or a device is written to as it is, as .ply if it has no
-/// ending.
+/// .ply, .obj and .off keep double precision if some position needs it (contour() rounds to single
+/// where that does no harm); .glb then stores positions relative to the node's translation; .stl is
+/// single precision always. The file appears whole or not at all: it is written under a temporary
+/// name in the same folder and renamed. A pipe or a device is written to as it is, as .ply if it
+/// has no ending.
 ///
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending), LimitExceeded (more than the
 /// format can hold), Cancelled.

@@ -1,5 +1,6 @@
 #include "base/affine.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tufa::base {
@@ -37,6 +38,15 @@ Normal Affine::normal(float gx, float gy, float gz) const {
   if (squared == 0) return {0, 0, 0};
   const float scale = 1 / std::sqrt(squared);
   return {x * scale, y * scale, z * scale};
+}
+
+double Affine::leastHeight() const {
+  const double volume = std::abs(axis(0).dot(axis(1).cross(axis(2))));
+  double largestFace = 0;
+  for (int i = 0; i < 3; ++i) {
+    largestFace = std::max(largestFace, axis(i).cross(axis((i + 1) % 3)).length());
+  }
+  return volume / largestFace;
 }
 
 }  // namespace tufa::base

@@ -61,6 +61,8 @@ class Affine {
   }
   /// World length of a voxel: the cube root of its volume.
   [[nodiscard]] double voxelSize() const { return voxelSize_; }
+  /// World distance between the two faces of a voxel that are nearest to each other.
+  [[nodiscard]] double leastHeight() const;
   /// The transform turns right-handed into left-handed.
   [[nodiscard]] bool mirrored() const { return mirrored_; }
 

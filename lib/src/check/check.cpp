@@ -37,7 +37,7 @@ void countFaces(const checks::Faces& faces, CheckReport& report) {
 }
 
 /// Settles outward and boundsVolume, both of which ask for a closed, oriented surface.
-void judgeVolume(const checks::Faces& faces, const checks::Pieces& pieces, const checks::Bvh& tree,
+void judgeVolume(const checks::Faces& faces, const checks::Pieces& pieces, const base::Bvh& tree,
                  const CheckOptions& options, base::Job& job, CheckReport& report) {
   if (!report.closed || !report.oriented) return;
   job.beginStage("nesting", 0.85);
@@ -60,7 +60,7 @@ void fillReport(const Mesh& mesh, const CheckOptions& options, base::Job& job,
   job.beginStage("measures", 0.25);
   checks::measure(faces, job, report);
   job.beginStage("tree", 0.35);
-  const checks::Bvh tree = checks::buildFaceTree(faces, job);
+  const base::Bvh tree = checks::buildFaceTree(faces, job);
   if (options.selfIntersections) {
     job.beginStage("intersections", 0.8);
     report.selfIntersectingPairs = checks::countIntersectingPairs(faces, tree, job);

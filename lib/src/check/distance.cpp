@@ -20,7 +20,7 @@
 namespace tufa {
 namespace {
 
-using checks::Bvh;
+using base::Bvh;
 using openvdb::Vec3d;
 
 constexpr std::size_t kGrain = 1024;
@@ -111,9 +111,9 @@ DistanceReport measure(const Mesh& mesh, const GridT& grid, const DistanceOption
   report.surfaceToMesh = measureToMesh(soup, points, job).summary();
 
   job.beginStage("sample tree", 0.5);
-  std::vector<checks::Box> boxes(points.size());
+  std::vector<base::Box> boxes(points.size());
   std::transform(points.begin(), points.end(), boxes.begin(), [](const Vec3d& p) {
-    return checks::Box{p, p};
+    return base::Box{p, p};
   });
   Bvh tree(std::move(boxes), job);
   const checks::PointCloud cloud{std::move(points), std::move(tree)};

@@ -2,11 +2,14 @@
 
 #include <cstddef>
 
+#include "base/bvh.h"
 #include "base/job.h"
-#include "check/bvh.h"
 #include "check/faces.h"
 
 namespace tufa::checks {
+
+using base::Box;
+using base::Bvh;
 
 /// A tree over faces.solid(), item i being face i.
 [[nodiscard]] Bvh buildFaceTree(const Faces& faces, base::Job& job);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "base/bvh.h"
 #include "base/job.h"
-#include "check/bvh.h"
 #include "check/faces.h"
 #include "check/topology.h"
 
 namespace tufa::checks {
+
+using base::Bvh;
 
 /// How the directions of the pieces of a closed, oriented mesh fit their nesting.
 struct Nesting {

@@ -7,12 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/bvh.h"
 #include "blocks/isovalue.h"
-#include "check/bvh.h"
 #include "check/frame.h"
 #include "check/trilinear.h"
 
 namespace tufa::checks {
+
+using base::Bvh;
 
 /// Points on the isosurface and a tree over them: what is left to ask where Newton steps fail.
 struct PointCloud {

@@ -6,11 +6,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/bvh.h"
 #include "base/job.h"
-#include "check/bvh.h"
 #include "check/frame.h"
 
 namespace tufa::checks {
+
+using base::Box;
+using base::Bvh;
 
 /// The valid triangles of a mesh in voxel space, and the nearest of them to any point.
 class TriangleSoup {

@@ -32,6 +32,16 @@ constexpr float kEdgeSlack = 0.01F;
 // Slack of the empty-ball test, in voxels.
 constexpr float kBallSlack = 0.06F;
 constexpr int kMostSides = 5;
+// Planes are nearly parallel if the square of the sine of their angle, or the volume that three
+// normals span, is less.
+constexpr float kLeastSquaredSine = 0.05F;
+constexpr float kLeastVolume = 0.1F;
+// Damping of a side's bend, in squared voxels: feet that spread less than a third of a voxel say
+// little of it.
+constexpr float kBendDamping = 0.02F;
+constexpr int kBendRounds = 3;
+// A bend that moves a point farther than this, in voxels, is not to be trusted.
+constexpr float kFarthestBend = 0.5F;
 // A side within this angle (radians) and distance (voxels) of lying between two others is a blend.
 constexpr float kBlendAngle = 0.15F;
 constexpr float kBlendDistance = 0.2F;
@@ -49,8 +59,60 @@ Vector plus(const Vector& a, const Vector& b, float scale) {
   return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
 }
 
+Vector bent(const std::array<float, 6>& bend, const Vector& step) {
+  return {bend[0] * step[0] + bend[1] * step[1] + bend[2] * step[2],
+          bend[1] * step[0] + bend[3] * step[1] + bend[4] * step[2],
+          bend[2] * step[0] + bend[4] * step[1] + bend[5] * step[2]};
+}
+
+// Each moves a point the shortest way; false if the planes are nearly parallel.
+bool moveOnto(const TangentPlane& plane, Vector& point) {
+  point = plus(point, plane.normal, plane.offset - dot(plane.normal, point));
+  return true;
+}
+
+bool moveOntoBoth(const TangentPlane& a, const TangentPlane& b, Vector& point) {
+  const float cosine = dot(a.normal, b.normal);
+  const float squared = 1 - cosine * cosine;
+  if (squared < kLeastSquaredSine) return false;
+  const float da = a.offset - dot(a.normal, point), db = b.offset - dot(b.normal, point);
+  point = plus(point, a.normal, (da - cosine * db) / squared);
+  point = plus(point, b.normal, (db - cosine * da) / squared);
+  return true;
+}
+
+bool moveOntoAll(const std::array<TangentPlane, 3>& planes, Vector& point) {
+  const auto& [a, b, c] = planes;
+  const Vector ab = cross(a.normal, b.normal);
+  const float volume = dot(ab, c.normal);
+  if (std::abs(volume) < kLeastVolume) return false;
+  point = plus({}, cross(b.normal, c.normal), a.offset / volume);
+  point = plus(point, cross(c.normal, a.normal), b.offset / volume);
+  point = plus(point, ab, c.offset / volume);
+  return true;
+}
+
 float outside(const Vector& p) {
   return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) - kHalfCell;
+}
+
+// Moves a point along a line into the cube of that half size around the cell's middle; false if the
+// line does not meet it.
+bool slideInto(float half, const Vector& direction, Vector& point) {
+  float from = -std::numeric_limits<float>::infinity(), to = -from;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(direction[axis]) < 1e-6F) {
+      if (std::abs(point[axis]) > half) return false;
+      continue;
+    }
+    const float s = (-half - point[axis]) / direction[axis];
+    const float t = (half - point[axis]) / direction[axis];
+    from = std::max(from, std::min(s, t));
+    to = std::min(to, std::max(s, t));
+  }
+  if (from > to) return false;
+  point = plus(point, direction, std::clamp(0.0F, from, to));
+  return true;
 }
 
 }  // namespace
@@ -98,6 +160,7 @@ void CreaseCell::sortIntoSides() {
     const PatchPlane seed = near_[static_cast<std::size_t>(best - weights_.begin())];
     Side side;
     Vector point{};
+    std::vector<std::size_t> members;
     for (std::size_t i = 0; i < near_.size(); ++i) {
       if (weights_[i] <= 0 || dot(near_[i].normal, seed.normal) < kSameSide) continue;
       const Vector apart = plus(near_[i].foot, seed.foot, -1);
@@ -105,12 +168,77 @@ void CreaseCell::sortIntoSides() {
       side.normal = plus(side.normal, near_[i].normal, weights_[i]);
       point = plus(point, near_[i].foot, weights_[i]);
       side.weight += weights_[i];
-      weights_[i] = 0;
+      members.push_back(i);
     }
     const float length = std::sqrt(dot(side.normal, side.normal));
     for (float& n : side.normal) n /= length;
     side.offset = dot(side.normal, point) / side.weight;
+    for (int i = 0; i < 3; ++i) side.middle[i] = point[i] / side.weight;
+    bendSide(side, members);
+    for (const std::size_t member : members) weights_[member] = 0;
     sides_.push_back(side);
+  }
+}
+
+// The matrix H of least squares in n_i - n = H (f_i - m), over the feet f_i and normals n_i, damped
+// where the feet do not spread, and made symmetric. A surface of that bend through m is
+// n . (p - m) + (p - m) H (p - m) / 2 = 0.
+void CreaseCell::bendSide(Side& side, const std::vector<std::size_t>& members) const {
+  std::array<float, 6> spread{};  // xx, xy, xz, yy, yz, zz
+  std::array<Vector, 3> turn{};   // turn[i][j]: change of normal i with step j
+  for (const std::size_t member : members) {
+    const float weight = weights_[member] / side.weight;
+    const Vector step = plus(near_[member].foot, side.middle, -1);
+    const Vector change = plus(near_[member].normal, side.normal, -1);
+    for (int i = 0, k = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) turn[i][j] += weight * change[i] * step[j];
+      for (int j = i; j < 3; ++j) spread[k++] += weight * step[i] * step[j];
+    }
+  }
+  spread[0] += kBendDamping;
+  spread[3] += kBendDamping;
+  spread[5] += kBendDamping;
+  // The rows of the inverse of a symmetric matrix are cross products of its rows.
+  const Vector r0 = {spread[0], spread[1], spread[2]}, r1 = {spread[1], spread[3], spread[4]},
+               r2 = {spread[2], spread[4], spread[5]};
+  const std::array<Vector, 3> adjoint = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};
+  const float determinant = dot(r0, adjoint[0]);
+  for (int i = 0, k = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      side.bend[k++] = (dot(turn[i], adjoint[j]) + dot(turn[j], adjoint[i])) / (2 * determinant);
+    }
+  }
+  for (const std::size_t member : members) {
+    const Vector step = plus(near_[member].foot, side.middle, -1);
+    side.rise += weights_[member] / side.weight * 0.5F * dot(step, bent(side.bend, step));
+  }
+}
+
+TangentPlane CreaseCell::tangentAt(const Side& side, const Vector& point) {
+  const Vector step = plus(point, side.middle, -1);
+  const Vector turn = bent(side.bend, step);
+  const float value = dot(side.normal, step) + 0.5F * dot(step, turn) - side.rise;
+  TangentPlane plane{plus(side.normal, turn, 1), 0};
+  const float length = std::sqrt(dot(plane.normal, plane.normal));
+  for (float& n : plane.normal) n /= length;
+  plane.offset = dot(plane.normal, point) - value / length;
+  return plane;
+}
+
+void CreaseCell::followBends(Vector& point, std::initializer_list<int> sides) const {
+  const Vector start = point;
+  for (int round = 0; round < kBendRounds; ++round) {
+    std::array<TangentPlane, 3> planes;
+    int count = 0;
+    for (const int side : sides) planes[count++] = tangentAt(sides_[side], point);
+    const bool found = count == 1   ? moveOnto(planes[0], point)
+                       : count == 2 ? moveOntoBoth(planes[0], planes[1], point)
+                                    : moveOntoAll(planes, point);
+    const Vector way = plus(point, start, -1);
+    if (!found || dot(way, way) > kFarthestBend * kFarthestBend) {
+      point = start;
+      return;
+    }
   }
 }
 
@@ -189,8 +317,9 @@ void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int
   Vector sum{};
   int count = 0;
   for (const int side : sides) {
-    sum = plus(sum, sides_[side].normal, 1);
-    placement.sides[count++] = sides_[side].normal;
+    const Vector normal = tangentAt(sides_[side], placement.point).normal;
+    sum = plus(sum, normal, 1);
+    placement.sides[count++] = normal;
   }
   const float length = std::sqrt(dot(sum, sum));
   for (int i = 0; i < 3; ++i) placement.normal[i] = length > 0 ? sum[i] / length : 0;
@@ -203,22 +332,15 @@ bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,
   const int count = static_cast<int>(sides_.size());
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
-      const Vector ij = cross(sides_[i].normal, sides_[j].normal);
       for (int k = j + 1; k < count; ++k) {
-        const float volume = dot(ij, sides_[k].normal);
-        if (std::abs(volume) < 0.1F) continue;
         if (beyond && !(sides_[i].crossed && sides_[j].crossed && sides_[k].crossed)) continue;
-        const Vector jk = cross(sides_[j].normal, sides_[k].normal);
-        const Vector ki = cross(sides_[k].normal, sides_[i].normal);
         Vector point{};
-        point = plus(point, jk, sides_[i].offset / volume);
-        point = plus(point, ki, sides_[j].offset / volume);
-        point = plus(point, ij, sides_[k].offset / volume);
+        if (!moveOntoAll({planeOf(i), planeOf(j), planeOf(k)}, point)) continue;
+        if (outside(point) > kBeyond + kFarthestBend) continue;
+        followBends(point, {i, j, k});
         if (outside(point) > (beyond ? kBeyond : 0)) continue;
         const Vector apart = plus(point, massPoint, -1);
-        if (dot(apart, apart) >= nearest || !isOnSurface(point)) {
-          continue;
-        }
+        if (dot(apart, apart) >= nearest || !isOnSurface(point)) continue;
         nearest = dot(apart, apart);
         placement.point = point;
         setNormal(placement, {i, j, k});
@@ -234,36 +356,18 @@ bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
   const int count = static_cast<int>(sides_.size());
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
-      const Side& a = sides_[i];
-      const Side& b = sides_[j];
-      const Vector direction = cross(a.normal, b.normal);
-      const float squared = dot(direction, direction);
-      if (squared < 0.05F || (beyond && !(a.crossed && b.crossed))) continue;
-      // The point of both planes nearest to the mass point.
-      const float cosine = dot(a.normal, b.normal);
-      const float da = a.offset - dot(a.normal, massPoint);
-      const float db = b.offset - dot(b.normal, massPoint);
-      Vector point = plus(massPoint, a.normal, (da - cosine * db) / squared);
-      point = plus(point, b.normal, (db - cosine * da) / squared);
-      // Along the crease into the cell.
-      const float half = kHalfCell + (beyond ? kBeyond : 0);
-      float from = -std::numeric_limits<float>::infinity(), to = -from;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (std::abs(direction[axis]) < 1e-6F) {
-          if (std::abs(point[axis]) > half) from = to + 1;
-          continue;
-        }
-        const float s = (-half - point[axis]) / direction[axis];
-        const float t = (half - point[axis]) / direction[axis];
-        from = std::max(from, std::min(s, t));
-        to = std::min(to, std::max(s, t));
-      }
-      if (from > to) continue;
-      point = plus(point, direction, std::clamp(0.0F, from, to));
+      if (beyond && !(sides_[i].crossed && sides_[j].crossed)) continue;
+      // The point of both sides nearest to the mass point, then along the crease into the cell.
+      Vector point = massPoint;
+      if (!moveOntoBoth(planeOf(i), planeOf(j), point)) continue;
+      followBends(point, {i, j});
+      const Vector direction =
+          cross(tangentAt(sides_[i], point).normal, tangentAt(sides_[j], point).normal);
+      const Vector before = point;
+      if (!slideInto(kHalfCell + (beyond ? kBeyond : 0), direction, point)) continue;
+      if (point != before) followBends(point, {i, j});
       const Vector apart = plus(point, massPoint, -1);
-      if (dot(apart, apart) >= nearest || !isOnSurface(point)) {
-        continue;
-      }
+      if (dot(apart, apart) >= nearest || !isOnSurface(point)) continue;
       nearest = dot(apart, apart);
       placement.point = point;
       setNormal(placement, {i, j});
@@ -283,7 +387,9 @@ bool CreaseCell::placeOnSide(const Vector& massPoint, CreasePlacement& placement
       for (float& p : point) p = std::clamp(p, -kHalfCell, kHalfCell);
       point = plus(point, sides_[i].normal, sides_[i].offset - dot(sides_[i].normal, point));
     }
-    if (outside(point) > kSideSlack || !isOnSurface(point)) continue;
+    if (outside(point) > kSideSlack) continue;
+    followBends(point, {i});
+    if (!isOnSurface(point)) continue;
     nearest = away;
     placement.point = point;
     setNormal(placement, {i});

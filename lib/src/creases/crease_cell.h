@@ -9,15 +9,22 @@ namespace tufa::creases {
 
 /// What the surface is like in a cell near a crease.
 struct CreasePlacement {
-  qef::Vector point{};    ///< in voxels from the middle of the cell
-  qef::Vector normal{};   ///< outward unit normal: of the plane, or the mean of those that meet
+  qef::Vector point{};   ///< in voxels from the middle of the cell
+  qef::Vector normal{};  ///< outward unit normal: of the plane, or the mean of those that meet
   std::array<qef::Vector, 3> sides{};  ///< normals of the planes that meet
   int planes = 0;  ///< 1: the cell lies on one smooth side; 2: a crease; 3: a corner; 0: unknown
 };
 
+/// The plane normal . p = offset.
+struct TangentPlane {
+  qef::Vector normal{};
+  float offset = 0;
+};
+
 /// Places the vertex of a cell near a crease from the tangent planes of the cubes around it.
 ///
-/// The planes whose feet lie near the cell are sorted into smooth sides. If three sides meet in the
+/// The planes whose feet lie near the cell are sorted into smooth sides, each a plane that bends as
+/// the normals of its members change from foot to foot. If three sides meet in the
 /// cell the vertex is their corner; if two do, the point of their crease nearest to the mass point.
 /// If none meet in the cell but its crossings lie on two or three sides, the crease or corner just
 /// outside is taken, up to a voxel away: the cell there has no vertex of its own. Else the vertex
@@ -36,14 +43,17 @@ class CreaseCell {
   [[nodiscard]] CreasePlacement place(int x, int y, int z, const qef::Vector& massPoint);
 
  private:
-  /// A smooth side of the surface near the cell: the plane normal . p = offset.
+  /// A smooth side of the surface near the cell: the plane normal . p = offset, and how that bends.
   struct Side {
     qef::Vector normal{};
     float offset = 0;
     float weight = 0;
     bool crossed = false;  ///< a crossing of the cell lies on it
+    qef::Vector middle{};  ///< mean of the feet
+    /// Change of the normal for each step away from the middle: xx, xy, xz, yy, yz, zz.
+    std::array<float, 6> bend{};
+    float rise = 0;  ///< mean of the bent surface's height over the plane at the feet
   };
-
   void collectPlanes();
   void sortIntoSides();
   void dropBlendedSides();
@@ -57,13 +67,21 @@ class CreaseCell {
   [[nodiscard]] bool placeOnCrease(const qef::Vector& massPoint, bool beyond,
                                    CreasePlacement& placement) const;
   [[nodiscard]] bool placeOnSide(const qef::Vector& massPoint, CreasePlacement& placement) const;
+  [[nodiscard]] TangentPlane planeOf(int side) const {
+    return {sides_[side].normal, sides_[side].offset};
+  }
+  void bendSide(Side& side, const std::vector<std::size_t>& members) const;
+  // The tangent plane of a side near a point.
+  [[nodiscard]] static TangentPlane tangentAt(const Side& side, const qef::Vector& point);
+  // Moves a point of the planes of some sides to where the bent sides meet.
+  void followBends(qef::Vector& point, std::initializer_list<int> sides) const;
   void setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const;
 
   const blocks::BlockSamples& samples_;
   const blocks::FieldScale& scale_;
   PatchPlanes planes_;
-  std::vector<PatchPlane> near_;   ///< feet in voxels from the middle of the cell
-  std::vector<float> weights_;     ///< of near_
+  std::vector<PatchPlane> near_;  ///< feet in voxels from the middle of the cell
+  std::vector<float> weights_;    ///< of near_
   std::vector<Side> sides_;
   std::array<int, 3> cell_{};
 };

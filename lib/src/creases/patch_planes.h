@@ -12,17 +12,17 @@ namespace tufa::creases {
 
 /// A tangent plane of the surface, read off one cube of eight samples of a distance field.
 struct PatchPlane {
-  qef::Vector normal{};   ///< outward unit normal in index space
-  qef::Vector foot{};     ///< the point of the surface nearest to the cube's middle
-  float residual = 0;     ///< how far the samples are from linear, in voxels
+  qef::Vector normal{};  ///< outward unit normal in index space
+  qef::Vector foot{};    ///< the point of the surface nearest to the cube's middle
+  float residual = 0;    ///< how far the samples are from linear, in voxels
 };
 
 /// Tangent planes from the cubes of a block.
 ///
 /// Where a distance field is smooth, one cube tells the surface point nearest to it and the normal
-/// there exactly up to curvature, however far the cube is from a crossing. Near a crease the field is
-/// smooth on either side of a bisector; cubes that the bisector passes show it by a residual or by a
-/// gradient that is not of unit length, and give no plane.
+/// there exactly up to curvature, however far the cube is from a crossing. Near a crease the field
+/// is smooth on either side of a bisector; cubes that the bisector passes show it by a residual or
+/// by a gradient that is not of unit length, and give no plane.
 class PatchPlanes {
  public:
   PatchPlanes(const blocks::BlockSamples& samples, const blocks::FieldScale& scale)

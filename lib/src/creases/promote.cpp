@@ -186,7 +186,8 @@ class Promoter {
     for (int a = 0; a < around.count(); ++a) {
       for (int b = a + 1; b < around.count(); ++b) {
         for (int c = b + 1; c < around.count(); ++c) {
-          if (!around.lies(corner, a) && !around.lies(corner, b) && !around.lies(corner, c)) continue;
+          if (!around.lies(corner, a) && !around.lies(corner, b) && !around.lies(corner, c))
+            continue;
           const auto pa = planeOf(quad, around, a, corner), pb = planeOf(quad, around, b, corner);
           const auto pc = planeOf(quad, around, c, corner);
           if (!pa || !pb || !pc) continue;

@@ -12,9 +12,12 @@ constexpr double kSameSide = 0.95;
 
 MeetingSides VertexSides::sides(const Mesh& mesh, VertexIndex vertex) const {
   switch (kinds_[vertex]) {
-    case Kind::Unknown: return {};
-    case Kind::Meeting: return meeting_.at(vertex);
-    default: break;
+    case Kind::Unknown:
+      return {};
+    case Kind::Meeting:
+      return meeting_.at(vertex);
+    default:
+      break;
   }
   MeetingSides one;
   one.count = 1;

@@ -2,11 +2,11 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/mesh.h>
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <tufa/mesh.h>
 #include <unordered_map>
 #include <vector>
 
@@ -26,10 +26,10 @@ class VertexSides {
  public:
   /// A crease runs near, or through, the vertex.
   enum class Kind : std::uint8_t {
-    Smooth,    ///< no kink of the field was seen
-    Near,      ///< on one side, with a crease nearby
-    Meeting,   ///< on a crease or corner; sides() says which
-    Unknown,   ///< on several sides that could not be told apart
+    Smooth,   ///< no kink of the field was seen
+    Near,     ///< on one side, with a crease nearby
+    Meeting,  ///< on a crease or corner; sides() says which
+    Unknown,  ///< on several sides that could not be told apart
   };
 
   explicit VertexSides(std::size_t vertices = 0) : kinds_(vertices, Kind::Smooth) {}
@@ -66,7 +66,9 @@ class QuadSides {
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] const openvdb::Vec3d& normal(int side) const { return normals_[side]; }
   /// Whether corner `corner` of the quad lies on `side`.
-  [[nodiscard]] bool lies(int corner, int side) const { return ((masks_[corner] >> side) & 1) != 0; }
+  [[nodiscard]] bool lies(int corner, int side) const {
+    return ((masks_[corner] >> side) & 1) != 0;
+  }
   /// Whether the sides of the corner are known.
   [[nodiscard]] bool known(int corner) const { return masks_[corner] != kAll; }
 

@@ -22,7 +22,7 @@ struct Bounds {
 };
 [[nodiscard]] Bounds boundsOf(const Mesh& mesh);
 
-/// Whether single precision would move some position by more than a millionth of the mesh's extent.
+/// Whether single precision would move some position.
 [[nodiscard]] bool needsDoublePrecision(const Mesh& mesh);
 
 /// Throws Error(LimitExceeded) that names the format, what there is too much of, and the limit.

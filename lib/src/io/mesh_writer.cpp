@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "io/mesh_format.h"
+#include "base/single_precision.h"
 
 namespace tufa {
 namespace io {
@@ -52,17 +53,8 @@ Bounds boundsOf(const Mesh& mesh) {
 }
 
 bool needsDoublePrecision(const Mesh& mesh) {
-  const Bounds bounds = boundsOf(mesh);
-  const Position& least = bounds.least;
-  const Position& greatest = bounds.greatest;
-  const double extent =
-      std::max({greatest.x - least.x, greatest.y - least.y, greatest.z - least.z});
-  const double largest =
-      std::max({std::abs(least.x), std::abs(least.y), std::abs(least.z), std::abs(greatest.x),
-                std::abs(greatest.y), std::abs(greatest.z)});
-  constexpr double kTolerance = 1e-6;
-  const double rounding = 0.5 * std::numeric_limits<float>::epsilon() * largest;
-  return rounding > kTolerance * extent || largest > std::numeric_limits<float>::max();
+  return !std::all_of(mesh.positions.begin(), mesh.positions.end(),
+                      [](const Position& p) { return p == base::toSingle(p); });
 }
 
 void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, const char* format) {

@@ -161,7 +161,7 @@ void writeGlb(const Mesh& mesh, MeshSink& sink, const std::string& name) {
     return;
   }
   const Layout layout = layOut(mesh);
-  const Floats middle = middleOf(boundsOf(mesh));
+  const Floats middle = needsDoublePrecision(mesh) ? middleOf(boundsOf(mesh)) : Floats{};
   const Json json = describe(mesh, layout, middle, name);
   // A name may hold bytes that are not UTF-8; JSON may not.
   writeHead(sink, json.dump(-1, ' ', false, Json::error_handler_t::replace), layout.bufferBytes());

@@ -6,6 +6,7 @@
 #include "base/huge_pages.h"
 #include "blocks/samples.h"
 #include "polygons/diagonal.h"
+#include "polygons/quad_places.h"
 
 namespace tufa::polygons {
 
@@ -16,6 +17,7 @@ using components::Components;
 using components::SurfaceBlock;
 using components::SurfaceBlockIndex;
 using components::Topology;
+using openvdb::Vec3d;
 
 namespace {
 
@@ -89,35 +91,6 @@ class VertexTable {
   std::array<Components, kSize * kSize * kSize> components_{};
 };
 
-// The four cells around an edge, counter-clockwise seen from its upper end, as steps down the next
-// axis and the one after it, in cyclic order of the axes.
-constexpr int kAround[4][2] = {{1, 1}, {0, 1}, {0, 0}, {1, 0}};
-
-// A quad and the lattice edge it stands around.
-struct QuadPlace {
-  std::uint64_t quad;
-  std::array<int, 3> start;  // the edge's lower end, in the block
-  int axis;
-  bool upward;  // the lower end is inside
-};
-
-// Calls body(place) for each quad of a block, in their order.
-template <class TreeT, class Body>
-void forQuads(const QuadContext<TreeT>& context, const SurfaceBlock& block, const Body& body) {
-  const CornerWords corners = context.blocks.cornerWords(block.neighbours);
-  std::uint64_t quad = block.firstQuad;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int x = 0; x < kBlockSize; ++x) {
-      const std::uint64_t cut =
-          block.special < 0 ? 0 : context.topology.specials[block.special].cut[axis].slabs[x];
-      const std::uint64_t inside = corners.words[x][0];
-      base::forEachBit(components::crossedEdges(corners, x)[axis] & ~cut, [&](int bit) {
-        body({quad++, {x, bit >> 3, bit & 7}, axis, ((inside >> bit) & 1) != 0});
-      });
-    }
-  }
-}
-
 template <int axis, class TreeT>
 Quad quadAround(const VertexTable<TreeT>& table, const QuadPlace& place, bool mirrored) {
   constexpr int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -145,12 +118,6 @@ Quad quadAround(const VertexTable<TreeT>& table, const QuadPlace& place, bool mi
     default:
       return quadAround<2>(table, place, mirrored);
   }
-}
-
-bool isNearCrease(const creases::VertexSides& sides, const Quad& quad) {
-  return std::any_of(quad.vertices.begin(), quad.vertices.end(), [&](VertexIndex vertex) {
-    return sides.kind(vertex) != creases::VertexSides::Kind::Smooth;
-  });
 }
 
 void turn(Quad& quad) {
@@ -225,9 +192,34 @@ void splitAtCreases(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& jo
   });
 }
 
+template <class TreeT>
+std::vector<Position> quadCrossings(const QuadContext<TreeT>& context,
+                                    const std::vector<std::uint32_t>& quads, base::Job& job) {
+  std::vector<Position> crossings(quads.size());
+  job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = context.topology.blocks[i];
+      auto next = std::lower_bound(quads.begin(), quads.end(), block.firstQuad);
+      if (next == quads.end() || *next >= block.firstQuad + block.quadCount) continue;
+      forQuads(context, block, [&](const QuadPlace& place) {
+        if (next == quads.end() || *next != place.quad) return;
+        const Vec3d point = crossingOf(context, block, place).point;
+        crossings[static_cast<std::size_t>(next - quads.begin())] = {point[0], point[1], point[2]};
+        ++next;
+      });
+    }
+  });
+  return crossings;
+}
+
 template void connectQuads(const QuadContext<openvdb::FloatTree>&, Mesh&, base::Job&);
 template void connectQuads(const QuadContext<openvdb::DoubleTree>&, Mesh&, base::Job&);
 template void splitAtCreases(const QuadContext<openvdb::FloatTree>&, Mesh&, base::Job&);
 template void splitAtCreases(const QuadContext<openvdb::DoubleTree>&, Mesh&, base::Job&);
+
+template std::vector<Position> quadCrossings(const QuadContext<openvdb::FloatTree>&,
+                                             const std::vector<std::uint32_t>&, base::Job&);
+template std::vector<Position> quadCrossings(const QuadContext<openvdb::DoubleTree>&,
+                                             const std::vector<std::uint32_t>&, base::Job&);
 
 }  // namespace tufa::polygons

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <cstdint>
+#include <vector>
 
 #include "base/affine.h"
 #include "base/job.h"
@@ -31,5 +33,11 @@ void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job)
 /// must be where they will stay.
 template <class TreeT>
 void splitAtCreases(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job);
+
+/// Where the surface crosses the lattice edges of some quads, sorted, by linear interpolation.
+template <class TreeT>
+[[nodiscard]] std::vector<Position> quadCrossings(const QuadContext<TreeT>& context,
+                                                  const std::vector<std::uint32_t>& quads,
+                                                  base::Job& job);
 
 }  // namespace tufa::polygons

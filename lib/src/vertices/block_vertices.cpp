@@ -56,13 +56,20 @@ template <class TreeT>
 void BlockVertices::place(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
                           const SurfaceBlock& block,
                           typename blocks::Blocks<TreeT>::Accessor& accessor) {
+  gather(blocks, topology, block, accessor);
+  solveVertices();
+}
+
+template <class TreeT>
+void BlockVertices::gather(const blocks::Blocks<TreeT>& blocks, const Topology& topology,
+                           const SurfaceBlock& block,
+                           typename blocks::Blocks<TreeT>::Accessor& accessor) {
   const CornerWords corners = blocks.cornerWords(block.neighbours);
   samples_.gather(blocks, scale_, block.block, block.neighbours, accessor);
   numberVertices(topology, block, corners);
   addEdges<0>(corners);
   addEdges<1>(corners);
   addEdges<2>(corners);
-  solveVertices();
 }
 
 void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock& block,
@@ -202,5 +209,12 @@ template void BlockVertices::place(const blocks::Blocks<openvdb::FloatTree>&, co
 template void BlockVertices::place(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
                                    const SurfaceBlock&,
                                    blocks::Blocks<openvdb::DoubleTree>::Accessor&);
+
+template void BlockVertices::gather(const blocks::Blocks<openvdb::FloatTree>&, const Topology&,
+                                    const SurfaceBlock&,
+                                    blocks::Blocks<openvdb::FloatTree>::Accessor&);
+template void BlockVertices::gather(const blocks::Blocks<openvdb::DoubleTree>&, const Topology&,
+                                    const SurfaceBlock&,
+                                    blocks::Blocks<openvdb::DoubleTree>::Accessor&);
 
 }  // namespace tufa::vertices

@@ -27,10 +27,20 @@ class BlockVertices {
              const components::SurfaceBlock& block,
              typename blocks::Blocks<TreeT>::Accessor& accessor);
 
+  /// The first half of place(): what massPoint() needs.
+  template <class TreeT>
+  void gather(const blocks::Blocks<TreeT>& blocks, const components::Topology& topology,
+              const components::SurfaceBlock& block,
+              typename blocks::Blocks<TreeT>::Accessor& accessor);
+
   /// Surface cell of each vertex of the block, in their order.
   [[nodiscard]] const std::vector<std::uint16_t>& cells() const { return cells_; }
   /// Each vertex, in voxels from the middle of its cell.
   [[nodiscard]] const std::vector<qef::Vector>& points() const { return points_; }
+  /// The mean of the crossings of a vertex, in voxels from the block's first lattice point.
+  [[nodiscard]] qef::Vector massPoint(std::size_t vertex) const {
+    return qefs_[vertex + 1].massPoint();
+  }
   /// The sum of the normals gathered at each vertex, in index space.
   [[nodiscard]] const std::vector<qef::Vector>& normals() const { return normals_; }
   /// A vertex on a crease or corner, and the normals of the sides that meet there, in index space.

@@ -1,5 +1,6 @@
 #include "vertices/place_vertices.h"
 
+#include <algorithm>
 #include <mutex>
 
 #include "base/huge_pages.h"
@@ -60,6 +61,42 @@ creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
   });
   return sides;
 }
+
+template <class TreeT>
+std::vector<Position> massPoints(const blocks::Blocks<TreeT>& blocks,
+                                 const blocks::FieldScale& scale,
+                                 const components::Topology& topology, const base::Affine& affine,
+                                 const std::vector<VertexIndex>& vertices, base::Job& job) {
+  std::vector<Position> points(vertices.size());
+  job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
+    typename blocks::Blocks<TreeT>::Accessor accessor(blocks.tree());
+    BlockVertices work(scale);
+    for (std::size_t i = begin; i < end; ++i) {
+      const components::SurfaceBlock& block = topology.blocks[i];
+      const std::uint64_t last = i + 1 < topology.blocks.size() ? topology.blocks[i + 1].firstVertex
+                                                                : topology.vertexCount;
+      auto next = std::lower_bound(vertices.begin(), vertices.end(), block.firstVertex);
+      if (next == vertices.end() || *next >= last) continue;
+      work.gather(blocks, topology, block, accessor);
+      for (; next != vertices.end() && *next < last; ++next) {
+        const qef::Vector point = work.massPoint(*next - block.firstVertex);
+        points[static_cast<std::size_t>(next - vertices.begin())] =
+            affine.position(blocks.origin(block.block), static_cast<double>(point[0]),
+                            static_cast<double>(point[1]), static_cast<double>(point[2]));
+      }
+    }
+  });
+  return points;
+}
+
+template std::vector<Position> massPoints(const blocks::Blocks<openvdb::FloatTree>&,
+                                          const blocks::FieldScale&, const components::Topology&,
+                                          const base::Affine&, const std::vector<VertexIndex>&,
+                                          base::Job&);
+template std::vector<Position> massPoints(const blocks::Blocks<openvdb::DoubleTree>&,
+                                          const blocks::FieldScale&, const components::Topology&,
+                                          const base::Affine&, const std::vector<VertexIndex>&,
+                                          base::Job&);
 
 template creases::VertexSides placeVertices(const blocks::Blocks<openvdb::FloatTree>&,
                                             const blocks::FieldScale&, const components::Topology&,

@@ -1,11 +1,11 @@
-#include "check/bvh.h"
+#include "base/bvh.h"
 
 #include <cmath>
 #include <functional>
 
 #include "base/parallel.h"
 
-namespace tufa::checks {
+namespace tufa::base {
 namespace {
 
 /// Puts two zero bits between the lowest 21 bits of `x`.
@@ -34,7 +34,7 @@ std::uint64_t mortonCode(const Box& box, const Box& all, double scale) {
 
 }  // namespace
 
-Bvh::Bvh(std::vector<Box> boxes, base::Job& job) : items_(boxes.size()), boxes_(boxes.size()) {
+Bvh::Bvh(std::vector<Box> boxes, Job& job) : items_(boxes.size()), boxes_(boxes.size()) {
   if (boxes.empty()) return;
   Box all = Box::empty();
   for (const Box& box : boxes) all.add(box);
@@ -49,7 +49,7 @@ Bvh::Bvh(std::vector<Box> boxes, base::Job& job) : items_(boxes.size()), boxes_(
       codes[i] = {mortonCode(boxes[i], all, scale), static_cast<std::uint32_t>(i)};
     }
   });
-  base::parallelSort(codes.begin(), codes.end(), std::less<>());
+  parallelSort(codes.begin(), codes.end(), std::less<>());
   job.forRanges(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       items_[i] = codes[i].second;
@@ -68,7 +68,7 @@ void Bvh::fill(const Node& node) {
   } else {
     constexpr std::size_t kSequentialLeaves = 4096;
     if (node.leaves > kSequentialLeaves) {
-      base::runBoth([&] { fill(left(node)); }, [&] { fill(right(node)); });
+      runBoth([&] { fill(left(node)); }, [&] { fill(right(node)); });
     } else {
       fill(left(node));
       fill(right(node));
@@ -79,4 +79,4 @@ void Bvh::fill(const Node& node) {
   nodes_[node.index] = box;
 }
 
-}  // namespace tufa::checks
+}  // namespace tufa::base

@@ -12,7 +12,7 @@
 
 #include "base/job.h"
 
-namespace tufa::checks {
+namespace tufa::base {
 
 /// An axis-aligned box with its faces.
 struct Box {
@@ -60,7 +60,7 @@ class Bvh {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   /// `boxes[i]` is the box of item i. At most 2^32 - 2 items.
-  Bvh(std::vector<Box> boxes, base::Job& job);
+  Bvh(std::vector<Box> boxes, Job& job);
 
   [[nodiscard]] bool empty() const { return items_.empty(); }
   [[nodiscard]] std::size_t leafCount() const {
@@ -83,6 +83,15 @@ class Bvh {
         if (boxes_[i].meets(boxes_[j])) visit(items_[i], items_[j]);
       }
     });
+  }
+
+  /// Calls visit(item) for each item whose box meets `box`.
+  template <class Visit>
+  void itemsMeeting(const Box& box, const Visit& visit) const {
+    walk([&](const Node& node) { return boxOf(node).meets(box); },
+         [&](std::size_t i) {
+           if (boxes_[i].meets(box)) visit(items_[i]);
+         });
   }
 
   /// Calls visit(item) for each item whose box is met by the ray from `point` towards +z.
@@ -183,4 +192,4 @@ class Bvh {
   std::vector<Box> nodes_;            ///< in preorder
 };
 
-}  // namespace tufa::checks
+}  // namespace tufa::base

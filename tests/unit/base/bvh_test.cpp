@@ -1,4 +1,4 @@
-#include "check/bvh.h"
+#include "base/bvh.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 namespace tufa {
 namespace {
 
-using checks::Box;
-using checks::Bvh;
+using base::Box;
+using base::Bvh;
 using openvdb::Vec3d;
 
 std::vector<Box> randomBoxes(std::size_t count, double size, std::mt19937& random) {

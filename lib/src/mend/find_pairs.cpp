@@ -1,0 +1,80 @@
+#include <array>
+#include <mutex>
+
+#include "mend/surface.h"
+#include "mend/triangle_pair.h"
+
+namespace tufa::mend {
+
+using base::Box;
+
+bool meetElsewhere(std::span<const Position> positions, Corners a, Corners b, bool same) {
+  std::array<Triangle, 2> ta, tb;
+  const int countA = trianglesOf(a, ta), countB = trianglesOf(b, tb);
+  if (same) return countA == 2 && meetElsewhere(positions, ta[0], ta[1]);
+  for (int i = 0; i < countA; ++i) {
+    for (int j = 0; j < countB; ++j) {
+      if (meetElsewhere(positions, ta[i], tb[j])) return true;
+    }
+  }
+  return false;
+}
+
+namespace {
+
+struct Suspect {
+  PolygonIndex polygon;
+  Box box;
+};
+
+// The pairs of the polygons of one run with the suspects near it.
+void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspect>& near,
+                std::vector<PolygonPair>& pairs) {
+  const PolygonIndex begin = surface.runBegin(run), end = surface.runEnd(run);
+  std::array<bool, Surface::kRun> isSuspect{};
+  for (const Suspect& suspect : near) {
+    if (suspect.polygon >= begin && suspect.polygon < end)
+      isSuspect[suspect.polygon - begin] = true;
+  }
+  for (PolygonIndex p = begin; p < end; ++p) {
+    const Box box = surface.box(p);
+    for (const Suspect& other : near) {
+      // Of two suspects the later one is found from the earlier.
+      if (!box.meets(other.box) || (isSuspect[p - begin] && other.polygon < p)) continue;
+      if (meetElsewhere(surface.mesh().positions, surface.corners(p),
+                        surface.corners(other.polygon), p == other.polygon)) {
+        pairs.push_back({std::min(p, other.polygon), std::max(p, other.polygon)});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<PolygonPair> findPairs(const Surface& surface,
+                                   const std::vector<PolygonIndex>& suspects, base::Job& job) {
+  std::vector<Box> boxes(suspects.size());
+  job.forRanges(suspects.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) boxes[i] = surface.box(suspects[i]);
+  });
+  const base::Bvh tree(std::move(boxes), job);
+  std::vector<PolygonPair> pairs;
+  std::mutex mutex;
+  job.forRanges(surface.runCount(), 16, [&](std::size_t begin, std::size_t end) {
+    std::vector<Suspect> near;
+    std::vector<PolygonPair> found;
+    for (std::size_t run = begin; run < end; ++run) {
+      near.clear();
+      tree.itemsMeeting(surface.runBox(run), [&](std::uint32_t i) {
+        near.push_back({suspects[i], surface.box(suspects[i])});
+      });
+      if (!near.empty()) pairsOfRun(surface, run, near, found);
+    }
+    const std::scoped_lock lock(mutex);
+    pairs.insert(pairs.end(), found.begin(), found.end());
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace tufa::mend

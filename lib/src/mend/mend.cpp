@@ -1,0 +1,266 @@
+#include "mend/mend.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "base/bvh.h"
+#include "mend/cluster.h"
+#include "base/single_precision.h"
+
+namespace tufa::mend {
+namespace {
+
+using base::Box;
+using openvdb::Vec3d;
+
+// Most rounds of small changes, and again of changes down to the floor.
+constexpr int kMostRounds = 40;
+// Where more than one in so many polygons meets another, there is no fine shape to spare: all that
+// are involved go to their mass points at once.
+constexpr std::size_t kCrowded = 20;
+constexpr int kCrowdedRounds = 2;
+// What is seen around a pair: so much of the pair's size on each side, and no less than this in
+// voxels.
+constexpr double kSight = 0.75;
+constexpr double kLeastSight = 1.0;
+
+template <class T>
+void sortUnique(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+class Mender {
+ public:
+  Mender(Mesh& mesh, const Source& source, base::Job& job)
+      : surface_(mesh, job),
+        source_(source),
+        job_(job),
+        ownVertices_(static_cast<VertexIndex>(mesh.positions.size())) {
+    havens_.voxelSize = source.voxelSize;
+    havens_.singlePrecision = source.singlePrecision;
+  }
+
+  MendReport run(const std::vector<PolygonIndex>& suspects) {
+    pairs_ = findPairs(surface_, suspects, job_);
+    report_.pairsFound = pairs_.size();
+    for (int round = 0; round < kCrowdedRounds && pairs_.size() > surface_.size() / kCrowded;
+         ++round) {
+      readHavens();
+      lookAgain(retreatAll());
+    }
+    mendInRounds(false);
+    if (source_.toTheFloor) mendInRounds(true);
+    surface_.finish();
+    report_.left = std::move(pairs_);
+    return std::move(report_);
+  }
+
+ private:
+  void mendInRounds(bool toTheFloor) {
+    stuck_.clear();
+    for (int round = 0; round < kMostRounds && stuck_.size() < pairs_.size(); ++round) {
+      readHavens();
+      lookAgain(mendClusters(toTheFloor));
+    }
+  }
+
+  // Mass points and crossings for the polygons of all pairs, as far as they are not known yet.
+  void readHavens() {
+    std::vector<PolygonIndex> quads;
+    std::vector<VertexIndex> vertices;
+    for (const PolygonPair& pair : pairs_) {
+      for (const PolygonIndex polygon : {pair.a, pair.b}) {
+        if (surface_.isQuad(polygon) && havens_.crossings.count(polygon) == 0) {
+          quads.push_back(polygon);
+        }
+        for (const VertexIndex vertex : surface_.corners(polygon)) {
+          if (vertex < ownVertices_ && havens_.massPoints.count(vertex) == 0) {
+            vertices.push_back(vertex);
+          }
+        }
+      }
+    }
+    sortUnique(quads);
+    sortUnique(vertices);
+    if (!vertices.empty()) {
+      const std::vector<Position> points = source_.massPoints(vertices);
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        havens_.massPoints.emplace(vertices[i], rounded(points[i]));
+      }
+    }
+    if (quads.empty() || !source_.crossings) return;
+    const std::vector<Position> points = source_.crossings(quads);
+    for (std::size_t i = 0; i < quads.size(); ++i) {
+      havens_.crossings.emplace(quads[i], rounded(points[i]));
+    }
+  }
+
+  [[nodiscard]] Position rounded(const Position& p) const {
+    return source_.singlePrecision ? base::toSingle(p) : p;
+  }
+
+  std::vector<PolygonIndex> retreatAll() {
+    for (const auto& [vertex, to] : havens_.massPoints) {
+      if (surface_.mesh().positions[vertex] == to) continue;
+      surface_.move(vertex, to);
+      ++report_.movedVertices;
+    }
+    std::vector<PolygonIndex> all(surface_.size());
+    std::iota(all.begin(), all.end(), PolygonIndex{0});
+    for (const PolygonIndex polygon : all) surface_.update(polygon);
+    return all;
+  }
+
+  std::vector<PolygonIndex> mendClusters(bool toTheFloor) {
+    const std::vector<std::vector<PolygonPair>> clusters = findClusters();
+    const std::vector<std::vector<PolygonIndex>> polygons = findPolygons(clusters.size());
+    std::vector<Changes> changes(clusters.size());
+    job_.forRanges(clusters.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Cluster cluster(Patch(surface_, polygons[i]), clusters[i], havens_);
+        changes[i] = cluster.mend(toTheFloor);
+      }
+    });
+    std::vector<PolygonIndex> changed;
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+      // What stays as it is will not go better next time, unless something changes around it.
+      if (changes[i].polygons.empty() && changes[i].fans.empty()) {
+        stuck_.insert(clusters[i].begin(), clusters[i].end());
+      }
+      apply(changes[i], changed);
+    }
+    sortUnique(changed);
+    return changed;
+  }
+
+  // What a pair's changes may touch and meet.
+  [[nodiscard]] Box sightOf(const PolygonPair& pair) const {
+    Box box = surface_.box(pair.a);
+    box.add(surface_.box(pair.b));
+    for (const PolygonIndex polygon : {pair.a, pair.b}) {
+      for (const VertexIndex vertex : surface_.corners(polygon)) {
+        const auto haven = havens_.massPoints.find(vertex);
+        if (haven == havens_.massPoints.end()) continue;
+        box.add(Vec3d(haven->second.x, haven->second.y, haven->second.z));
+      }
+    }
+    const Vec3d size = box.upper - box.lower;
+    const Vec3d margin(
+        std::max(kSight * std::max({size[0], size[1], size[2]}), kLeastSight * source_.voxelSize));
+    return {box.lower - margin, box.upper + margin};
+  }
+
+  // Pairs that do not see each other, each with those that lie in its sight: what one does to its
+  // surroundings, no other looks at. The rest waits for a later round.
+  std::vector<std::vector<PolygonPair>> findClusters() {
+    std::vector<Box> all;
+    for (const PolygonPair& pair : pairs_) all.push_back(sightOf(pair));
+    std::vector<std::vector<std::uint32_t>> seen(pairs_.size());
+    const base::Bvh tree(all, job_);
+    for (std::size_t leaf = 0; leaf < tree.leafCount(); ++leaf) {
+      tree.pairsOfLeaf(leaf, [&](std::uint32_t i, std::uint32_t j) {
+        seen[i].push_back(j);
+        seen[j].push_back(i);
+      });
+    }
+    std::vector<std::vector<PolygonPair>> clusters;
+    sights_.clear();
+    std::vector<bool> taken(pairs_.size());
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      if (taken[i] || stuck_.count(pairs_[i]) != 0) continue;
+      clusters.push_back({pairs_[i]});
+      sights_.push_back(all[i]);
+      std::sort(seen[i].begin(), seen[i].end());
+      for (const std::uint32_t other : seen[i]) {
+        taken[other] = true;
+        if (contains(all[i], pairs_[other])) clusters.back().push_back(pairs_[other]);
+      }
+    }
+    return clusters;
+  }
+
+  [[nodiscard]] bool contains(const Box& sight, const PolygonPair& pair) const {
+    Box own = surface_.box(pair.a);
+    own.add(surface_.box(pair.b));
+    own.add(sight);
+    return own.lower == sight.lower && own.upper == sight.upper;
+  }
+
+  // The polygons that each cluster sees, sorted.
+  std::vector<std::vector<PolygonIndex>> findPolygons(std::size_t clusters) {
+    using Entry = std::pair<std::uint32_t, PolygonIndex>;  // a cluster and a polygon
+    const base::Bvh tree(sights_, job_);
+    std::vector<std::vector<Entry>> ofRun(surface_.runCount());
+    job_.forRanges(surface_.runCount(), 64, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t run = begin; run < end; ++run) {
+        near.clear();
+        tree.itemsMeeting(surface_.runBox(run), [&](std::uint32_t i) { near.push_back(i); });
+        for (PolygonIndex p = surface_.runBegin(run); !near.empty() && p < surface_.runEnd(run);
+             ++p) {
+          const Box box = surface_.box(p);
+          for (const std::uint32_t i : near) {
+            if (box.meets(sights_[i])) ofRun[run].emplace_back(i, p);
+          }
+        }
+      }
+    });
+    std::vector<std::vector<PolygonIndex>> polygons(clusters);
+    for (const std::vector<Entry>& entries : ofRun) {
+      for (const auto& [cluster, polygon] : entries) polygons[cluster].push_back(polygon);
+    }
+    return polygons;
+  }
+
+  void apply(const Changes& changes, std::vector<PolygonIndex>& changed) {
+    for (const auto& [vertex, to] : changes.moves) surface_.move(vertex, to);
+    for (const PolygonIndex quad : changes.turns) surface_.turn(quad);
+    for (const auto& [quad, centre] : changes.fans) {
+      const auto first = static_cast<PolygonIndex>(surface_.size());
+      surface_.fan(quad, centre);
+      for (PolygonIndex i = 0; i < 4; ++i) changed.push_back(first + i);
+    }
+    for (const PolygonIndex polygon : changes.polygons) surface_.update(polygon);
+    changed.insert(changed.end(), changes.polygons.begin(), changes.polygons.end());
+    report_.movedVertices += changes.moves.size();
+    report_.turnedQuads += changes.turns.size();
+    report_.fannedQuads += changes.fans.size();
+  }
+
+  void lookAgain(const std::vector<PolygonIndex>& changed) {
+    std::erase_if(pairs_, [&](const PolygonPair& pair) {
+      return surface_.corners(pair.a).empty() || surface_.corners(pair.b).empty() ||
+             std::binary_search(changed.begin(), changed.end(), pair.a) ||
+             std::binary_search(changed.begin(), changed.end(), pair.b);
+    });
+    const std::vector<PolygonPair> found = findPairs(surface_, changed, job_);
+    for (const PolygonPair& pair : found) stuck_.erase(pair);
+    pairs_.insert(pairs_.end(), found.begin(), found.end());
+    std::sort(pairs_.begin(), pairs_.end());
+    std::erase_if(stuck_, [&](const PolygonPair& pair) {
+      return !std::binary_search(pairs_.begin(), pairs_.end(), pair);
+    });
+  }
+
+  Surface surface_;
+  const Source& source_;
+  base::Job& job_;
+  VertexIndex ownVertices_;  // those behind are centres of fans
+  std::vector<PolygonPair> pairs_;
+  Havens havens_;
+  std::set<PolygonPair> stuck_;  // pairs that the present phase cannot help
+  std::vector<Box> sights_;      // of the clusters
+  MendReport report_;
+};
+
+}  // namespace
+
+MendReport mend(Mesh& mesh, const std::vector<PolygonIndex>& suspects, const Source& source,
+                base::Job& job) {
+  return Mender(mesh, source, job).run(suspects);
+}
+
+}  // namespace tufa::mend

@@ -1,0 +1,223 @@
+#include "mend/mend.h"
+
+#include <gtest/gtest.h>
+#include <tufa/check.h>
+#include <tufa/contour.h>
+#include <tufa/shapes.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "base/affine.h"
+#include "base/job.h"
+#include "blocks/blocks.h"
+#include "components/topology.h"
+#include "creases/promote.h"
+#include "base/single_precision.h"
+#include "polygons/suspects.h"
+#include "vertices/place_vertices.h"
+
+namespace tufa {
+namespace {
+
+std::vector<mend::PolygonIndex> allPolygons(const Mesh& mesh) {
+  std::vector<mend::PolygonIndex> all(mesh.quads.size() + mesh.triangles.size());
+  std::iota(all.begin(), all.end(), mend::PolygonIndex{0});
+  return all;
+}
+
+std::vector<mend::PolygonPair> allPairs(Mesh mesh) {
+  base::Job job(0, {});
+  const mend::Surface surface(mesh, job);
+  return mend::findPairs(surface, allPolygons(mesh), job);
+}
+
+openvdb::FloatGrid::Ptr makeGrid(Shape shape, double voxelSize, std::uint32_t seed = 1) {
+  ShapeOptions options;
+  options.voxelSize = voxelSize;
+  options.seed = seed;
+  return makeShape(shape, options);
+}
+
+Mesh contourOf(Shape shape, double voxelSize, bool repair, ContourReport* report = nullptr) {
+  ContourOptions options;
+  options.uniform = true;
+  options.repair = repair;
+  return contour(*makeGrid(shape, voxelSize), options, report);
+}
+
+// A sheet of 4 by 4 squares that sags, with one vertex pulled down through it.
+Mesh foldedSheet() {
+  Mesh mesh;
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 5; ++x) mesh.positions.emplace_back(x, y, 0.3 * (x - 2) * (x - 2));
+  }
+  for (VertexIndex y = 0; y < 4; ++y) {
+    for (VertexIndex x = 0; x < 4; ++x) {
+      const VertexIndex v = y * 5 + x;
+      mesh.quads.emplace_back(v, v + 1, v + 6, v + 5);
+    }
+  }
+  mesh.positions[12] = {4.4, 2.1, 0.1};
+  return mesh;
+}
+
+mend::Source sourceOf(const Mesh& good) {
+  mend::Source source;
+  source.massPoints = [&good](const std::vector<VertexIndex>& vertices) {
+    std::vector<Position> points;
+    for (const VertexIndex vertex : vertices) points.push_back(good.positions[vertex]);
+    return points;
+  };
+  return source;
+}
+
+TEST(Mend, FindsThePairsThatCheckFinds) {
+  const Mesh mesh = contourOf(Shape::Bracket, 0.03, false);
+  const std::vector<mend::PolygonPair> pairs = allPairs(mesh);
+  ASSERT_FALSE(pairs.empty());
+  // As triangles, so that the numbers can be compared.
+  Mesh split;
+  split.positions = mesh.positions;
+  split.triangles = triangulate(mesh);
+  EXPECT_EQ(allPairs(split).size(), check(mesh).selfIntersectingPairs.value());
+}
+
+TEST(Mend, UnfoldsASheet) {
+  Mesh good = foldedSheet();
+  good.positions[12] = {2, 2, 0};
+  ASSERT_TRUE(allPairs(good).empty());
+  Mesh mesh = foldedSheet();
+  const std::size_t pairs = allPairs(mesh).size();
+  ASSERT_GT(pairs, 0U);
+  base::Job job(0, {});
+  const mend::MendReport report = mend::mend(mesh, allPolygons(mesh), sourceOf(good), job);
+  EXPECT_EQ(report.pairsFound, pairs);
+  EXPECT_TRUE(report.left.empty());
+  EXPECT_TRUE(allPairs(mesh).empty());
+  EXPECT_EQ(mesh.quads.size(), 16U);
+  EXPECT_EQ(mesh.positions.size(), 25U);
+}
+
+TEST(Mend, LeavesAGoodMeshAlone) {
+  Mesh mesh = contourOf(Shape::Sphere, 0.05, false);
+  const Mesh before = mesh;
+  base::Job job(0, {});
+  const mend::MendReport report = mend::mend(mesh, allPolygons(mesh), sourceOf(before), job);
+  EXPECT_EQ(report.pairsFound, 0U);
+  EXPECT_EQ(mesh.positions, before.positions);
+  EXPECT_EQ(mesh.quads, before.quads);
+}
+
+TEST(Mend, ReportsWhatItCannotMendWithoutTheFloor) {
+  // Two sheets that cross; their mass points are where they are.
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0},  {4, 0, 0},  {4, 4, 0}, {0, 4, 0},
+                    {2, 1, -2}, {2, 3, -2}, {2, 3, 2}, {2, 1, 2}};
+  mesh.quads = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  const Mesh before = mesh;
+  mend::Source source = sourceOf(before);
+  source.toTheFloor = false;
+  base::Job job(0, {});
+  const mend::MendReport report = mend::mend(mesh, allPolygons(mesh), source, job);
+  ASSERT_EQ(report.left.size(), 1U);
+  EXPECT_EQ(report.left[0], (mend::PolygonPair{0, 1}));
+}
+
+TEST(Mend, TakesAllPairsOutOfEveryShape) {
+  for (const Shape shape :
+       {Shape::Sphere, Shape::Torus, Shape::Box, Shape::Bracket, Shape::Gyroid, Shape::Terrain}) {
+    for (const double voxelSize : {0.02, 0.031}) {
+      ContourReport report;
+      const Mesh mesh = contourOf(shape, voxelSize, true, &report);
+      const Mesh plain = contourOf(shape, voxelSize, false);
+      const CheckReport checked = check(mesh), before = check(plain);
+      const std::string name(shapeNames()[static_cast<std::size_t>(shape)]);
+      EXPECT_EQ(checked.selfIntersectingPairs.value(), 0U) << name << " at " << voxelSize;
+      EXPECT_EQ(report.intersectionsLeft, 0U);
+      EXPECT_EQ(report.intersectionsFound == 0, before.selfIntersectingPairs.value() == 0);
+      EXPECT_TRUE(checked.watertight());
+      EXPECT_EQ(checked.eulerCharacteristic, before.eulerCharacteristic);
+      EXPECT_EQ(checked.components.size(), before.components.size());
+      EXPECT_EQ(mesh.positions.size(), plain.positions.size() + report.fannedQuads);
+    }
+  }
+}
+
+TEST(Mend, LeavesNoiseNearlyFreeOfPairs) {
+  const auto grid = makeGrid(Shape::Noise, 0.04);
+  ContourOptions options;
+  options.uniform = true;
+  ContourReport report;
+  const CheckReport checked = check(contour(*grid, options, &report));
+  EXPECT_GT(report.intersectionsFound, 100U);
+  EXPECT_LE(checked.selfIntersectingPairs.value(), 10U);
+  EXPECT_TRUE(checked.closed && checked.manifold && checked.oriented);
+}
+
+TEST(Mend, GivesTheSameBytesForAnyNumberOfThreads) {
+  for (const Shape shape : {Shape::Bracket, Shape::Gyroid}) {
+    const auto grid = makeGrid(shape, 0.02);
+    ContourOptions options;
+    options.uniform = true;
+    options.threads = 1;
+    const Mesh one = contour(*grid, options);
+    options.threads = 3;
+    const Mesh three = contour(*grid, options);
+    EXPECT_EQ(one.positions, three.positions);
+    EXPECT_EQ(one.quads, three.quads);
+    EXPECT_EQ(one.triangles, three.triangles);
+    EXPECT_EQ(one.normals, three.normals);
+  }
+}
+
+// What findSuspects() promises: every pair has a suspect.
+TEST(Suspects, HaveAPartInEveryPair) {
+  for (const Shape shape : {Shape::Noise, Shape::Gyroid, Shape::Bracket, Shape::Terrain}) {
+    const auto grid = makeGrid(shape, 0.03);
+    base::Job job(0, {});
+    const blocks::IsoChoice iso = blocks::chooseIsovalue(*grid, {}, Inside::Auto);
+    const blocks::Blocks<openvdb::FloatTree> blocks(grid->tree(), iso, NonFinite::Refuse, job);
+    const blocks::FieldScale scale = blocks::readFieldScale(*grid, iso);
+    const components::Topology topology =
+        components::buildTopology(blocks, scale, Ambiguity::Separate, false, job);
+    Mesh mesh;
+    const base::Affine affine(grid->transform());
+    creases::VertexSides sides =
+        vertices::placeVertices(blocks, scale, topology, affine, true, mesh, job);
+    const polygons::QuadContext<openvdb::FloatTree> quads{blocks, topology, scale, affine, sides};
+    polygons::connectQuads(quads, mesh, job);
+    if (scale.distance) {
+      creases::promoteToCreases(mesh, sides, affine.voxelSize(), job);
+      polygons::splitAtCreases(quads, mesh, job);
+    }
+    const std::vector<std::uint32_t> suspects = polygons::findSuspects(quads, mesh, job);
+    const mend::Surface surface(mesh, job);
+    const auto all = mend::findPairs(surface, allPolygons(mesh), job);
+    EXPECT_FALSE(all.empty());
+    EXPECT_EQ(mend::findPairs(surface, suspects, job), all);
+    EXPECT_LT(suspects.size(), mesh.quads.size());
+  }
+}
+
+TEST(SinglePrecision, IsTakenUnlessItMovesTooFar) {
+  Mesh mesh;
+  mesh.positions = {{0.1, 0.2, 1000.3}, {-2000.7, 1e-9, 0}};
+  const Mesh before = mesh;
+  base::Job job(0, {});
+  EXPECT_FALSE(base::roundToSingle(mesh, 1e-5, job));
+  EXPECT_EQ(mesh.positions, before.positions);
+  EXPECT_TRUE(base::roundToSingle(mesh, 1e-3, job));
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Position& p = mesh.positions[i];
+    const Position& q = before.positions[i];
+    EXPECT_TRUE(p.x == static_cast<float>(q.x) && p.y == static_cast<float>(q.y) &&
+                p.z == static_cast<float>(q.z));
+  }
+  EXPECT_NE(mesh.positions[1].x, before.positions[1].x);
+}
+
+}  // namespace
+}  // namespace tufa
