@@ -5,6 +5,7 @@
 
 #include "base/affine.h"
 #include "base/job.h"
+#include "base/single_precision.h"
 #include "blocks/blocks.h"
 #include "blocks/field.h"
 #include "certify/adapt.h"
@@ -13,7 +14,6 @@
 #include "cut/cut_rule.h"
 #include "forest/forest.h"
 #include "mend/mend.h"
-#include "base/single_precision.h"
 #include "polygons/base_quads.h"
 #include "polygons/suspects.h"
 #include "vertices/place_vertices.h"

@@ -11,4 +11,10 @@ inline Mesh uniformMesh(const openvdb::GridBase& grid, ContourOptions options = 
   return contour(grid, options, report);
 }
 
+/// The crossed lattice edges that a uniform mesh stands for: a quad each, or the four triangles
+/// that the repair put in its place.
+inline std::size_t edgesOf(const Mesh& mesh) {
+  return mesh.quads.size() + mesh.triangles.size() / 4;
+}
+
 }  // namespace tufa::test

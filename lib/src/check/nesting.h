@@ -18,8 +18,8 @@ struct Nesting {
 };
 
 /// Finds for each piece whether an odd number of others hold it, by vertical rays (exact) from some
-/// of its vertices, and its direction by the sign of its volume. Where pieces intersect the majority
-/// of those vertices decides.
+/// of its vertices, and its direction by the sign of its volume. Where pieces intersect the
+/// majority of those vertices decides.
 [[nodiscard]] Nesting studyNesting(const Faces& faces, const Pieces& pieces, const Bvh& tree,
                                    base::Job& job);
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "io/mesh_format.h"
 #include "base/single_precision.h"
+#include "io/mesh_format.h"
 
 namespace tufa {
 namespace io {

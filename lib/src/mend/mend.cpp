@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/bvh.h"
-#include "mend/cluster.h"
 #include "base/single_precision.h"
+#include "mend/cluster.h"
 
 namespace tufa::mend {
 namespace {

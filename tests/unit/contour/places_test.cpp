@@ -41,7 +41,7 @@ void expectWholeSurface(const FloatGrid& grid, const CoordBBox& window, const ch
   options.isovalue = 0;
   options.inside = Inside::Below;
   const Mesh mesh = tufa::test::uniformMesh(grid, options);
-  EXPECT_EQ(mesh.quads.size(), crossedEdges(grid, window, 0)) << what;
+  EXPECT_EQ(test::edgesOf(mesh), crossedEdges(grid, window, 0)) << what;
   const test::MeshTopology topology = test::inspect(mesh);
   EXPECT_TRUE(topology.manifold() && topology.closed()) << what << " " << topology;
   EXPECT_GT(test::volume(mesh), 0) << what;

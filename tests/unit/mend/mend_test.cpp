@@ -12,10 +12,10 @@
 
 #include "base/affine.h"
 #include "base/job.h"
+#include "base/single_precision.h"
 #include "blocks/blocks.h"
 #include "components/topology.h"
 #include "creases/promote.h"
-#include "base/single_precision.h"
 #include "polygons/suspects.h"
 #include "vertices/place_vertices.h"
 
