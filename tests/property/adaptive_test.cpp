@@ -168,9 +168,7 @@ TEST(Adaptive, CertificateHoldsAgainstBruteForce) {
   for (const Shape kind : {Shape::Sphere, Shape::Box, Shape::Gyroid}) {
     const auto grid = shape(kind, 0.15);
     const double voxel = grid->voxelSize()[0];
-    ContourOptions plain;
-    plain.repair = false;
-    const Mesh uniform = uniformMesh(*grid, plain);
+    const Mesh uniform = uniformMesh(*grid);
     for (const double tolerance : {0.1, 0.5}) {
       ContourOptions options;
       options.tolerance = tolerance;

@@ -85,12 +85,12 @@ class Bvh {
     });
   }
 
-  /// Calls visit(item) for each item whose box meets `box`.
+  /// Calls visit(item, its box) for each item whose box meets `box`.
   template <class Visit>
   void itemsMeeting(const Box& box, const Visit& visit) const {
     walk([&](const Node& node) { return boxOf(node).meets(box); },
          [&](std::size_t i) {
-           if (boxes_[i].meets(box)) visit(items_[i]);
+           if (boxes_[i].meets(box)) visit(items_[i], boxes_[i]);
          });
   }
 

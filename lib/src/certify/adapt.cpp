@@ -22,6 +22,69 @@ bool splitCells(const std::vector<VertexIndex>& vertices, const cut::Cut& cut, i
   return any;
 }
 
+// The polygons that may meet others: the suspects of the base mesh that are left, and what is not
+// of the base mesh.
+std::vector<mend::PolygonIndex> suspectsOf(const polygons::CutMesh& made, const cut::Cut& cut,
+                                           const std::vector<std::uint32_t>& baseSuspects) {
+  std::vector<mend::PolygonIndex> suspects;
+  for (std::size_t i = 0; i < made.mesh.quads.size(); ++i) {
+    const auto& v = made.mesh.quads[i].vertices;
+    const bool coarse =
+        std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return cut.clusters[k].level != 0; });
+    if (coarse ||
+        std::binary_search(baseSuspects.begin(), baseSuspects.end(), made.quadSources[i])) {
+      suspects.push_back(static_cast<mend::PolygonIndex>(i));
+    }
+  }
+  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
+    suspects.push_back(static_cast<mend::PolygonIndex>(made.mesh.quads.size() + i));
+  }
+  return suspects;
+}
+
+// Makes small changes to what is not of the base mesh; pairs that these do not help are left.
+mend::MendReport mendCut(const Repair& repair, const cut::Cut& cut,
+                         const std::vector<mend::PolygonIndex>& suspects, Mesh& mesh,
+                         base::Job& job) {
+  mend::Source source = repair.source;
+  source.crossings = nullptr;
+  source.toTheFloor = false;
+  source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
+    std::vector<Position> points;
+    for (const VertexIndex vertex : vertices) points.push_back(mesh.positions[vertex]);
+    return points;
+  };
+  source.isFixed = [&](VertexIndex vertex) { return cut.clusters[vertex].level == 0; };
+  return mend::mend(mesh, suspects, source, job);
+}
+
+// The vertices of some polygons, sorted.
+std::vector<VertexIndex> verticesOf(const Mesh& mesh,
+                                    const std::vector<mend::PolygonIndex>& polygons) {
+  std::vector<VertexIndex> vertices;
+  for (const mend::PolygonIndex polygon : polygons) {
+    if (polygon < mesh.quads.size()) {
+      const auto& v = mesh.quads[polygon].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    } else {
+      const auto& v = mesh.triangles[polygon - mesh.quads.size()].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+std::vector<VertexIndex> baseVerticesOf(const cut::Cut& cut) {
+  std::vector<VertexIndex> vertices;
+  vertices.reserve(cut.clusters.size());
+  for (const cut::ClusterRef& ref : cut.clusters) {
+    vertices.push_back(ref.level == 0 ? ref.cluster : forest::kNone);
+  }
+  return vertices;
+}
+
 // Vertices - edges + faces. Edges are told apart by sorting, as the mesh may be open.
 std::int64_t eulerCharacteristic(const Mesh& mesh) {
   std::vector<std::pair<VertexIndex, VertexIndex>> edges;
@@ -44,24 +107,45 @@ std::int64_t eulerCharacteristic(const Mesh& mesh) {
 
 template <class TreeT>
 AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                   const cut::CutRule& rule, base::Job& job) {
+                   const cut::CutRule& rule, const Repair* repair, base::Job& job) {
   Certifier<TreeT> certifier(base, forest.levels[0], rule, job);
   cut::CellFlags forbidden(forest);
-  for (int round = 1;; ++round) {
+  AdaptiveMesh adaptive;
+  for (adaptive.rounds = 1;; ++adaptive.rounds) {
     const cut::CellFlags merged = cut::mergeCells(forest, base.topology, rule, forbidden, job);
     const cut::Cut cut = cut::makeCut(forest, base.topology, merged, job);
     polygons::CutMesh made = polygons::meshCut(forest, cut, base.mesh, base.affine, job);
-    const Deviation deviation = certifier.measure(cut, made);
-    if (!splitCells(deviation.coarse, cut, rule.minLevel, forbidden)) {
-      double largest = deviation.largest;
-      if (!deviation.coarse.empty()) {
-        // Cells that may not be split are off by more; what was kept from the cuts before is not in
-        // this one's worst.
-        largest = Certifier<TreeT>(base, forest.levels[0], rule, job).measure(cut, made).worst;
+    Deviation deviation = certifier.measure(cut, made);
+    if (splitCells(deviation.coarse, cut, rule.minLevel, forbidden)) continue;
+    std::vector<VertexIndex> altered;
+    if (repair != nullptr) {
+      adaptive.suspects = suspectsOf(made, cut, repair->suspects);
+      adaptive.mended = mendCut(*repair, cut, adaptive.suspects, made.mesh, job);
+      altered = verticesOf(made.mesh, adaptive.mended.changed);
+      const Deviation after = certifier.measure(cut, made, altered);
+      std::vector<VertexIndex> wanted = after.coarse;
+      for (const auto& [a, b] : adaptive.mended.left) {
+        const std::vector<VertexIndex> corners = verticesOf(made.mesh, {a, b});
+        wanted.insert(wanted.end(), corners.begin(), corners.end());
       }
-      return {std::move(made.mesh), cut::collectLeaves(forest, base.topology, merged), largest,
-              deviation.mean, round};
+      if (splitCells(wanted, cut, rule.minLevel, forbidden)) continue;
+      deviation = after;
     }
+    adaptive.largestError = deviation.largest;
+    adaptive.meanError = deviation.mean;
+    if (deviation.worst > deviation.largest) {
+      // Cells that may not be split are off by more; what was kept from the meshes before is not in
+      // this one's worst.
+      Certifier<TreeT> again(base, forest.levels[0], rule, job);
+      adaptive.largestError = again.measure(cut, made, altered).worst;
+    }
+    adaptive.leaves = cut::collectLeaves(forest, base.topology, merged);
+    adaptive.baseVertices = baseVerticesOf(cut);
+    adaptive.baseQuads = std::move(made.quadSources);
+    adaptive.baseQuads.insert(adaptive.baseQuads.end(), made.triangleSources.begin(),
+                              made.triangleSources.end());
+    adaptive.mesh = std::move(made.mesh);
+    return adaptive;
   }
 }
 
@@ -82,8 +166,8 @@ Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLea
 }
 
 template AdaptiveMesh adapt(const forest::Base<openvdb::FloatTree>&, const forest::Forest&,
-                            const cut::CutRule&, base::Job&);
+                            const cut::CutRule&, const Repair*, base::Job&);
 template AdaptiveMesh adapt(const forest::Base<openvdb::DoubleTree>&, const forest::Forest&,
-                            const cut::CutRule&, base::Job&);
+                            const cut::CutRule&, const Repair*, base::Job&);
 
 }  // namespace tufa::certify

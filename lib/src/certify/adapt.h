@@ -5,24 +5,36 @@
 #include "certify/certificate.h"
 #include "cut/leaves.h"
 #include "forest/forest.h"
+#include "mend/mend.h"
 #include "polygons/cut_polygons.h"
 
 namespace tufa::certify {
 
+/// How the self-intersections of cuts are taken out.
+struct Repair {
+  std::vector<std::uint32_t> suspects;  ///< of the base mesh, see polygons::findSuspects()
+  mend::Source source;                  ///< of the base mesh
+};
+
 /// The coarsest mesh found that keeps a rule, and how far it is from the base mesh.
 struct AdaptiveMesh {
   Mesh mesh;
-  std::vector<LeafCell> leaves;  ///< surface cells that are leaves, by level
-  double largestError = 0;       ///< voxels
-  double meanError = 0;          ///< voxels
-  int rounds = 0;                ///< meshes made and measured
+  std::vector<VertexIndex> baseVertices;  ///< base vertex of each vertex, kNone if of a larger cell
+  std::vector<std::uint32_t> baseQuads;   ///< base quad of each polygon, quads first
+  std::vector<mend::PolygonIndex> suspects;  ///< polygons, of which each pair that meets has one
+  std::vector<LeafCell> leaves;              ///< surface cells that are leaves, by level
+  double largestError = 0;                   ///< voxels
+  double meanError = 0;                      ///< voxels
+  int rounds = 0;                            ///< meshes made and measured
+  mend::MendReport mended;                   ///< of the last round
 };
 
 /// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the
-/// tolerance, and starts again until there are none.
+/// tolerance or meets itself, and starts again until there are none. If `repair`, small changes are
+/// tried before a cell is split because of polygons that meet.
 template <class TreeT>
 [[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                                 const cut::CutRule& rule, base::Job& job);
+                                 const cut::CutRule& rule, const Repair* repair, base::Job& job);
 
 /// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if
 /// they are to be kept.

@@ -44,9 +44,12 @@ Certifier<TreeT>::Certifier(const forest::Base<TreeT>& base, const forest::Level
       quadErrors_(base.mesh.quads.size()) {}
 
 template <class TreeT>
-Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& made) {
+Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& made,
+                                    const std::vector<VertexIndex>& altered) {
   cut_ = &cut;
   made_ = &made;
+  altered_.assign(cut.clusters.size(), 0);
+  for (const VertexIndex vertex : altered) altered_[vertex] = 1;
   collectPieces();
   findChanges();
   Deviation total;
@@ -72,6 +75,7 @@ Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& mad
   total.coarse.erase(std::unique(total.coarse.begin(), total.coarse.end()), total.coarse.end());
   clusters_ = cut.clusters;
   vertexOf_ = cut.vertexOf;
+  alteredKept_ = altered_;
   return total;
 }
 
@@ -117,8 +121,11 @@ void Certifier<TreeT>::findChanges() {
   touched_ = changed_;
   if (clusters_.empty()) return;
   for (std::size_t i = 0; i < vertexOf_.size(); ++i) {
-    const VertexIndex vertex = cut_->vertexOf[i];
-    if (!sameCluster(cut_->clusters[vertex], clusters_[vertexOf_[i]])) changed_[vertex] = 1;
+    const VertexIndex vertex = cut_->vertexOf[i], before = vertexOf_[i];
+    if (altered_[vertex] != 0 || alteredKept_[before] != 0 ||
+        !sameCluster(cut_->clusters[vertex], clusters_[before])) {
+      changed_[vertex] = 1;
+    }
   }
   touched_ = changed_;
   for (const Piece& piece : pieces_) {

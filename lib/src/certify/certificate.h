@@ -33,8 +33,10 @@ class Certifier {
   Certifier(const forest::Base<TreeT>& base, const forest::Level& blockCells,
             const cut::CutRule& rule, base::Job& job);
 
-  /// The next cut and its mesh. `largest` counts samples of the cuts before, too.
-  [[nodiscard]] Deviation measure(const cut::Cut& cut, const polygons::CutMesh& made);
+  /// The next cut and its mesh. `altered`: vertices of polygons that are not as the cut alone would
+  /// have them. `largest` counts samples of the meshes before, too.
+  [[nodiscard]] Deviation measure(const cut::Cut& cut, const polygons::CutMesh& made,
+                                  const std::vector<VertexIndex>& altered = {});
 
  private:
   // A triangle of the mesh that the base mesh does not have.
@@ -52,7 +54,9 @@ class Certifier {
     std::vector<VertexIndex> coarse;
   };
 
-  [[nodiscard]] bool isFine(VertexIndex vertex) const { return cut_->clusters[vertex].level == 0; }
+  [[nodiscard]] bool isFine(VertexIndex vertex) const {
+    return cut_->clusters[vertex].level == 0 && altered_[vertex] == 0;
+  }
   void collectPieces();
   void findChanges();
   void measureVertex(std::size_t index, Part& part);
@@ -77,9 +81,11 @@ class Certifier {
   base::Job& job_;
   const cut::Cut* cut_ = nullptr;
   const polygons::CutMesh* made_ = nullptr;
-  std::vector<cut::ClusterRef> clusters_;  ///< of the cut before
-  std::vector<VertexIndex> vertexOf_;      ///< of the cut before
-  std::vector<std::uint8_t> changed_;      ///< vertices that the cut before did not have
+  std::vector<std::uint8_t> altered_;      ///< vertices that are not as the cut has them
+  std::vector<cut::ClusterRef> clusters_;  ///< of the mesh before
+  std::vector<VertexIndex> vertexOf_;      ///< of the mesh before
+  std::vector<std::uint8_t> alteredKept_;  ///< of the mesh before
+  std::vector<std::uint8_t> changed_;      ///< vertices that the mesh before did not have
   std::vector<std::uint8_t> touched_;      ///< these and their neighbours
   std::vector<float> vertexErrors_;        ///< of the base vertices, voxels
   std::vector<float> quadErrors_;          ///< of the base quads, voxels

@@ -76,7 +76,8 @@ std::vector<Cluster::Edit> Cluster::editsFor(const Pair& pair) const {
 // Harm: the gap between the diagonals.
 void Cluster::addTurn(Local polygon, std::vector<Edit>& edits) const {
   const Corners v = patch_.corners(polygon);
-  if (v.size() != 4) return;
+  if (v.size() != 4 || std::none_of(v.begin(), v.end(), [&](Local i) { return canMove(i); }))
+    return;
   const Vec3d p0 = vectorOf(patch_.point(v[0])), p1 = vectorOf(patch_.point(v[1]));
   const Vec3d across = (vectorOf(patch_.point(v[2])) - p0).cross(vectorOf(patch_.point(v[3])) - p1);
   const double length = across.length();
@@ -84,6 +85,10 @@ void Cluster::addTurn(Local polygon, std::vector<Edit>& edits) const {
   edit.harm = length > 0 ? std::abs(across.dot(p1 - p0)) / length / havens_.voxelSize : 0;
   edit.turns = {polygon};
   edits.push_back(std::move(edit));
+}
+
+bool Cluster::canMove(Local vertex) const {
+  return !patch_.isNew(vertex) && havens_.massPoints.count(patch_.vertexOf(vertex)) != 0;
 }
 
 bool Cluster::canFan(Local polygon) const {

@@ -9,7 +9,7 @@
 
 namespace tufa::mend {
 
-/// Where what may move can go, for the polygons of all pairs.
+/// Where what may move can go, for the polygons of all pairs. Vertices without a mass point stay.
 struct Havens {
   std::unordered_map<VertexIndex, Position> massPoints;
   std::unordered_map<PolygonIndex, Position> crossings;
@@ -51,6 +51,7 @@ class Cluster {
   void addFan(Local polygon, std::vector<Edit>& edits) const;
   void addMoves(Local vertex, std::vector<Edit>& edits) const;
   [[nodiscard]] Edit retreat(const Pair& pair) const;
+  [[nodiscard]] bool canMove(Local vertex) const;
   [[nodiscard]] bool canFan(Local polygon) const;
 
   bool improve(const Pair& pair);

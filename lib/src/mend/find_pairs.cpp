@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <mutex>
 
@@ -8,10 +9,35 @@ namespace tufa::mend {
 
 using base::Box;
 
+namespace {
+
+// A quick answer for most polygons that share one vertex or none.
+bool areParted(std::span<const Position> positions, Corners a, Corners b) {
+  std::array<Position, 4> ofA, ofB;
+  std::size_t countA = 0, shared = 0;
+  Position at = positions[a.empty() ? 0 : a[0]];
+  for (const VertexIndex vertex : a) {
+    if (std::find(b.begin(), b.end(), vertex) == b.end()) {
+      ofA[countA++] = positions[vertex];
+    } else {
+      at = positions[vertex];
+      if (++shared > 1) return false;
+    }
+  }
+  std::size_t countB = 0;
+  for (const VertexIndex vertex : b) {
+    if (std::find(a.begin(), a.end(), vertex) == a.end()) ofB[countB++] = positions[vertex];
+  }
+  return arePartedAt(at, {ofA.data(), countA}, {ofB.data(), countB}, shared == 1);
+}
+
+}  // namespace
+
 bool meetElsewhere(std::span<const Position> positions, Corners a, Corners b, bool same) {
   std::array<Triangle, 2> ta, tb;
   const int countA = trianglesOf(a, ta), countB = trianglesOf(b, tb);
   if (same) return countA == 2 && meetElsewhere(positions, ta[0], ta[1]);
+  if (areParted(positions, a, b)) return false;
   for (int i = 0; i < countA; ++i) {
     for (int j = 0; j < countB; ++j) {
       if (meetElsewhere(positions, ta[i], tb[j])) return true;
@@ -27,6 +53,9 @@ struct Suspect {
   Box box;
 };
 
+// So many polygons of a run are compared with what is near at once.
+constexpr PolygonIndex kGroup = 4;
+
 // The pairs of the polygons of one run with the suspects near it.
 void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspect>& near,
                 std::vector<PolygonPair>& pairs) {
@@ -36,14 +65,29 @@ void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspe
     if (suspect.polygon >= begin && suspect.polygon < end)
       isSuspect[suspect.polygon - begin] = true;
   }
-  for (PolygonIndex p = begin; p < end; ++p) {
-    const Box box = surface.box(p);
-    for (const Suspect& other : near) {
-      // Of two suspects the later one is found from the earlier.
-      if (!box.meets(other.box) || (isSuspect[p - begin] && other.polygon < p)) continue;
-      if (meetElsewhere(surface.mesh().positions, surface.corners(p),
-                        surface.corners(other.polygon), p == other.polygon)) {
-        pairs.push_back({std::min(p, other.polygon), std::max(p, other.polygon)});
+  std::vector<Suspect> nearer;
+  for (PolygonIndex group = begin; group < end; group += kGroup) {
+    const PolygonIndex groupEnd = std::min(group + kGroup, end);
+    std::array<Box, kGroup> boxes;
+    Box all = Box::empty();
+    for (PolygonIndex p = group; p < groupEnd; ++p) {
+      boxes[p - group] = surface.box(p);
+      all.add(boxes[p - group]);
+    }
+    nearer.clear();
+    for (const Suspect& suspect : near) {
+      if (all.meets(suspect.box)) nearer.push_back(suspect);
+    }
+    for (PolygonIndex p = group; p < groupEnd; ++p) {
+      for (const Suspect& other : nearer) {
+        // Of two suspects the later one is found from the earlier.
+        if (!boxes[p - group].meets(other.box) || (isSuspect[p - begin] && other.polygon < p)) {
+          continue;
+        }
+        if (meetElsewhere(surface.mesh().positions, surface.corners(p),
+                          surface.corners(other.polygon), p == other.polygon)) {
+          pairs.push_back({std::min(p, other.polygon), std::max(p, other.polygon)});
+        }
       }
     }
   }
@@ -65,8 +109,8 @@ std::vector<PolygonPair> findPairs(const Surface& surface,
     std::vector<PolygonPair> found;
     for (std::size_t run = begin; run < end; ++run) {
       near.clear();
-      tree.itemsMeeting(surface.runBox(run), [&](std::uint32_t i) {
-        near.push_back({suspects[i], surface.box(suspects[i])});
+      tree.itemsMeeting(surface.runBox(run), [&](std::uint32_t i, const Box& box) {
+        near.push_back({suspects[i], box});
       });
       if (!near.empty()) pairsOfRun(surface, run, near, found);
     }

@@ -49,11 +49,13 @@ class Mender {
     for (int round = 0; round < kCrowdedRounds && pairs_.size() > surface_.size() / kCrowded;
          ++round) {
       readHavens();
-      lookAgain(retreatAll());
+      report_.changed = retreatAll();
+      lookAgain(report_.changed);
     }
     mendInRounds(false);
     if (source_.toTheFloor) mendInRounds(true);
     surface_.finish();
+    sortUnique(report_.changed);
     report_.left = std::move(pairs_);
     return std::move(report_);
   }
@@ -77,9 +79,8 @@ class Mender {
           quads.push_back(polygon);
         }
         for (const VertexIndex vertex : surface_.corners(polygon)) {
-          if (vertex < ownVertices_ && havens_.massPoints.count(vertex) == 0) {
-            vertices.push_back(vertex);
-          }
+          if (vertex >= ownVertices_ || havens_.massPoints.count(vertex) != 0) continue;
+          if (!source_.isFixed || !source_.isFixed(vertex)) vertices.push_back(vertex);
         }
       }
     }
@@ -133,6 +134,7 @@ class Mender {
       apply(changes[i], changed);
     }
     sortUnique(changed);
+    report_.changed.insert(report_.changed.end(), changed.begin(), changed.end());
     return changed;
   }
 
@@ -198,7 +200,8 @@ class Mender {
       std::vector<std::uint32_t> near;
       for (std::size_t run = begin; run < end; ++run) {
         near.clear();
-        tree.itemsMeeting(surface_.runBox(run), [&](std::uint32_t i) { near.push_back(i); });
+        tree.itemsMeeting(surface_.runBox(run),
+                          [&](std::uint32_t i, const Box&) { near.push_back(i); });
         for (PolygonIndex p = surface_.runBegin(run); !near.empty() && p < surface_.runEnd(run);
              ++p) {
           const Box box = surface_.box(p);

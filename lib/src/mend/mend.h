@@ -10,16 +10,19 @@
 namespace tufa::mend {
 
 /// What mending asks of the one who made the mesh. Both are called with sorted, distinct indices,
-/// for the few elements that matter only.
+/// for the few elements that matter only. Without `crossings`, no quad becomes a fan.
 struct Source {
   /// Where each vertex may always go: the mean of the crossings that it stands for.
   std::function<std::vector<Position>(const std::vector<VertexIndex>&)> massPoints;
   /// A point of the surface in the middle of each quad: where it crosses the quad's lattice edge.
   std::function<std::vector<Position>(const std::vector<PolygonIndex>&)> crossings;
+  /// Vertices that must stay where they are; empty: none. Quads of such vertices alone keep their
+  /// diagonals.
+  std::function<bool(VertexIndex)> isFixed;
   double voxelSize = 1;          ///< world length of a voxel
   bool singlePrecision = false;  ///< positions are, and must stay, representable as floats
-  /// Go down to mass points and fans even where that helps no pair at once: the floor of level 0.
-  /// Else such pairs are left over, for their cells to be split.
+  /// Go down to mass points and fans even where that helps no pair at once. Else such pairs are
+  /// left over, for their cells to be split.
   bool toTheFloor = true;
 };
 
@@ -27,9 +30,10 @@ struct Source {
 struct MendReport {
   std::size_t pairsFound = 0;  ///< pairs of polygons that met
   std::size_t movedVertices = 0;
-  std::size_t turnedQuads = 0;    ///< split along their other diagonal
-  std::size_t fannedQuads = 0;    ///< replaced by four triangles around a new vertex
-  std::vector<PolygonPair> left;  ///< pairs that still meet
+  std::size_t turnedQuads = 0;        ///< split along their other diagonal
+  std::size_t fannedQuads = 0;        ///< replaced by four triangles around a new vertex
+  std::vector<PolygonIndex> changed;  ///< polygons that are not as they were, sorted
+  std::vector<PolygonPair> left;      ///< pairs that still meet
 };
 
 /// Takes the self-intersections out of a closed mesh by small local changes: another diagonal, a

@@ -1,7 +1,11 @@
 #include "mend/triangle_pair.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mend/exact.h"
@@ -9,7 +13,17 @@
 namespace tufa::mend {
 namespace {
 
+using openvdb::Vec3d;
 using Corners = std::array<Position, 3>;
+
+// Far above the rounding of a scalar product, relative to its terms.
+constexpr double kRounding = 1e-15;
+// The sine of an angle far above all rounding.
+constexpr double kClearly = 1e-6;
+
+Vec3d between(const Position& from, const Position& to) {
+  return {to.x - from.x, to.y - from.y, to.z - from.z};
+}
 
 // Moves the common vertices of two triangles to their fronts, in the same order; returns how many.
 int alignShared(std::array<VertexIndex, 3>& a, std::array<VertexIndex, 3>& b) {
@@ -22,6 +36,15 @@ int alignShared(std::array<VertexIndex, 3>& a, std::array<VertexIndex, 3>& b) {
     ++shared;
   }
   return shared;
+}
+
+// A quick answer for shared edges: surely not folded over, as the third corners lie on opposite
+// sides of the edge.
+bool isUnfolded(const Corners& a, const Corners& b) {
+  const Vec3d edge = between(a[0], a[1]), own = between(a[0], a[2]), other = between(a[0], b[2]);
+  const Vec3d across = own * edge.lengthSqr() - edge * own.dot(edge);
+  if (across.length() < kClearly * edge.lengthSqr() * own.length()) return false;
+  return across.dot(other) < -kClearly * across.length() * other.length();
 }
 
 // An axis along which the triangle is seen with an area; -1 if its corners lie on a line.
@@ -86,6 +109,7 @@ bool meetBeyondVertex(const Corners& a, const Corners& b) {
 }
 
 bool isFoldedOver(const Corners& a, const Corners& b) {
+  if (isUnfolded(a, b)) return false;
   if (orientation(a[0], a[1], a[2], b[2]) != 0) return false;
   const int axis = facingAxis(a);
   return axis >= 0 &&
@@ -94,12 +118,39 @@ bool isFoldedOver(const Corners& a, const Corners& b) {
 
 }  // namespace
 
+bool arePartedAt(const Position& at, std::span<const Position> a, std::span<const Position> b,
+                 bool common) {
+  Vec3d toA(0), toB(0);
+  for (const Position& p : a) toA += between(at, p);
+  for (const Position& p : b) toB += between(at, p);
+  const double weightA = common ? toA.length() : static_cast<double>(a.size());
+  const double weightB = common ? toB.length() : static_cast<double>(b.size());
+  if (!(weightA > 0 && weightB > 0)) return false;
+  const Vec3d way = toA / weightA - toB / weightB;
+  double leastA = std::numeric_limits<double>::infinity(), mostB = -leastA, terms = 0;
+  const auto along = [&](const Position& p) {
+    const Vec3d offset = between(at, p);
+    terms = std::max(terms, std::abs(way[0] * offset[0]) + std::abs(way[1] * offset[1]) +
+                                std::abs(way[2] * offset[2]));
+    return way.dot(offset);
+  };
+  for (const Position& p : a) leastA = std::min(leastA, along(p));
+  for (const Position& p : b) mostB = std::max(mostB, along(p));
+  const double margin = kRounding * terms;
+  return common ? leastA > margin && mostB < -margin : leastA - mostB > 2 * margin;
+}
+
 bool meetElsewhere(std::span<const Position> positions, const Triangle& a, const Triangle& b) {
   auto va = a.vertices;
   auto vb = b.vertices;
   const int shared = alignShared(va, vb);
   const Corners pa{positions[va[0]], positions[va[1]], positions[va[2]]};
   const Corners pb{positions[vb[0]], positions[vb[1]], positions[vb[2]]};
+  const std::size_t skip = shared == 1 ? 1 : 0;
+  if (shared <= 1 &&
+      arePartedAt(pa[0], std::span(pa).subspan(skip), std::span(pb).subspan(skip), shared == 1)) {
+    return false;
+  }
   const bool meet = shared == 0   ? meetAnywhere(pa, pb)
                     : shared == 1 ? meetBeyondVertex(pa, pb)
                     : shared == 2 ? isFoldedOver(pa, pb)

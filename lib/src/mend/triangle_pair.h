@@ -12,6 +12,12 @@ namespace tufa::mend {
 [[nodiscard]] bool meetElsewhere(std::span<const Position> positions, const Triangle& a,
                                  const Triangle& b);
 
+/// A quick test in floating point: whether a plane surely parts the points `a` from the points `b`;
+/// if `common`, one through the point `at`, with none of them on it. No answer is no proof. `at` is
+/// near the points, so that differences to it lose nothing.
+[[nodiscard]] bool arePartedAt(const Position& at, std::span<const Position> a,
+                               std::span<const Position> b, bool common);
+
 /// Whether the corners of a triangle lie on a line.
 [[nodiscard]] bool isFlat(std::span<const Position> positions, const Triangle& triangle);
 

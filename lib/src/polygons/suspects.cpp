@@ -62,9 +62,6 @@ bool parts(const Vec3d& normal, const Vec3d& p, const Vec3d& inner, const Vec3d&
   return before > 0 && behind > 0 && before * before > least && behind * behind > least;
 }
 
-// Far above the rounding of these sums, in voxels.
-constexpr double kMargin = 1e-6;
-
 bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3d& inner, const Vec3d& outer,
                      double margin) {
   std::array<Vec3d, 4> p;
@@ -81,10 +78,9 @@ bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3d& inner, con
 
 template <class TreeT>
 std::vector<std::uint32_t> findSuspects(const QuadContext<TreeT>& context, const Mesh& mesh,
-                                        base::Job& job) {
+                                        double margin, base::Job& job) {
   std::vector<std::uint32_t> suspects;
   std::mutex mutex;
-  const double margin = kMargin * context.affine.voxelSize();
   job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> found;
     SharedCells shared;
@@ -95,7 +91,7 @@ std::vector<std::uint32_t> findSuspects(const QuadContext<TreeT>& context, const
       forQuads(context, block, [&](const QuadPlace& place) {
         const Quad& quad = mesh.quads[place.quad];
         const auto [x, y, z] = place.start;
-        const Position start = context.affine.toWorld(context.affine.position(origin, x, y, z));
+        const Position start = context.affine.position(origin, x, y, z);
         const Vec3d lower(start.x, start.y, start.z);
         const Vec3d upper = lower + context.affine.axis(place.axis);
         if (isNearCrease(context.sides, quad) || shared.touch(place) ||
@@ -113,8 +109,8 @@ std::vector<std::uint32_t> findSuspects(const QuadContext<TreeT>& context, const
 }
 
 template std::vector<std::uint32_t> findSuspects(const QuadContext<openvdb::FloatTree>&,
-                                                 const Mesh&, base::Job&);
+                                                 const Mesh&, double, base::Job&);
 template std::vector<std::uint32_t> findSuspects(const QuadContext<openvdb::DoubleTree>&,
-                                                 const Mesh&, base::Job&);
+                                                 const Mesh&, double, base::Job&);
 
 }  // namespace tufa::polygons

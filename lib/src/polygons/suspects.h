@@ -8,7 +8,8 @@
 namespace tufa::polygons {
 
 /// The quads of the level-0 mesh that may meet another quad elsewhere than in what they share; the
-/// others meet each other nowhere else. Sorted. Positions are in world space, as they will stay.
+/// others meet each other nowhere else, even if each moves by half of `margin` (world units) in any
+/// way. Sorted.
 ///
 /// Let a quad stand around the lattice edge from a to b. Its envelope is the union of the four
 /// tetrahedra (a, b, v, w), v and w being vertices of the quad in neighbouring cells (Ju and Udeshi
@@ -24,6 +25,7 @@ namespace tufa::polygons {
 /// vertex near a crease: those may leave their cells.
 template <class TreeT>
 [[nodiscard]] std::vector<std::uint32_t> findSuspects(const QuadContext<TreeT>& context,
-                                                      const Mesh& mesh, base::Job& job);
+                                                      const Mesh& mesh, double margin,
+                                                      base::Job& job);
 
 }  // namespace tufa::polygons

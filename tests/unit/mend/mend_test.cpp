@@ -193,7 +193,8 @@ TEST(Suspects, HaveAPartInEveryPair) {
       creases::promoteToCreases(mesh, sides, affine.voxelSize(), job);
       polygons::splitAtCreases(quads, mesh, job);
     }
-    const std::vector<std::uint32_t> suspects = polygons::findSuspects(quads, mesh, job);
+    const std::vector<std::uint32_t> suspects =
+        polygons::findSuspects(quads, mesh, 1e-3 * affine.leastHeight(), job);
     const mend::Surface surface(mesh, job);
     const auto all = mend::findPairs(surface, allPolygons(mesh), job);
     EXPECT_FALSE(all.empty());

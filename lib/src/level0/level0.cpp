@@ -1,0 +1,130 @@
+#include "level0/level0.h"
+
+#include <tufa/error.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "creases/promote.h"
+#include "level0/with_grid.h"
+#include "polygons/suspects.h"
+#include "vertices/place_vertices.h"
+
+namespace tufa::level0 {
+namespace {
+
+// The lowest corner of all blocks: a grid that is moved by whole blocks keeps it in its place.
+template <class TreeT>
+openvdb::Coord lowestOrigin(const blocks::Blocks<TreeT>& blocks) {
+  if (blocks.count() == 0) return openvdb::Coord(0);
+  openvdb::Coord lowest = blocks.origin(0);
+  for (std::size_t i = 1; i < blocks.count(); ++i) {
+    lowest.minComponent(blocks.origin(static_cast<blocks::BlockRef>(i)));
+  }
+  return lowest;
+}
+
+blocks::IsoChoice beginBlocks(const openvdb::GridBase& grid, const ContourOptions& options,
+                              const StageEnds& ends, base::Job& job) {
+  job.beginStage("blocks", ends.blocks);
+  return blocks::chooseIsovalue(grid, options.isovalue, options.inside);
+}
+
+template <class TreeT>
+components::Topology checkedTopology(const blocks::Blocks<TreeT>& blocks,
+                                     const blocks::FieldScale& scale, const ContourOptions& options,
+                                     const StageEnds& ends, base::Job& job) {
+  job.beginStage("topology", ends.topology);
+  components::Topology topology =
+      components::buildTopology(blocks, scale, options.ambiguity, options.cap, job);
+  if (topology.vertexCount > std::numeric_limits<VertexIndex>::max()) {
+    throw Error(ErrorCode::LimitExceeded,
+                "the mesh would have " + std::to_string(topology.vertexCount) +
+                    " vertices, more than 32-bit indices can name; use a coarser grid");
+  }
+  return topology;
+}
+
+}  // namespace
+
+void requireScalar(const openvdb::GridBase& grid) {
+  if (!grid.transform().isLinear()) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                "grid \"" + grid.getName() + "\" has a " + grid.transform().mapType() +
+                    " transform; only linear ones can be meshed; resample the grid first");
+  }
+  if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>()) {
+    throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() +
+                                                "\" holds values of type " + grid.valueType() +
+                                                "; only float and double grids have an isosurface");
+  }
+}
+
+template <class TreeT>
+Level0<TreeT>::Level0(const openvdb::Grid<TreeT>& grid, const ContourOptions& options,
+                      const StageEnds& ends, base::Job& job)
+    : iso_(beginBlocks(grid, options, ends, job)),
+      blocks_(grid.tree(), iso_, options.nonFinite, job),
+      scale_(blocks::readFieldScale(grid, iso_)),
+      topology_(checkedTopology(blocks_, scale_, options, ends, job)),
+      affine_(grid.transform(), lowestOrigin(blocks_)) {
+  job.beginStage("vertices", ends.vertices);
+  const bool normals = options.normals == Normals::Gradient || scale_.distance || !options.uniform;
+  sides_ = vertices::placeVertices(blocks_, scale_, topology_, affine_, normals, mesh_, job);
+  job.beginStage("polygons", ends.polygons);
+  polygons::connectQuads(quads(), mesh_, job);
+  job.beginStage("creases", ends.creases);
+  if (scale_.distance) {
+    creases::promoteToCreases(mesh_, sides_, affine_.voxelSize(), job);
+    polygons::splitAtCreases(quads(), mesh_, job);
+  }
+  report_.isovalue = iso_.isovalue;
+  report_.insideIsBelow = iso_.insideIsBelow;
+  report_.distanceField = scale_.distance;
+  report_.activeVoxels = blocks_.activeVoxels();
+  report_.nonFiniteValues = blocks_.nonFiniteValues();
+  report_.surfaceCells = topology_.cellCount;
+  report_.creaseCells = sides_.sharpCount();
+  report_.faceFlips = topology_.faceFlips;
+  report_.cutEdges = topology_.cutEdges;
+  job.beginStage("repair", ends.repair);
+  if (options.repair) repair(job);
+}
+
+template <class TreeT>
+mend::Source Level0<TreeT>::source(base::Job& job) const {
+  mend::Source source;
+  source.massPoints = [this, &job](const std::vector<VertexIndex>& vertices) {
+    return vertices::massPoints(blocks_, scale_, topology_, affine_, vertices, job);
+  };
+  source.crossings = [this, &job](const std::vector<mend::PolygonIndex>& polygons) {
+    return polygons::quadCrossings(quads(), polygons, job);
+  };
+  source.voxelSize = affine_.voxelSize();
+  return source;
+}
+
+template <class TreeT>
+void Level0<TreeT>::repair(base::Job& job) {
+  // Rounding moves each of two polygons.
+  const double margin = 2 * kMostRounding * affine_.leastHeight();
+  suspects_ = polygons::findSuspects(quads(), mesh_, margin, job);
+  mend::Source own = source(job);
+  own.crossings = nullptr;  // a forest has no place for the centres of fans
+  const mend::MendReport mended = mend::mend(mesh_, suspects_, own, job);
+  std::vector<std::uint32_t> all;
+  std::set_union(suspects_.begin(), suspects_.end(), mended.changed.begin(), mended.changed.end(),
+                 std::back_inserter(all));
+  suspects_ = std::move(all);
+  report_.intersectionsFound = mended.pairsFound;
+  report_.intersectionsLeft = mended.left.size();
+  report_.movedVertices = mended.movedVertices;
+  report_.turnedQuads = mended.turnedQuads;
+}
+
+template class Level0<openvdb::FloatTree>;
+template class Level0<openvdb::DoubleTree>;
+
+}  // namespace tufa::level0
