@@ -36,12 +36,13 @@ const char* nameOf(Ambiguity rule) {
 }
 
 Mesh meshOf(const openvdb::GridBase& grid, Ambiguity rule, int threads,
-            ContourReport* report = nullptr) {
+            ContourReport* report = nullptr, bool repair = true) {
   ContourOptions options;
   options.isovalue = 0;
   options.inside = Inside::Below;
   options.ambiguity = rule;
   options.threads = threads;
+  options.repair = repair;
   return tufa::test::uniformMesh(grid, options, report);
 }
 
@@ -74,10 +75,11 @@ INSTANTIATE_TEST_SUITE_P(Rules, Noise,
 TEST_P(Noise, GivesAClosedManifoldAndTheSameBytesForAnyThreads) {
   const auto [rule, seed] = GetParam();
   const auto grid = test::noise<FloatGrid>({.size = 64, .seed = seed});
+  const bool repair = seed == 1;  // takes most of the time
   ContourReport one, two;
-  const Mesh mesh = meshOf(*grid, rule, 1, &one);
+  const Mesh mesh = meshOf(*grid, rule, 1, &one, repair);
   expectManifold(mesh);
-  EXPECT_TRUE(test::sameBytes(mesh, meshOf(*grid, rule, 2, &two)));
+  EXPECT_TRUE(test::sameBytes(mesh, meshOf(*grid, rule, 2, &two, repair)));
   EXPECT_GT(one.faceFlips, 0U);
   EXPECT_EQ(one.faceFlips, two.faceFlips);
   EXPECT_EQ(one.surfaceCells, two.surfaceCells);

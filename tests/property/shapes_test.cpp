@@ -163,7 +163,7 @@ TEST(ShapeSummaries, AreThoseOfBefore) {
       {Shape::Sphere, 0.05, 7472, 7470, 2},        {Shape::Torus, 0.05, 8384, 8384, 0},
       {Shape::Box, 0.05, 7220, 7218, 2},           {Shape::Bracket, 0.03, 15474, 15484, -10},
       {Shape::Gyroid, 0.04, 49512, 49998, -486},   {Shape::Terrain, 0.05, 6404, 6402, 2},
-      {Shape::Noise, 0.0625, 48752, 50530, -1786}, {Shape::Fog, 0.05, 4004, 3988, 16},
+      {Shape::Noise, 0.0625, 48748, 50534, -1786}, {Shape::Fog, 0.05, 4004, 3988, 16},
   };
   for (const auto& golden : expected) {
     const Mesh mesh = meshOf(golden.shape, golden.voxelSize);

@@ -117,6 +117,7 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
     polygons::CutMesh made = polygons::meshCut(forest, cut, base.mesh, base.affine, job);
     Deviation deviation = certifier.measure(cut, made);
     if (splitCells(deviation.coarse, cut, rule.minLevel, forbidden)) continue;
+    bool beyond = !deviation.coarse.empty();  // the tolerance, where cells may not be split
     std::vector<VertexIndex> altered;
     if (repair != nullptr) {
       adaptive.suspects = suspectsOf(made, cut, repair->suspects);
@@ -129,13 +130,13 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
         wanted.insert(wanted.end(), corners.begin(), corners.end());
       }
       if (splitCells(wanted, cut, rule.minLevel, forbidden)) continue;
+      beyond |= !after.coarse.empty();
       deviation = after;
     }
     adaptive.largestError = deviation.largest;
     adaptive.meanError = deviation.mean;
-    if (deviation.worst > deviation.largest) {
-      // Cells that may not be split are off by more; what was kept from the meshes before is not in
-      // this one's worst.
+    if (beyond) {
+      // What was kept from the meshes before is not in this one's worst.
       Certifier<TreeT> again(base, forest.levels[0], rule, job);
       adaptive.largestError = again.measure(cut, made, altered).worst;
     }

@@ -44,15 +44,30 @@ Changes Cluster::mend(bool toTheFloor) {
   const std::size_t most = kMostChanges * (pairs_.size() + 1);
   std::vector<Pair> stuck;
   for (std::size_t i = 0; i < most; ++i) {
-    const auto next = std::find_if(pairs_.begin(), pairs_.end(), [&](const Pair& pair) {
-      return std::find(stuck.begin(), stuck.end(), pair) == stuck.end();
-    });
-    if (next == pairs_.end()) break;
-    const Pair pair = *next;
+    // The next one by place: numbers are other ones where a grid is moved.
+    const Pair* next = nullptr;
+    for (const Pair& pair : pairs_) {
+      if (std::find(stuck.begin(), stuck.end(), pair) != stuck.end()) continue;
+      if (next == nullptr ||
+          placeOf(pair[0]) + placeOf(pair[1]) < placeOf((*next)[0]) + placeOf((*next)[1])) {
+        next = &pair;
+      }
+    }
+    if (next == nullptr) break;
+    Pair pair = *next;
+    if (placeOf(pair[1]) < placeOf(pair[0])) std::swap(pair[0], pair[1]);
+    const Pair named = *next;
     if (improve(pair) || (toTheFloor && goToFloor(pair))) continue;
-    stuck.push_back(pair);
+    stuck.push_back(named);
   }
   return changes();
+}
+
+// The sum of the corners.
+Vec3d Cluster::placeOf(Local polygon) const {
+  Vec3d sum(0);
+  for (const Local vertex : patch_.corners(polygon)) sum += vectorOf(patch_.point(vertex));
+  return sum;
 }
 
 std::vector<Cluster::Edit> Cluster::editsFor(const Pair& pair) const {

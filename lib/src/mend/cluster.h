@@ -46,6 +46,7 @@ class Cluster {
     std::vector<Local> fans;
   };
 
+  [[nodiscard]] openvdb::Vec3d placeOf(Local polygon) const;
   [[nodiscard]] std::vector<Edit> editsFor(const Pair& pair) const;
   void addTurn(Local polygon, std::vector<Edit>& edits) const;
   void addFan(Local polygon, std::vector<Edit>& edits) const;

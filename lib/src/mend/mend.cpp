@@ -155,6 +155,15 @@ class Mender {
     return {box.lower - margin, box.upper + margin};
   }
 
+  [[nodiscard]] Vec3d sumOf(PolygonIndex polygon) const {
+    Vec3d sum(0);
+    for (const VertexIndex vertex : surface_.corners(polygon)) {
+      const Position& p = surface_.mesh().positions[vertex];
+      sum += Vec3d(p.x, p.y, p.z);
+    }
+    return sum;
+  }
+
   // Pairs that do not see each other, each with those that lie in its sight: what one does to its
   // surroundings, no other looks at. The rest waits for a later round.
   std::vector<std::vector<PolygonPair>> findClusters() {
@@ -168,14 +177,23 @@ class Mender {
         seen[j].push_back(i);
       });
     }
+    // By place, as a grid that is moved has its polygons in another order.
+    std::vector<Vec3d> places;
+    for (const PolygonPair& pair : pairs_) places.push_back(sumOf(pair.a) + sumOf(pair.b));
+    const auto before = [&places](std::uint32_t i, std::uint32_t j) {
+      return places[i] != places[j] ? places[i] < places[j] : i < j;
+    };
+    std::vector<std::uint32_t> order(pairs_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), before);
     std::vector<std::vector<PolygonPair>> clusters;
     sights_.clear();
     std::vector<bool> taken(pairs_.size());
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for (const std::uint32_t i : order) {
       if (taken[i] || stuck_.count(pairs_[i]) != 0) continue;
       clusters.push_back({pairs_[i]});
       sights_.push_back(all[i]);
-      std::sort(seen[i].begin(), seen[i].end());
+      std::sort(seen[i].begin(), seen[i].end(), before);
       for (const std::uint32_t other : seen[i]) {
         taken[other] = true;
         if (contains(all[i], pairs_[other])) clusters.back().push_back(pairs_[other]);
