@@ -8,6 +8,7 @@ find_package(Threads REQUIRED)
 find_package(TBB CONFIG REQUIRED)
 find_package(OpenVDB 8.0 REQUIRED)
 find_package(nlohmann_json 3.10 REQUIRED)
+find_package(meshoptimizer CONFIG REQUIRED)
 
 if(TUFA_BUILD_CHECK)
   # CGAL warns about missing build types and sets flags of its own unless told not to.

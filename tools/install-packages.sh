@@ -4,7 +4,7 @@
 set -eu
 
 packages="ca-certificates cmake g++ git ninja-build
-  libopenvdb-dev libtbb-dev libimath-dev
+  libopenvdb-dev libtbb-dev libimath-dev libmeshoptimizer-dev
   libcgal-dev libgmp-dev libmpfr-dev libboost-dev
   libcli11-dev nlohmann-json3-dev libpng-dev libgtest-dev"
 case "${1:-}" in

@@ -39,8 +39,10 @@ void requireMeshEnding(const std::filesystem::path& path);
 void requireWritable(const std::filesystem::path& path);
 
 /// Reads a mesh: .ply (text or binary), .obj, .stl (text or binary), .off or .glb. Polygons with
-/// more than four corners are fanned; .stl vertices at equal positions are shared. Throws Error:
-/// UnreadableFile with the place where reading failed, InvalidArgument (unknown ending).
+/// more than four corners are fanned; vertices at equal positions are shared in .stl and, where
+/// normals or the like could have split them, in .glb. Of a .glb with levels of detail the finest
+/// is read. Throws Error: UnreadableFile with the place where reading failed, InvalidArgument
+/// (unknown ending).
 [[nodiscard]] Mesh readMesh(const std::filesystem::path& path);
 
 /// What a .vdb file says of one grid.

@@ -4,7 +4,9 @@
 
 #include <tufa/contour.h>
 #include <tufa/mesh.h>
+#include <tufa/progress.h>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -65,5 +67,56 @@ struct Camera {
 /// is none.
 [[nodiscard]] std::size_t selectLod(const LodChain& chain, const Camera& camera,
                                     double pixelError = 1);
+
+/// The axis of the volume that points up. glTF's is y: a volume with z up is turned.
+enum class UpAxis { Y, Z };
+
+/// How a .glb stores vertices and indices.
+enum class LodCompression {
+  None,       ///< positions and normals as floats: every program reads that
+  Quantized,  ///< positions in 16 bits, normals in 8: KHR_mesh_quantization
+  Meshopt,    ///< the same, and packed: EXT_meshopt_compression
+};
+
+/// Options of writeLods(). All but `name`, `threads` and `progress` are for .glb only.
+struct LodWriteOptions {
+  std::string name = "mesh";  ///< of nodes and meshes: NAME_LOD0, NAME_LOD1, ...
+  /// Vertices are split where the normals of two faces at an edge differ by more than that:
+  /// degrees, 0 to 180; 180 splits none.
+  double creaseAngle = 40;
+  UpAxis up = UpAxis::Y;  ///< of the volume
+  double scale = 1;       ///< metres in a world unit; above 0
+  /// Vertices keep their places relative to each other: a level in which rounding to 16 bits would
+  /// bring two together, or three on a line, is stored in floats.
+  LodCompression compression = LodCompression::None;
+  int threads = 0;    ///< most threads; 0: as many as the TBB arena allows. Never changes the file.
+  Progress progress;  ///< called from the calling thread; may cancel
+};
+
+/// What writeLods() wrote.
+struct LodWriteReport {
+  std::vector<std::filesystem::path> files;  ///< one, or one for each level
+  /// Of each level; in a .glb those of vertices that were split at creases count for themselves.
+  std::vector<std::size_t> vertices;
+  std::vector<std::size_t> floatLevels;  ///< levels that could not be quantized
+};
+
+/// The file of a level: `path` with braces {} in its file name replaced by the level's number, or
+/// `path` itself if it has none.
+[[nodiscard]] std::filesystem::path lodFile(const std::filesystem::path& path, std::size_t level);
+
+/// Writes all levels to one .glb: nodes and meshes NAME_LOD0, NAME_LOD1, ..., of which the first
+/// has the extension MSFT_lod and alone stands in the default scene, so that programs that know
+/// nothing of levels show the finest. Each node's `extras` hold its errors and counts. Triangles
+/// are ordered for the vertex cache, vertices by their first use.
+///
+/// A file name with braces makes one file for each level, see lodFile(), of any format that write()
+/// has; other than .glb, they are in world units as write() makes them.
+///
+/// Each file appears whole or not at all. Throws Error: UnwritableFile, InvalidArgument (an option
+/// out of its range, one file of a format without levels), LimitExceeded (more than the format can
+/// hold, or vertices nearer to each other than single precision tells apart), Cancelled.
+void writeLods(const LodChain& chain, const std::filesystem::path& path,
+               const LodWriteOptions& options = {}, LodWriteReport* report = nullptr);
 
 }  // namespace tufa

@@ -1,14 +1,18 @@
-// .glb: triangles of all meshes of the scene, through the transforms of their nodes.
+// .glb: triangles of all meshes of the scene, through the transforms of their nodes. Of levels of
+// detail the finest, which alone stands in the scene.
 
 #include <openvdb/math/Mat4.h>
 
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "io/glb.h"
 #include "io/mesh_builder.h"
 #include "io/mesh_readers.h"
+#include "io/unpack_view.h"
 
 namespace tufa::io {
 namespace {
@@ -17,14 +21,6 @@ using Json = nlohmann::json;
 using Matrix = openvdb::math::Mat4d;  // row vectors: point * matrix
 using Point = openvdb::math::Vec3d;
 
-constexpr std::uint32_t kMagic = 0x46546C67;
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-
-constexpr int kUnsignedByte = 5121;
-constexpr int kUnsignedShort = 5123;
-constexpr int kUnsignedInt = 5125;
-constexpr int kFloat = 5126;
 constexpr int kTriangles = 4;
 constexpr int kTriangleStrip = 5;
 constexpr int kTriangleFan = 6;
@@ -35,6 +31,7 @@ struct View {
   std::size_t count = 0;
   std::size_t stride = 0;
   int componentType = 0;
+  bool normalized = false;  ///< integers stand for -1 to 1 or 0 to 1
 };
 
 class GlbReader {
@@ -59,7 +56,7 @@ class GlbReader {
   }
 
   void splitChunks() {
-    if (input_.size() < 12 || word(0) != kMagic) input_.fail("it is not a .glb file");
+    if (input_.size() < 12 || word(0) != glb::kMagic) input_.fail("it is not a .glb file");
     if (word(4) != 2) input_.fail("it is glTF version " + std::to_string(word(4)) + ", not 2");
     if (word(8) > input_.size()) {
       input_.fail("it should have " + std::to_string(word(8)) + " bytes but has " +
@@ -70,8 +67,8 @@ class GlbReader {
       const std::uint32_t type = word(at + 4);
       if (length > word(8) - at - 8) input_.failAtByte(at, "a chunk is longer than the file");
       const std::string_view chunk = input_.view().substr(at + 8, length);
-      if (type == kJsonChunk && json_.is_null()) json_ = Json::parse(chunk);
-      if (type == kBinaryChunk && binary_.data() == nullptr) binary_ = chunk;
+      if (type == glb::kJsonChunk && json_.is_null()) json_ = Json::parse(chunk);
+      if (type == glb::kBinaryChunk && binary_.data() == nullptr) binary_ = chunk;
       at += 8 + length;
     }
     if (!json_.is_object()) input_.fail("it has no JSON chunk");
@@ -82,7 +79,9 @@ class GlbReader {
       const std::string name = extension.get<std::string>();
       const bool onlyLooks = name.starts_with("KHR_materials") || name.starts_with("KHR_texture") ||
                              name.starts_with("EXT_texture") || name.starts_with("KHR_lights");
-      if (!onlyLooks) input_.fail("it needs the glTF extension " + name + ", not supported");
+      const bool known = name == "KHR_mesh_quantization" || name == "EXT_meshopt_compression";
+      if (!onlyLooks && !known)
+        input_.fail("it needs the glTF extension " + name + ", not supported");
     }
   }
 
@@ -160,15 +159,9 @@ class GlbReader {
 
   void addPrimitive(const Json& primitive, int mode, const Matrix& transform) {
     const View positions = viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
-    if (positions.componentType != kFloat) input_.fail("its positions are not floats");
-    const std::uint64_t first = mesh_.positions.size();
-    for (std::size_t n = 0; n < positions.count; ++n) {
-      std::array<float, 3> p;
-      std::memcpy(p.data(), positions.data + n * positions.stride, sizeof p);
-      const Point moved = transform.transform(Point(p[0], p[1], p[2]));
-      if (!moved.isFinite()) input_.fail("position " + std::to_string(n) + " is not finite");
-      mesh_.positions.emplace_back(moved.x(), moved.y(), moved.z());
-    }
+    const std::size_t first = mesh_.positions.size();
+    const std::vector<VertexIndex> vertices =
+        addPositions(positions, transform, primitive["attributes"].size() > 1);
     if (mesh_.positions.size() >= 0xFFFFFFFFu) input_.fail("it has too many vertices");
 
     const std::vector<std::uint32_t> indices = indicesOf(primitive, positions.count);
@@ -176,7 +169,9 @@ class GlbReader {
     const std::size_t step = mode == kTriangles ? 3 : 1;
     for (std::size_t n = 0; n + 2 < indices.size(); n += step) {
       const bool odd = mode == kTriangleStrip && n % 2 == 1;
-      const auto at = [&](std::size_t k) { return static_cast<VertexIndex>(first + indices[k]); };
+      const auto at = [&](std::size_t k) {
+        return static_cast<VertexIndex>(first + vertices[indices[k]]);
+      };
       const VertexIndex a = at(mode == kTriangleFan ? 0 : n);
       const VertexIndex b = at(n + 1);
       const VertexIndex c = at(n + 2);
@@ -185,8 +180,58 @@ class GlbReader {
     }
   }
 
+  /// Adds the positions of a primitive and gives each one's place among them. Other attributes,
+  /// such as normals at a crease, make vertices that differ at one position: `weld` makes them one
+  /// again.
+  std::vector<VertexIndex> addPositions(const View& view, const Matrix& transform, bool weld) {
+    std::vector<Position> own;
+    std::vector<VertexIndex> places(view.count);
+    VertexWelder welder(own);
+    for (std::size_t n = 0; n < view.count; ++n) {
+      const Point moved = transform.transform(pointAt(view, n));
+      if (!moved.isFinite()) input_.fail("position " + std::to_string(n) + " is not finite");
+      const Position position(moved.x(), moved.y(), moved.z());
+      places[n] = weld ? welder.indexOf(position) : static_cast<VertexIndex>(n);
+      if (!weld) own.push_back(position);
+    }
+    mesh_.positions.insert(mesh_.positions.end(), own.begin(), own.end());
+    return places;
+  }
+
+  template <class Number>
+  static Point readPoint(const char* data) {
+    std::array<Number, 3> p;
+    std::memcpy(p.data(), data, sizeof p);
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  }
+
+  /// Element n of a view of points: floats, or integers as KHR_mesh_quantization allows them.
+  [[nodiscard]] Point pointAt(const View& view, std::size_t n) const {
+    const char* const data = view.data + n * view.stride;
+    const auto scaled = [&](const Point& p, double most) {
+      if (!view.normalized) return p;
+      return Point(std::max(-1.0, p[0] / most), std::max(-1.0, p[1] / most),
+                   std::max(-1.0, p[2] / most));
+    };
+    switch (view.componentType) {
+      case glb::kFloat:
+        return readPoint<float>(data);
+      case glb::kByte:
+        return scaled(readPoint<std::int8_t>(data), 127);
+      case glb::kUnsignedByte:
+        return scaled(readPoint<std::uint8_t>(data), 255);
+      case glb::kShort:
+        return scaled(readPoint<std::int16_t>(data), 32767);
+      case glb::kUnsignedShort:
+        return scaled(readPoint<std::uint16_t>(data), 65535);
+      default:
+        input_.fail("its positions are of component type " + std::to_string(view.componentType) +
+                    ", not supported");
+    }
+  }
+
   [[nodiscard]] std::vector<std::uint32_t> indicesOf(const Json& primitive,
-                                                     std::size_t positionCount) const {
+                                                     std::size_t positionCount) {
     std::vector<std::uint32_t> indices;
     if (!primitive.contains("indices")) {
       for (std::size_t n = 0; n < positionCount; ++n) {
@@ -210,50 +255,76 @@ class GlbReader {
 
   [[nodiscard]] std::size_t sizeOf(int componentType) const {
     switch (componentType) {
-      case kUnsignedByte:
+      case glb::kByte:
+      case glb::kUnsignedByte:
         return 1;
-      case kUnsignedShort:
+      case glb::kShort:
+      case glb::kUnsignedShort:
         return 2;
-      case kUnsignedInt:
-      case kFloat:
+      case glb::kUnsignedInt:
+      case glb::kFloat:
         return 4;
       default:
         input_.fail("component type " + std::to_string(componentType) + " is not supported");
     }
   }
 
-  /// The elements of an accessor, all of them inside the binary chunk.
+  /// The bytes of a buffer view: a part of the binary chunk, or unpacked from one.
+  [[nodiscard]] std::string_view bytesOf(std::size_t index) {
+    const Json& view = json_.at("bufferViews").at(index);
+    const Json extensions = view.value("extensions", Json::object());
+    if (extensions.contains("EXT_meshopt_compression")) {
+      const Json& packed = extensions["EXT_meshopt_compression"];
+      const auto [found, isNew] = unpacked_.try_emplace(index);
+      if (isNew) found->second = unpackView(packed, partOfBinary(packed), input_);
+      return found->second;
+    }
+    return partOfBinary(view);
+  }
+
+  [[nodiscard]] std::string_view partOfBinary(const Json& range) const {
+    if (range.at("buffer") != 0 || json_.at("buffers").at(0).contains("uri")) {
+      input_.fail("its data lies outside the file, not supported");
+    }
+    const auto start = range.value("byteOffset", std::size_t{0});
+    const auto length = range.at("byteLength").get<std::size_t>();
+    if (start > binary_.size() || length > binary_.size() - start) failOutside();
+    return binary_.substr(start, length);
+  }
+
+  [[noreturn]] void failOutside() const {
+    input_.fail("an accessor reaches beyond the binary chunk: damaged");
+  }
+
+  /// The elements of an accessor, all of them inside its buffer view.
   [[nodiscard]] View viewOf(const Json& accessorIndex, const std::string& type,
-                            std::size_t components) const {
+                            std::size_t components) {
     const Json& accessor = json_.at("accessors").at(accessorIndex.get<std::size_t>());
     if (accessor.contains("sparse")) input_.fail("sparse accessors are not supported");
     if (accessor.at("type") != type) input_.fail("an accessor is not of type " + type);
-    const Json& bufferView =
-        json_.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
-    if (bufferView.at("buffer") != 0 || json_.at("buffers").at(0).contains("uri")) {
-      input_.fail("its data lies outside the file, not supported");
-    }
+    const auto viewIndex = accessor.at("bufferView").get<std::size_t>();
+    const std::string_view bytes = bytesOf(viewIndex);
+    const Json& bufferView = json_.at("bufferViews").at(viewIndex);
     View view;
     view.componentType = accessor.at("componentType").get<int>();
     view.count = accessor.at("count").get<std::size_t>();
     const std::size_t element = components * sizeOf(view.componentType);
     view.stride = bufferView.value("byteStride", element);
-    const auto start = bufferView.value("byteOffset", std::size_t{0});
-    const auto length = bufferView.at("byteLength").get<std::size_t>();
+    view.normalized = accessor.value("normalized", false);
     const auto offset = accessor.value("byteOffset", std::size_t{0});
     const bool inside =
-        view.stride >= element && start <= binary_.size() && length <= binary_.size() - start &&
-        offset <= length &&
-        (view.count == 0 || (element <= length - offset &&
-                             view.count - 1 <= (length - offset - element) / view.stride));
-    if (!inside) input_.fail("an accessor reaches beyond the binary chunk: damaged");
-    view.data = binary_.data() + start + offset;
+        view.stride >= element && offset <= bytes.size() &&
+        (view.count == 0 || (element <= bytes.size() - offset &&
+                             view.count - 1 <= (bytes.size() - offset - element) / view.stride));
+    if (!inside) failOutside();
+    view.data = bytes.data() + offset;
     return view;
   }
 
   const InputBytes& input_;
   Json json_;
   std::string_view binary_;
+  std::map<std::size_t, std::string> unpacked_;  ///< packed buffer views
   std::vector<bool> visited_;
   Mesh mesh_;
 };

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <tufa/mesh.h>
+
+#include "base/job.h"
+
+namespace tufa::io {
+
+/// A mesh as graphics cards take it: each vertex has one normal, so that a point on a crease is as
+/// many vertices as there are smooth pieces of surface around it.
+struct ShadedMesh {
+  std::vector<VertexIndex> sources;  ///< for each vertex its element of Mesh::positions
+  std::vector<Normal> normals;       ///< one for each vertex
+  std::vector<VertexIndex> indices;  ///< three for each triangle
+};
+
+/// Splits vertices where the normals of faces that share an edge differ by more than `creaseAngle`
+/// degrees. A vertex that is in one piece keeps the mesh's normal, if it has normals; the others
+/// get the mean of their faces' normals, weighted by angle. Positions that no face uses are left
+/// out.
+[[nodiscard]] ShadedMesh splitAtCreases(const Mesh& mesh, double creaseAngle, base::Job& job);
+
+/// Reorders triangles for the vertex cache of graphics cards and vertices by their first use.
+/// Neither changes the surface.
+void orderForGraphics(ShadedMesh& mesh);
+
+}  // namespace tufa::io
