@@ -17,6 +17,7 @@ void addMakeCommand(CLI::App& app, Command& chosen);
 void addVoxelizeCommand(CLI::App& app, Command& chosen);
 void addInfoCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);
+void addLodCommand(CLI::App& app, Command& chosen);
 void addCheckCommand(CLI::App& app, Command& chosen);
 
 /// Declares `--threads`, which all of them have.

@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   addVoxelizeCommand(app, chosen);
   addInfoCommand(app, chosen);
   addMeshCommand(app, chosen);
+  addLodCommand(app, chosen);
   addCheckCommand(app, chosen);
   try {
     app.parse(argc, argv);

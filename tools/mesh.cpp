@@ -4,9 +4,6 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/io.h>
-#include <chrono>
-#include <cmath>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,6 +14,7 @@
 #include "console.h"
 #include "progress_bar.h"
 #include "report.h"
+#include "volume.h"
 
 namespace tufa::tools {
 namespace {
@@ -47,47 +45,6 @@ struct MeshRun {
   double writeSeconds = 0;
 };
 
-/// Seconds that a piece of work takes.
-template <class Work>
-double timed(Work&& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
-  if (!grid.empty()) return;
-  throw Error(ErrorCode::UnsupportedGrid,
-              "grid \"" + grid.getName() + "\" in " + file + " has no active voxels");
-}
-
-void requireSurface(const MeshRun& run, const openvdb::GridBase& grid, const std::string& file) {
-  if (run.mesh.triangleCount() > 0) return;
-  const GridInfo info = describeGrid(grid);
-  std::string range = "has no finite value";
-  if (info.minValue) {
-    range = "has values from " + formatNumber(*info.minValue) + " to " +
-            formatNumber(*info.maxValue) + " and background " + formatNumber(info.background);
-  }
-  throw Error(ErrorCode::UnsupportedGrid, "no surface at isovalue " +
-                                              formatNumber(run.contour.isovalue) + ": grid \"" +
-                                              grid.getName() + "\" in " + file + " " + range);
-}
-
-/// "0.1" is in voxels, "0.1w" in world units.
-double readTolerance(const std::string& text, const openvdb::GridBase& grid) {
-  const bool world = !text.empty() && text.back() == 'w';
-  const std::string number = world ? text.substr(0, text.size() - 1) : text;
-  double value = 0;
-  if (!CLI::detail::lexical_cast(number, value) || !(value >= 0)) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "--tolerance must be a number of voxels, or of world units with the suffix w, not \"" +
-            text + "\"");
-  }
-  return world ? value / std::cbrt(grid.transform().voxelVolume()) : value;
-}
-
 openvdb::FloatGrid::ConstPtr readToleranceGrid(const std::string& file, const std::string& name) {
   const openvdb::GridBase::Ptr grid = readGrid(file, name);
   if (!grid->isType<openvdb::FloatGrid>()) {
@@ -107,13 +64,13 @@ MeshRun runStages(const MeshArguments& arguments) {
   requireVoxels(*grid, arguments.input);
 
   ContourOptions contourOptions = arguments.contour;
-  contourOptions.tolerance = readTolerance(arguments.tolerance, *grid);
+  contourOptions.tolerance = readTolerance("--tolerance", arguments.tolerance, *grid);
   if (arguments.toleranceGrid) {
     contourOptions.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
   }
   contourOptions.progress = bar.callback();
   run.contourSeconds = timed([&] { run.mesh = contour(*grid, contourOptions, &run.contour); });
-  requireSurface(run, *grid, arguments.input);
+  requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
   grid.reset();
 
   if (arguments.check) {
@@ -201,70 +158,20 @@ std::string summary(const MeshRun& run, const MeshArguments& arguments) {
   return text;
 }
 
-/// The promises that a mesh breaks, for a message.
-std::string brokenPromises(const CheckReport& report) {
-  std::string text;
-  const auto add = [&](bool broken, const char* promise) {
-    if (broken) text += (text.empty() ? "not " : ", not ") + std::string(promise);
-  };
-  add(!report.closed, "closed");
-  add(!report.manifold, "manifold");
-  add(!report.oriented, "oriented");
-  add(report.closed && report.oriented && !report.outward, "outward");
-  add(report.invalidFaces + report.duplicateFaces > 0, "free of invalid or duplicate faces");
-  return text.empty() ? "it holds degenerate faces" : text;
-}
-
-/// Whether a mesh breaks no promise but to be closed, and that because the data ends.
-bool openOnlyWhereDataEnds(const MeshRun& run) {
-  const CheckReport& report = *run.check;
-  return run.contour.cutEdges > 0 && report.boundaryEdges > 0 && report.manifold &&
-         report.oriented && report.invalidFaces + report.duplicateFaces == 0;
-}
-
-/// Says on standard error what the user should know about the mesh; gives the exit code.
-int judge(const MeshRun& run) {
-  if (run.contour.nonFiniteValues > 0) {
-    printNote("note: " + formatCount(run.contour.nonFiniteValues) +
-              " NaN or infinite values were taken as outside");
-  }
-  if (run.contour.cutEdges > 0) {
-    printNote("note: the surface runs out of the data at " + formatCount(run.contour.cutEdges) +
-              " lattice edges and is open there; --cap closes it");
-  }
-  if (!run.check || run.check->watertight()) return kDone;
-  if (openOnlyWhereDataEnds(run)) {
-    printNote("note: the mesh has " + formatCount(run.check->boundaryEdges) +
-              " boundary edges where the data ends");
-  } else {
-    printNote("the mesh is not watertight: " + brokenPromises(*run.check));
-  }
-  return kPromiseBroken;
-}
-
 int runMesh(const MeshArguments& arguments) {
   // What is plain now need not wait for the work to be done.
   requireMeshEnding(arguments.output);
   requireWritable(arguments.output);
   const MeshRun run = runStages(arguments);
-  const int exitCode = judge(run);
+  noteData(run.contour);
+  const bool broken = run.check && !run.check->watertight();
+  if (broken) noteBroken(*run.check, run.contour, "the mesh");
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
     print(summary(run, arguments));
   }
-  return exitCode;
-}
-
-/// An option whose value is one of some names.
-template <class Enum>
-void addChoice(CLI::App& app, const std::string& name, Enum& value,
-               const std::map<std::string, Enum>& choices, const std::string& help) {
-  std::vector<std::string> names;
-  for (const auto& [choice, number] : choices) names.push_back(choice);
-  app.add_option_function<std::string>(
-         name, [&value, choices](const std::string& choice) { value = choices.at(choice); }, help)
-      ->check(CLI::IsMember(names));
+  return broken ? kPromiseBroken : kDone;
 }
 
 void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
@@ -283,31 +190,6 @@ void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
   app.add_option("--tolerance-grid", arguments.toleranceGrid,
                  "float grid of the file that multiplies the tolerance in space");
   app.add_flag("--uniform", options.uniform, "do not merge cells");
-}
-
-void addContourOptions(CLI::App& app, ContourOptions& options) {
-  app.add_option("--iso", options.isovalue,
-                 "value on the surface; default: 0 for level sets, else half way between the "
-                 "least and the greatest value");
-  addChoice<Inside>(app, "--inside", options.inside,
-                    {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
-                    "which side of the isovalue is solid (default auto)");
-  addChoice<Ambiguity>(app, "--ambiguity", options.ambiguity,
-                       {{"separate", Ambiguity::Separate},
-                        {"join", Ambiguity::Join},
-                        {"asymptotic", Ambiguity::Asymptotic},
-                        {"chord", Ambiguity::Chord}},
-                       "rule for ambiguous cell faces (default separate)");
-  addChoice<Normals>(
-      app, "--normals", options.normals,
-      {{"gradient", Normals::Gradient}, {"faces", Normals::Faces}, {"none", Normals::None}},
-      "where the normals come from (default gradient)");
-  addChoice<NonFinite>(app, "--nan", options.nonFinite,
-                       {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
-                       "what to do with NaN and infinite values (default refuse)");
-  app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
-  app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
-  addThreadsOption(app, options.threads);
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/check.h>
+#include <tufa/contour.h>
+#include <chrono>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace tufa::tools {
+
+// What the commands that mesh a volume share.
+
+/// Declares the options that say where the surface of a volume lies and how level 0 is made.
+void addContourOptions(CLI::App& app, ContourOptions& options);
+
+/// "0.1" is in voxels, "0.1w" in world units; gives voxels. `option` is for the message.
+[[nodiscard]] double readTolerance(const std::string& option, const std::string& text,
+                                   const openvdb::GridBase& grid);
+
+/// Throws Error(UnsupportedGrid) if the grid has no active voxels.
+void requireVoxels(const openvdb::GridBase& grid, const std::string& file);
+
+/// Throws Error(UnsupportedGrid) with the grid's range of values if its mesh is empty.
+void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
+                    const std::string& file);
+
+/// Says on standard error what the user should know about the data.
+void noteData(const ContourReport& report);
+
+/// Says on standard error in what a mesh, named by `what`, is not watertight.
+void noteBroken(const CheckReport& check, const ContourReport& report, const std::string& what);
+
+/// Seconds that a piece of work takes.
+template <class Work>
+double timed(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace tufa::tools
