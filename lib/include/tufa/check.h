@@ -121,4 +121,10 @@ struct DistanceOptions {
 [[nodiscard]] DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
                                           const DistanceOptions& options = {});
 
+/// The distance from each point to the nearest triangle of a mesh, in world units; infinite if the
+/// mesh has none. Of the options, `threads` and `progress` are used. Points that lie near the point
+/// before them are answered much faster.
+[[nodiscard]] std::vector<double> distancesTo(const Mesh& mesh, const std::vector<Position>& points,
+                                              const DistanceOptions& options = {});
+
 }  // namespace tufa

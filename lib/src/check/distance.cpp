@@ -178,4 +178,25 @@ DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
   return report;
 }
 
+std::vector<double> distancesTo(const Mesh& mesh, const std::vector<Position>& points,
+                                const DistanceOptions& options) {
+  // A grid without a transform of its own makes voxels of the world's units.
+  const checks::Frame frame(*openvdb::FloatGrid::create());
+  base::Job job(options.threads, options.progress);
+  std::vector<double> distances(points.size());
+  job.run([&] {
+    job.beginStage("mesh tree", 0.2);
+    const checks::TriangleSoup soup(mesh, frame, job);
+    job.beginStage("distances", 1);
+    job.forRanges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t hint = Bvh::kNone;
+      for (std::size_t i = begin; i < end; ++i) {
+        distances[i] = soup.distance(frame.fromWorld(points[i]), hint);
+      }
+    });
+  });
+  job.finish();
+  return distances;
+}
+
 }  // namespace tufa
