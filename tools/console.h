@@ -24,6 +24,9 @@ void printNote(const std::string& text);
 /// A number in at most six significant digits.
 [[nodiscard]] std::string formatNumber(double value);
 
+/// A number in at most three significant digits, for tables.
+[[nodiscard]] std::string shortNumber(double value);
+
 /// The most memory that the process ever held, in bytes.
 [[nodiscard]] std::uint64_t peakMemoryBytes();
 

@@ -15,6 +15,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "lod_page.h"
 #include "progress_bar.h"
 #include "report.h"
 #include "volume.h"
@@ -36,6 +37,7 @@ struct LodArguments {
   bool quantize = false;
   bool compress = false;
   bool separate = false;
+  std::optional<std::string> report;
   bool check = false;
   bool json = false;
   bool quiet = false;
@@ -53,6 +55,7 @@ struct LodRun {
   double chainSeconds = 0;
   double checkSeconds = 0;
   double writeSeconds = 0;
+  Mesh reference;  ///< the uniform mesh, if there is to be a report
 };
 
 /// The smallest angle of all triangles, in degrees.
@@ -94,6 +97,11 @@ LodRun runStages(const LodArguments& arguments) {
   run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
   requireSurface(run.chain.levels.empty() ? Mesh() : run.chain.levels[0].mesh, run.contour.isovalue,
                  *grid, arguments.input);
+  if (arguments.report) {
+    ContourOptions uniform = options.contour;
+    uniform.uniform = true;
+    run.reference = contour(*grid, uniform);
+  }
   grid.reset();
 
   for (const Lod& lod : run.chain.levels) run.smallestAngles.push_back(smallestAngle(lod.mesh));
@@ -160,13 +168,6 @@ Json runToJson(const LodRun& run, const LodArguments& arguments) {
   return json;
 }
 
-/// A number in three significant digits, for tables.
-std::string shortNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 /// Columns as wide as their widest cell, each cell to the right.
 std::string layOut(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
@@ -183,7 +184,8 @@ std::string layOut(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-std::string table(const LodRun& run) {
+/// Headings and one row a level.
+std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
   std::vector<std::vector<std::string>> rows = {{"level", "triangles", "error (voxels)",
                                                  "error (world)", "smallest angle", "coverage",
                                                  "seconds"}};
@@ -197,11 +199,11 @@ std::string table(const LodRun& run) {
                     shortNumber(lod.seconds)});
     if (!run.checks.empty()) rows.back().push_back(run.checks[level].watertight() ? "yes" : "no");
   }
-  return layOut(rows);
+  return rows;
 }
 
 std::string summary(const LodRun& run) {
-  std::string text = table(run);
+  std::string text = layOut(tableOf(run));
   for (const auto& file : run.written.files)
     text += (text.back() == '\n' ? "" : ", ") + file.string();
   text += ": " + formatCount(run.contour.activeVoxels) + " active voxels, read " +
@@ -267,14 +269,34 @@ void settle(LodArguments& arguments, const CLI::App& command) {
     }
   }
   requireWritable(lodFile(arguments.output, 0));
+  if (arguments.report) requireWritable(*arguments.report);
   arguments.writing.name = assetName(arguments.output);
   arguments.writing.up = arguments.up == "z" ? UpAxis::Z : UpAxis::Y;
   if (arguments.quantize) arguments.writing.compression = LodCompression::Quantized;
   if (arguments.compress) arguments.writing.compression = LodCompression::Meshopt;
 }
 
+void writeReport(const LodRun& run, const LodArguments& arguments) {
+  ProgressBar bar(arguments.quiet);
+  LodPage page;
+  page.title = arguments.writing.name + ": levels of detail";
+  page.summary = arguments.input + (run.gridName.empty() ? "" : ", grid " + run.gridName) + ", " +
+                 formatCount(run.contour.activeVoxels) + " active voxels of " +
+                 formatNumber(run.chain.voxelSize) +
+                 " world units. Errors are distances to the uniform mesh of the grid.";
+  if (!run.chain.stopped.empty()) page.summary += " Note: " + run.chain.stopped + ".";
+  page.rows = tableOf(run);
+  page.headings = page.rows.front();
+  page.rows.erase(page.rows.begin());
+  page.yUp = arguments.writing.up == UpAxis::Y;
+  page.threads = arguments.lod.contour.threads;
+  page.progress = bar.callback();
+  writeLodPage(run.chain, run.reference, page, *arguments.report);
+}
+
 int runLod(const LodArguments& arguments) {
   const LodRun run = runStages(arguments);
+  if (arguments.report) writeReport(run, arguments);
   const int exitCode = judge(run);
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -334,6 +356,7 @@ void addLodCommand(CLI::App& app, Command& chosen) {
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);
   addContourOptions(*lod, arguments->lod.contour);
+  lod->add_option("--report", arguments->report, "a page of HTML with pictures of all levels");
   lod->add_flag("--check", arguments->check, "check every level; exit 1 if one is not watertight");
   lod->add_flag("--json", arguments->json, "one JSON object on standard output");
   lod->add_flag("--quiet", arguments->quiet, "no table and no progress bar");

@@ -25,6 +25,11 @@ struct Camera {
     return {halfWidth + pixels * right.dot(d), halfHeight - pixels * up.dot(d),
             -pixels * toEye.dot(d)};
   }
+
+  /// The point that project() takes there.
+  [[nodiscard]] Vec3 unproject(const Vec3& q) const {
+    return centre + ((q[0] - halfWidth) * right + (halfHeight - q[1]) * up - q[2] * toEye) / pixels;
+  }
 };
 
 }  // namespace tufa::render

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <stdexcept>
 
 namespace tufa::render {
@@ -49,20 +50,33 @@ Image sideBySide(const std::vector<Image>& images, int gap, const Color& fill) {
   return all;
 }
 
-void writePng(const Image& image, const std::filesystem::path& path) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(3 * image.pixels.size());
+std::string pngOf(const Image& image) {
+  std::vector<std::uint8_t> samples;
+  samples.reserve(3 * image.pixels.size());
   for (const Color& pixel : image.pixels) {
-    for (const float channel : pixel) bytes.push_back(toSrgb(channel));
+    for (const float channel : pixel) samples.push_back(toSrgb(channel));
   }
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
-  if (png_image_write_to_file(&png, path.c_str(), 0, bytes.data(), 0, nullptr) == 0) {
-    throw std::runtime_error("cannot write " + path.string() + ": " + png.message);
+  // libpng's own bound: PNG can grow over the samples by little.
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, samples.data(), 0, nullptr) == 0) {
+    throw std::runtime_error(std::string("cannot make a .png: ") + png.message);
   }
+  bytes.resize(size);
+  return bytes;
+}
+
+void writePng(const Image& image, const std::filesystem::path& path) {
+  const std::string bytes = pngOf(image);
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + path.string());
 }
 
 }  // namespace tufa::render

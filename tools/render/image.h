@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace tufa::render {
@@ -34,7 +35,10 @@ struct Image {
 /// Pictures of one height beside each other.
 [[nodiscard]] Image sideBySide(const std::vector<Image>& images, int gap, const Color& fill);
 
-/// Writes an 8-bit sRGB .png. Throws std::runtime_error.
+/// The bytes of an 8-bit sRGB .png. Throws std::runtime_error.
+[[nodiscard]] std::string pngOf(const Image& image);
+
+/// Writes that. Throws std::runtime_error.
 void writePng(const Image& image, const std::filesystem::path& path);
 
 }  // namespace tufa::render

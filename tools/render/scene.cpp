@@ -14,6 +14,7 @@ constexpr double kPi = 3.14159265358979323846;
 const double kSmoothCosine = std::cos(kPi / 6);
 constexpr Color kGround = {0.93F, 0.94F, 0.955F};
 constexpr Color kSurface = {0.27F, 0.40F, 0.56F};
+constexpr Color kBare = {0.75F, 0.75F, 0.75F};  // where colours come later
 constexpr Color kBackFace = {0.80F, 0.30F, 0.20F};
 constexpr Color kLine = {0.03F, 0.05F, 0.09F};
 // Half width of a drawn edge, in pixels of the final picture, and how dark it is.
@@ -126,6 +127,7 @@ class Painter {
     const std::vector<Facet> facets = facetsOf(mesh_);
     const CornerNormals normals(mesh_, facets);
     for (std::size_t i = 0; i < facets.size(); ++i) fillFacet(facets[i], i, normals);
+    if (view_.colors) dye();
     return std::move(layer_);
   }
 
@@ -165,6 +167,33 @@ class Painter {
     }
   }
 
+  /// Gives the surface its colours: one for all samples of a pixel of the final picture.
+  void dye() {
+    std::vector<Position> points;
+    std::vector<std::pair<std::size_t, std::size_t>> dyed;  // a sample and its place in `points`
+    Image& image = layer_.color;
+    for (int y = 0; y < image.height; y += kSupersampling) {
+      for (int x = 0; x < image.width; x += kSupersampling) {
+        bool first = true;
+        for (int i = 0; i < kSupersampling * kSupersampling; ++i) {
+          const int atX = x + i % kSupersampling, atY = y + i / kSupersampling;
+          const std::size_t sample = image.index(atX, atY);
+          if (!std::isfinite(layer_.depth[sample])) continue;
+          if (first) {
+            const Vec3 p = camera_.unproject({atX + 0.5, atY + 0.5, double{layer_.depth[sample]}});
+            points.emplace_back(p[0], p[1], p[2]);
+            first = false;
+          }
+          dyed.emplace_back(sample, points.size() - 1);
+        }
+      }
+    }
+    const std::vector<Color> colors = view_.colors(points);
+    for (const auto& [sample, point] : dyed) {
+      for (std::size_t i = 0; i < 3; ++i) image.pixels[sample][i] *= colors[point][i];
+    }
+  }
+
   static double cross(const Vec3& a, const Vec3& b, const Vec3& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
   }
@@ -175,7 +204,7 @@ class Painter {
     const double key = std::max(0.0, normal.dot(key_)), fill = std::max(0.0, normal.dot(fill_));
     const auto light = static_cast<float>(0.14 + 0.34 * sky + 0.62 * key + 0.22 * fill);
     const double gloss = std::pow(std::max(0.0, normal.dot((key_ + camera_.toEye).unit())), 40);
-    Color color = back ? kBackFace : kSurface;
+    Color color = view_.colors ? kBare : back ? kBackFace : kSurface;
     for (float& c : color) c = c * light + 0.07F * static_cast<float>(gloss);
     return color;
   }
@@ -252,6 +281,15 @@ Camera Camera::looking(double azimuth, double elevation, bool yUp) {
   camera.up = camera.toEye.cross(camera.right);
   camera.centre = Vec3(0);
   return camera;
+}
+
+View fitted(const Mesh& mesh, const View& view, int width, int height) {
+  View fit = view;
+  fit.width = 0;
+  const Camera camera = aim(mesh, fit, width, height);
+  fit.width = width / camera.pixels;
+  fit.centre = camera.centre;
+  return fit;
 }
 
 Image render(const Mesh& mesh, const View& view, int width, int height) {

@@ -2,10 +2,16 @@
 
 #include <tufa/mesh.h>
 
+#include <functional>
+#include <vector>
+
 #include "camera.h"
 #include "image.h"
 
 namespace tufa::render {
+
+/// Gives the colours of points of a surface.
+using SurfaceColors = std::function<std::vector<Color>(const std::vector<Position>& points)>;
 
 /// How a picture is taken.
 struct View {
@@ -17,7 +23,12 @@ struct View {
   bool yUp = false;      ///< the mesh's y axis points up, not z
   bool edges = false;    ///< draw the mesh's edges; a quad's diagonal is drawn lighter
   bool smooth = true;    ///< shade over edges flatter than 30 degrees; else one shade a triangle
+  SurfaceColors colors;  ///< of the surface in place of its plain one; asked once a picture
 };
+
+/// The same view with a place and a width of its own, in which a mesh fits a picture: other meshes
+/// are then seen from the same place.
+[[nodiscard]] View fitted(const Mesh& mesh, const View& view, int width, int height);
 
 /// Takes a picture of a mesh on a light ground.
 [[nodiscard]] Image render(const Mesh& mesh, const View& view, int width, int height);
