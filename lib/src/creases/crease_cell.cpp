@@ -24,6 +24,8 @@ constexpr float kHalfCell = 0.5F;
 // How far a vertex may leave its cell, in voxels, where its crossings lie on two sides that meet
 // outside it.
 constexpr float kBeyond = 1.0F;
+// A vertex this deep in its cell, in voxels, surely is in it.
+constexpr float kSureInside = 1e-3F;
 // A vertex on one side stays in its cell up to this.
 constexpr float kSideSlack = 0.02F;
 constexpr int kProjections = 8;
@@ -127,6 +129,7 @@ CreasePlacement CreaseCell::place(int x, int y, int z, const Vector& massPoint) 
   if (placeOnCorner(massPoint, false, placement) || placeOnCrease(massPoint, false, placement) ||
       placeOnCorner(massPoint, true, placement) || placeOnCrease(massPoint, true, placement) ||
       placeOnSide(massPoint, placement)) {
+    placement.stray = outside(placement.point) > -kSureInside;
     return placement;
   }
   return {};

@@ -12,6 +12,7 @@ struct CreasePlacement {
   qef::Vector point{};   ///< in voxels from the middle of the cell
   qef::Vector normal{};  ///< outward unit normal: of the plane, or the mean of those that meet
   std::array<qef::Vector, 3> sides{};  ///< normals of the planes that meet
+  bool stray = false;                  ///< the point may lie outside of the cell
   int planes = 0;  ///< 1: the cell lies on one smooth side; 2: a crease; 3: a corner; 0: unknown
 };
 

@@ -64,14 +64,16 @@ class Promoter {
 
   std::size_t run(base::Job& job) {
     collectCorners();
+    touched_.resize(mesh_.positions.size());
     std::size_t moved = 0;
     for (int round = 0; round < kRounds; ++round) {
-      std::vector<Move> moves = findMoves(job);
+      std::vector<Move> moves = findMoves(round == 0, job);
       // Nearest first; each is looked at again, as the ones before may have mended its quad.
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
         return a.distance != b.distance ? a.distance < b.distance : a.quad < b.quad;
       });
       std::size_t inRound = 0;
+      std::fill(touched_.begin(), touched_.end(), 0);
       for (const Move& move : moves) {
         if (const auto now = moveFor(move.quad)) {
           apply(*now);
@@ -104,7 +106,9 @@ class Promoter {
     });
   }
 
-  std::vector<Move> findMoves(base::Job& job) const {
+  // After the first round only quads with a vertex that was moved in the last one can need another
+  // move.
+  std::vector<Move> findMoves(bool first, base::Job& job) const {
     std::vector<Move> moves;
     std::mutex mutex;
     job.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -112,7 +116,7 @@ class Promoter {
       for (std::size_t quad = begin; quad < end; ++quad) {
         const auto& v = mesh_.quads[quad].vertices;
         const bool near = std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
-          return sides_.kind(vertex) != VertexSides::Kind::Smooth;
+          return first ? sides_.kind(vertex) != VertexSides::Kind::Smooth : touched_[vertex] != 0;
         });
         if (!near) continue;
         if (auto move = moveFor(quad)) found.push_back(*move);
@@ -212,6 +216,7 @@ class Promoter {
   }
 
   void apply(const Move& move) {
+    touched_[move.vertex] = 1;
     mesh_.positions[move.vertex] = {move.point[0], move.point[1], move.point[2]};
     Vec3d sum(0);
     for (int i = 0; i < move.sides.count; ++i) {
@@ -220,6 +225,7 @@ class Promoter {
     }
     mesh_.normals[move.vertex] = toNormal(sum.unitSafe());
     sides_.setMeeting(move.vertex, move.sides);
+    sides_.setStray(move.vertex);
     if (move.sides.count > 2) corners_.push_back(move.point);
   }
 
@@ -227,6 +233,7 @@ class Promoter {
   VertexSides& sides_;
   double voxelSize_;
   std::vector<Vec3d> corners_;
+  std::vector<std::uint8_t> touched_;  // vertices that were moved in the last round
 };
 
 }  // namespace

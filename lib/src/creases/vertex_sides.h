@@ -32,7 +32,8 @@ class VertexSides {
     Unknown,  ///< on several sides that could not be told apart
   };
 
-  explicit VertexSides(std::size_t vertices = 0) : kinds_(vertices, Kind::Smooth) {}
+  explicit VertexSides(std::size_t vertices = 0)
+      : kinds_(vertices, Kind::Smooth), strays_(vertices, 0) {}
 
   [[nodiscard]] Kind kind(VertexIndex vertex) const { return kinds_[vertex]; }
   [[nodiscard]] bool isSharp(VertexIndex vertex) const { return kinds_[vertex] >= Kind::Meeting; }
@@ -41,6 +42,10 @@ class VertexSides {
   void setKinds(std::size_t first, const std::vector<Kind>& kinds) {
     std::copy(kinds.begin(), kinds.end(), kinds_.begin() + static_cast<std::ptrdiff_t>(first));
   }
+  /// Whether the vertex may lie outside of its cell.
+  [[nodiscard]] bool isStray(VertexIndex vertex) const { return strays_[vertex] != 0; }
+  /// May be called from several threads.
+  void setStray(VertexIndex vertex) { strays_[vertex] = 1; }
   void setMeeting(VertexIndex vertex, const MeetingSides& sides) {
     kinds_[vertex] = Kind::Meeting;
     meeting_[vertex] = sides;
@@ -52,6 +57,7 @@ class VertexSides {
 
  private:
   std::vector<Kind> kinds_;
+  std::vector<std::uint8_t> strays_;  // bytes, as threads set their own
   std::unordered_map<VertexIndex, MeetingSides> meeting_;
 };
 

@@ -1,5 +1,6 @@
 #include "polygons/suspects.h"
 
+#include <algorithm>
 #include <bitset>
 #include <mutex>
 
@@ -54,6 +55,11 @@ class SharedCells {
   std::bitset<kSize * kSize * kSize> cells_;
 };
 
+bool hasStray(const creases::VertexSides& sides, const Quad& quad) {
+  return std::any_of(quad.vertices.begin(), quad.vertices.end(),
+                     [&](VertexIndex vertex) { return sides.isStray(vertex); });
+}
+
 // Whether `inner` is behind the plane through `p` and `outer` in front, by more than `margin`.
 bool parts(const Vec3d& normal, const Vec3d& p, const Vec3d& inner, const Vec3d& outer,
            double margin) {
@@ -94,7 +100,7 @@ std::vector<std::uint32_t> findSuspects(const QuadContext<TreeT>& context, const
         const Position start = context.affine.position(origin, x, y, z);
         const Vec3d lower(start.x, start.y, start.z);
         const Vec3d upper = lower + context.affine.axis(place.axis);
-        if (isNearCrease(context.sides, quad) || shared.touch(place) ||
+        if (hasStray(context.sides, quad) || shared.touch(place) ||
             !staysInEnvelope(mesh, quad, place.upward ? lower : upper, place.upward ? upper : lower,
                              margin)) {
           found.push_back(static_cast<std::uint32_t>(place.quad));

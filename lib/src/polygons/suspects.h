@@ -22,7 +22,7 @@ namespace tufa::polygons {
 /// passes the triangle (v, a, b) of a vertex v beside it.
 ///
 /// Suspects are the quads that fail this, that touch a cell of several vertices, or that have a
-/// vertex near a crease: those may leave their cells.
+/// vertex outside of its cell.
 template <class TreeT>
 [[nodiscard]] std::vector<std::uint32_t> findSuspects(const QuadContext<TreeT>& context,
                                                       const Mesh& mesh, double margin,

@@ -100,6 +100,7 @@ void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock&
   qefs_.assign(cells_.size() + 1, {});
   kinds_.assign(cells_.size(), Kind::Smooth);
   meetings_.clear();
+  strays_.clear();
 }
 
 // Every crossed edge of the block's cells along one axis, those on its upper faces included.
@@ -198,6 +199,7 @@ void BlockVertices::placeAtCrease(std::size_t vertex) {
   }
   points_[vertex] = placement.point;
   normals_[vertex] = placement.normal;
+  if (placement.stray) strays_.push_back(static_cast<std::uint32_t>(vertex));
   if (placement.planes == 1) return;
   kinds_[vertex] = Kind::Meeting;
   meetings_.push_back({static_cast<std::uint32_t>(vertex), placement.planes, placement.sides});

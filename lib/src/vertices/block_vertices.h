@@ -50,6 +50,8 @@ class BlockVertices {
     std::array<qef::Vector, 3> normals;
   };
   [[nodiscard]] const std::vector<Meeting>& meetings() const { return meetings_; }
+  /// Vertices of the block that may lie outside of their cells.
+  [[nodiscard]] const std::vector<std::uint32_t>& strays() const { return strays_; }
   /// Each vertex's relation to creases.
   [[nodiscard]] const std::vector<creases::VertexSides::Kind>& kinds() const { return kinds_; }
 
@@ -88,6 +90,7 @@ class BlockVertices {
   std::vector<qef::Qef> qefs_;
   std::vector<creases::VertexSides::Kind> kinds_;
   std::vector<Meeting> meetings_;
+  std::vector<std::uint32_t> strays_;
   std::vector<qef::Vector> points_;
   std::vector<qef::Vector> normals_;
 };

@@ -50,6 +50,9 @@ creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
         mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
       }
       sides.setKinds(block.firstVertex, work.kinds());
+      for (const std::uint32_t vertex : work.strays()) {
+        sides.setStray(static_cast<VertexIndex>(block.firstVertex + vertex));
+      }
       if (!work.meetings().empty()) {
         const std::scoped_lock lock(mutex);
         for (const BlockVertices::Meeting& meeting : work.meetings()) {
