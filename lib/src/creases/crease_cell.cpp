@@ -125,6 +125,7 @@ CreasePlacement CreaseCell::place(int x, int y, int z, const Vector& massPoint) 
   collectPlanes();
   sortIntoSides();
   dropBlendedSides();
+  readBalls();
   markCrossedSides();
   if (placeOnCorner(massPoint, false, placement) || placeOnCrease(massPoint, false, placement) ||
       placeOnCorner(massPoint, true, placement) || placeOnCrease(massPoint, true, placement) ||
@@ -163,7 +164,7 @@ void CreaseCell::sortIntoSides() {
     const PatchPlane seed = near_[static_cast<std::size_t>(best - weights_.begin())];
     Side side;
     Vector point{};
-    std::vector<std::size_t> members;
+    members_.clear();
     for (std::size_t i = 0; i < near_.size(); ++i) {
       if (weights_[i] <= 0 || dot(near_[i].normal, seed.normal) < kSameSide) continue;
       const Vector apart = plus(near_[i].foot, seed.foot, -1);
@@ -171,14 +172,14 @@ void CreaseCell::sortIntoSides() {
       side.normal = plus(side.normal, near_[i].normal, weights_[i]);
       point = plus(point, near_[i].foot, weights_[i]);
       side.weight += weights_[i];
-      members.push_back(i);
+      members_.push_back(i);
     }
     const float length = std::sqrt(dot(side.normal, side.normal));
     for (float& n : side.normal) n /= length;
     side.offset = dot(side.normal, point) / side.weight;
     for (int i = 0; i < 3; ++i) side.middle[i] = point[i] / side.weight;
-    bendSide(side, members);
-    for (const std::size_t member : members) weights_[member] = 0;
+    bendSide(side);
+    for (const std::size_t member : members_) weights_[member] = 0;
     sides_.push_back(side);
   }
 }
@@ -186,10 +187,10 @@ void CreaseCell::sortIntoSides() {
 // The matrix H of least squares in n_i - n = H (f_i - m), over the feet f_i and normals n_i, damped
 // where the feet do not spread, and made symmetric. A surface of that bend through m is
 // n . (p - m) + (p - m) H (p - m) / 2 = 0.
-void CreaseCell::bendSide(Side& side, const std::vector<std::size_t>& members) const {
+void CreaseCell::bendSide(Side& side) const {
   std::array<float, 6> spread{};  // xx, xy, xz, yy, yz, zz
   std::array<Vector, 3> turn{};   // turn[i][j]: change of normal i with step j
-  for (const std::size_t member : members) {
+  for (const std::size_t member : members_) {
     const float weight = weights_[member] / side.weight;
     const Vector step = plus(near_[member].foot, side.middle, -1);
     const Vector change = plus(near_[member].normal, side.normal, -1);
@@ -211,7 +212,7 @@ void CreaseCell::bendSide(Side& side, const std::vector<std::size_t>& members) c
       side.bend[k++] = (dot(turn[i], adjoint[j]) + dot(turn[j], adjoint[i])) / (2 * determinant);
     }
   }
-  for (const std::size_t member : members) {
+  for (const std::size_t member : members_) {
     const Vector step = plus(near_[member].foot, side.middle, -1);
     side.rise += weights_[member] / side.weight * 0.5F * dot(step, bent(side.bend, step));
   }
@@ -301,19 +302,34 @@ float CreaseCell::sampleAt(int corner) const {
                                       cell_[2] + (corner & 1))];
 }
 
-bool CreaseCell::isOnSurface(const Vector& point) const {
+void CreaseCell::readBalls() {
   const auto [x, y, z] = cell_;
-  for (int i = 0; i < 64; ++i) {
-    const int dx = i / 16 - 1, dy = i / 4 % 4 - 1, dz = i % 4 - 1;
-    const float value = std::abs(samples_[BlockSamples::index(x + dx, y + dy, z + dz)]);
-    const float radius = std::min(value, scale_.bandOutside) - kBallSlack;
-    if (radius <= 0) continue;
-    const Vector apart = {static_cast<float>(dx) - 0.5F - point[0],
-                          static_cast<float>(dy) - 0.5F - point[1],
-                          static_cast<float>(dz) - 0.5F - point[2]};
-    if (dot(apart, apart) < radius * radius) return false;
+  for (int row = 0; row < 16; ++row) {
+    const float* samples =
+        samples_.data() + BlockSamples::index(x + row / 4 - 1, y + row % 4 - 1, z - 1);
+    for (int i = 0; i < 4; ++i) {
+      const float radius = std::min(std::abs(samples[i]), scale_.bandOutside) - kBallSlack;
+      squaredBalls_[row][i] = radius > 0 ? radius * radius : 0;
+    }
   }
-  return true;
+}
+
+bool CreaseCell::isOnSurface(const Vector& point) const {
+  std::array<std::array<float, 4>, 3> squared;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 4; ++i) {
+      const float apart = static_cast<float>(i) - 1.5F - point[axis];
+      squared[axis][i] = apart * apart;
+    }
+  }
+  int inBalls = 0;
+  for (int row = 0; row < 16; ++row) {
+    const float across = squared[0][row / 4] + squared[1][row % 4];
+    for (int i = 0; i < 4; ++i) {
+      inBalls |= static_cast<int>(across + squared[2][i] < squaredBalls_[row][i]);
+    }
+  }
+  return inBalls == 0;
 }
 
 void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const {

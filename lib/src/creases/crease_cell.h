@@ -60,6 +60,7 @@ class CreaseCell {
   void dropBlendedSides();
   [[nodiscard]] bool isBlend(const Side& side, const Side& a, const Side& b) const;
   void markCrossedSides();
+  void readBalls();
   [[nodiscard]] float sampleAt(int corner) const;
   [[nodiscard]] bool isOnSurface(const qef::Vector& point) const;
   // Both search in the cell, or, if `beyond`, around it among the sides that the crossings lie on.
@@ -71,7 +72,7 @@ class CreaseCell {
   [[nodiscard]] TangentPlane planeOf(int side) const {
     return {sides_[side].normal, sides_[side].offset};
   }
-  void bendSide(Side& side, const std::vector<std::size_t>& members) const;
+  void bendSide(Side& side) const;
   // The tangent plane of a side near a point.
   [[nodiscard]] static TangentPlane tangentAt(const Side& side, const qef::Vector& point);
   // Moves a point of the planes of some sides to where the bent sides meet.
@@ -84,6 +85,10 @@ class CreaseCell {
   std::vector<PatchPlane> near_;  ///< feet in voxels from the middle of the cell
   std::vector<float> weights_;    ///< of near_
   std::vector<Side> sides_;
+  std::vector<std::size_t> members_;  ///< of near_: those of the side at hand
+  /// Squared radii of the balls around the 64 samples nearest to the cell that the surface does not
+  /// enter.
+  std::array<std::array<float, 4>, 16> squaredBalls_{};
   std::array<int, 3> cell_{};
 };
 

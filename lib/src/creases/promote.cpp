@@ -130,6 +130,7 @@ class Promoter {
   // The shortest move that mends a quad; none if it needs none or none is short enough.
   [[nodiscard]] std::optional<Move> moveFor(std::size_t quad) const {
     const Quad& q = mesh_.quads[quad];
+    if (QuadSides::isOneSide(mesh_, sides_, q)) return {};
     const QuadSides around(mesh_, sides_, q);
     if (around.fits(false) || around.fits(true)) return {};
     Move best;
@@ -167,18 +168,27 @@ class Promoter {
     return {};
   }
 
+  // The planes of all sides, as far as they are known, seen from one corner.
+  using Planes = std::array<std::optional<Plane>, QuadSides::kMost>;
+  [[nodiscard]] Planes planesOf(const Quad& quad, const QuadSides& around, int corner) const {
+    Planes planes;
+    for (int side = 0; side < around.count(); ++side) {
+      planes[side] = planeOf(quad, around, side, corner);
+    }
+    return planes;
+  }
+
   void proposeCreases(const Quad& quad, const QuadSides& around, int corner, Move& best) const {
     const VertexIndex vertex = quad.vertices[corner];
     if (sides_.isSharp(vertex)) return;
     const Vec3d from = pointOf(vertex);
+    const Planes planes = planesOf(quad, around, corner);
     for (int a = 0; a < around.count(); ++a) {
-      if (!around.lies(corner, a)) continue;
+      if (!around.lies(corner, a) || !planes[a]) continue;
       for (int b = 0; b < around.count(); ++b) {
-        if (b == a) continue;
-        const auto pa = planeOf(quad, around, a, corner), pb = planeOf(quad, around, b, corner);
-        if (!pa || !pb) continue;
-        const auto point = onBoth(*pa, *pb, from);
-        if (point) consider(vertex, from, *point, {*pa, *pb}, best);
+        if (b == a || !planes[b]) continue;
+        const auto point = onBoth(*planes[a], *planes[b], from);
+        if (point) consider(vertex, from, *point, {*planes[a], *planes[b]}, best);
       }
     }
   }
@@ -187,16 +197,16 @@ class Promoter {
     const VertexIndex vertex = quad.vertices[corner];
     if (around.count() < 3 || sides_.sides(mesh_, vertex).count > 2) return;
     const Vec3d from = pointOf(vertex);
+    const Planes planes = planesOf(quad, around, corner);
     for (int a = 0; a < around.count(); ++a) {
       for (int b = a + 1; b < around.count(); ++b) {
         for (int c = b + 1; c < around.count(); ++c) {
           if (!around.lies(corner, a) && !around.lies(corner, b) && !around.lies(corner, c))
             continue;
-          const auto pa = planeOf(quad, around, a, corner), pb = planeOf(quad, around, b, corner);
-          const auto pc = planeOf(quad, around, c, corner);
-          if (!pa || !pb || !pc) continue;
-          const auto point = onAll(*pa, *pb, *pc);
-          if (point && !isCorner(*point)) consider(vertex, from, *point, {*pa, *pb, *pc}, best);
+          if (!planes[a] || !planes[b] || !planes[c]) continue;
+          const auto point = onAll(*planes[a], *planes[b], *planes[c]);
+          if (!point || !((*point - from).length() < best.distance) || isCorner(*point)) continue;
+          consider(vertex, from, *point, {*planes[a], *planes[b], *planes[c]}, best);
         }
       }
     }

@@ -44,6 +44,15 @@ QuadSides::QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& qua
   }
 }
 
+bool QuadSides::isOneSide(const Mesh& mesh, const VertexSides& sides, const Quad& quad) {
+  const Normal& first = mesh.normals[quad.vertices[0]];
+  return std::all_of(quad.vertices.begin(), quad.vertices.end(), [&](VertexIndex vertex) {
+    const Normal& n = mesh.normals[vertex];
+    return !sides.isSharp(vertex) &&
+           static_cast<double>(n.x * first.x + n.y * first.y + n.z * first.z) >= kSameSide;
+  });
+}
+
 bool QuadSides::fits(bool secondDiagonal) const {
   const unsigned ends = secondDiagonal ? masks_[1] & masks_[3] : masks_[0] & masks_[2];
   const int a = secondDiagonal ? 0 : 1;

@@ -64,7 +64,12 @@ class VertexSides {
 /// The sides around one quad: its corners' sides, equal ones merged.
 class QuadSides {
  public:
+  static constexpr int kMost = 12;  ///< three for each corner
+
   QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& quad);
+
+  /// Whether all vertices of a quad surely lie on one side: a quick answer for most.
+  [[nodiscard]] static bool isOneSide(const Mesh& mesh, const VertexSides& sides, const Quad& quad);
 
   /// Whether both triangles of the split at diagonal 0-2 (or 1-3) lie on one side each. A triangle
   /// that does not cuts off a crease or corner.
@@ -81,7 +86,7 @@ class QuadSides {
  private:
   static constexpr unsigned kAll = ~0U;
   std::array<unsigned, 4> masks_{};
-  std::array<openvdb::Vec3d, 12> normals_;
+  std::array<openvdb::Vec3d, kMost> normals_;
   int count_ = 0;
 };
 

@@ -37,9 +37,9 @@ struct CrossingBatch {
 /// Smooth field: linear interpolation for the place, central differences at both ends,
 /// interpolated, for the normal. Where a distance field has a kink, both are wrong: the normals of
 /// two sides are blended, and the place is off by up to 0.3 voxel. A kink shows as a gradient whose
-/// length is not 1 or as slopes along the edge that disagree. There the place comes from the
-/// straight lines on either side (ENO with subcell resolution, Harten 1989), and the normal from
-/// the one-sided differences whose length is nearest to 1.
+/// length is not 1 in a field that bends, or as slopes along the edge that disagree. There the
+/// place comes from the straight lines on either side (ENO with subcell resolution, Harten 1989),
+/// and the normal from the one-sided differences whose length is nearest to 1.
 class CrossingFinder {
  public:
   CrossingFinder(const blocks::BlockSamples& samples, const blocks::FieldScale& scale)
@@ -50,7 +50,8 @@ class CrossingFinder {
   [[nodiscard]] Crossing at(int lower) const {
     constexpr int kStride = blocks::BlockSamples::stride(axis);
     const Ends ends = {samples_[lower], samples_[lower + kStride], centralDifference(lower),
-                       centralDifference(lower + kStride)};
+                       centralDifference(lower + kStride),
+                       squaredBend(lower) + squaredBend(lower + kStride)};
     const Smooth smooth = smoothCrossing<axis>(ends, limits_);
     if (smooth.kinked != 0) return atKink(lower, axis);
     const float rise = ends.b - ends.a;
@@ -102,6 +103,10 @@ class CrossingFinder {
   // blended half and half) or a sample beyond the band. Central differences on a sphere of radius 3
   // voxels are off by 0.02.
   static constexpr float kLengthTolerance = 0.03F;
+  // A kink also bends the field. Where its second differences, at both ends of the edge together,
+  // are shorter than this, it is smooth and only not quite a distance. A curvature radius of seven
+  // voxels gives as much.
+  static constexpr float kBendTolerance = 0.3F;
   // Slopes along an edge that differ by more than this from one sample to the next: a curvature
   // radius of five voxels gives 0.1.
   static constexpr float kSlopeTolerance = 0.1F;
@@ -113,6 +118,7 @@ class CrossingFinder {
   struct Ends {
     float a, b;
     qef::Vector gradientA, gradientB;
+    float squaredBend;  // of both ends together, see below
   };
 
   // The crossing of a field that is smooth there, but for the length of its gradient; `kinked` if
@@ -156,8 +162,18 @@ class CrossingFinder {
               0.5F * (above[end][1][lane] - below[end][1][lane]),
               0.5F * (above[end][2][lane] - below[end][2][lane])};
     }
+    // The squared length of the second differences at one end.
+    [[nodiscard]] float squaredBend(int end, int lane) const {
+      float sum = 0;
+      for (int i = 0; i < 3; ++i) {
+        const float bend = above[end][i][lane] + below[end][i][lane] - 2 * at[end][lane];
+        sum += bend * bend;
+      }
+      return sum;
+    }
     [[nodiscard]] Ends ends(int lane) const {
-      return {at[0][lane], at[1][lane], gradient(0, lane), gradient(1, lane)};
+      return {at[0][lane], at[1][lane], gradient(0, lane), gradient(1, lane),
+              squaredBend(0, lane) + squaredBend(1, lane)};
     }
   };
 
@@ -189,6 +205,17 @@ class CrossingFinder {
             0.5F * (s[Samples::kStrideY] - s[-Samples::kStrideY]), 0.5F * (s[1] - s[-1])};
   }
 
+  [[nodiscard]] float squaredBend(int at) const {
+    using Samples = blocks::BlockSamples;
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int stride = Samples::stride(axis);
+      const float bend = samples_[at + stride] + samples_[at - stride] - 2 * samples_[at];
+      sum += bend * bend;
+    }
+    return sum;
+  }
+
   // What makes a unit vector of one with this squared length; 0 if it vanishes.
   static float normalizer(float squared) { return squared > 1e-12F ? 1 / std::sqrt(squared) : 0; }
 
@@ -216,8 +243,9 @@ class CrossingFinder {
     const float squared = m[0] * g[0] * g[0] + m[3] * g[1] * g[1] + m[5] * g[2] * g[2] +
                           2 * (m[1] * g[0] * g[1] + m[2] * g[0] * g[2] + m[4] * g[1] * g[2]);
     const float slope = ends.b - ends.a;
-    const int kinked = (std::abs(squared - 1) > kLengthTolerance) |
-                       (std::abs(ga[axis] - slope) > limits.slope[axis]) |
+    const int offLength = std::abs(squared - 1) > kLengthTolerance;
+    const int bent = ends.squaredBend > kBendTolerance * kBendTolerance;
+    const int kinked = (offLength & bent) | (std::abs(ga[axis] - slope) > limits.slope[axis]) |
                        (std::abs(gb[axis] - slope) > limits.slope[axis]);
     return {keptOffEnds(root), g[0], g[1], g[2], qef::dot(g, g), kinked & limits.distance};
   }

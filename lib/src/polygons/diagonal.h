@@ -36,9 +36,11 @@ class SplitChooser {
   template <class Crossing>
   [[nodiscard]] bool isSecondDiagonalBetterAtCrease(const creases::VertexSides& sides,
                                                     const Crossing& crossing) const {
-    const creases::QuadSides around(mesh_, sides, quad_);
-    const bool fits[2] = {around.fits(false), around.fits(true)};
-    if (fits[0] != fits[1]) return fits[1];
+    if (!creases::QuadSides::isOneSide(mesh_, sides, quad_)) {
+      const creases::QuadSides around(mesh_, sides, quad_);
+      const bool fits[2] = {around.fits(false), around.fits(true)};
+      if (fits[0] != fits[1]) return fits[1];
+    }
     return isSecondDiagonalBetter(crossing);
   }
 
