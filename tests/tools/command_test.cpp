@@ -125,6 +125,70 @@ TEST_F(Command, MeshGivesTheKeysOfItsReport) {
   EXPECT_EQ(json["triangles"], readMesh(folder / "m.obj").triangleCount());
 }
 
+TEST_F(Command, LodGivesTheKeysOfItsReport) {
+  makeSphere();
+  const Outcome outcome = run("lod s.vdb -o s.glb --levels 3 --check --json --threads 2");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(json["levels"].size(), 3u);
+  EXPECT_EQ(json["outputs"], nlohmann::json({"s.glb"}));
+  EXPECT_EQ(json["levels"][2]["tolerance_voxels"], 0.1 * 4 * 4);
+  EXPECT_EQ(json["levels"][0]["triangles"], readMesh(folder / "s.glb").triangleCount());
+  for (const auto& level : json["levels"]) {
+    EXPECT_EQ(level["check"]["watertight"], true);
+    EXPECT_EQ(level["check"]["self_intersecting_pairs"], 0);
+    EXPECT_LE(level["max_error_voxels"], level["tolerance_voxels"]);
+    EXPECT_NEAR(level["smallest_angle_degrees"].get<double>(),
+                level["check"]["smallest_angle_degrees"].get<double>(), 1e-9);
+  }
+}
+
+TEST_F(Command, LodWritesOneFileOrMany) {
+  makeSphere();
+  const Outcome outcome = run("lod s.vdb -o s.glb --tolerances 0.1,0.05w --up z --scale 2");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 4) << outcome.out;
+  EXPECT_EQ(run("lod s.vdb --levels 2 --quiet -o p.glb --separate --compress").exitCode, 0);
+  EXPECT_EQ(run("lod s.vdb --levels 2 --quiet -o p.ply --separate").exitCode, 0);
+  EXPECT_EQ(run("lod s.vdb --levels 2 --quiet -o 'level{}.stl'").exitCode, 0);
+  EXPECT_EQ(folder.fileCount(), 1 + 1 + 3 * 2);
+  for (const char* file : {"p_LOD0.glb", "p_LOD1.glb", "p_LOD0.ply", "level1.stl"}) {
+    EXPECT_EQ(run(std::string("check --quiet ") + file).exitCode, 0) << file;
+  }
+}
+
+TEST_F(Command, LodDrawsAPageThatNeedsNoOther) {
+  makeSphere();
+  ASSERT_EQ(run("lod s.vdb -o s.glb --levels 2 --quiet --report page.html").exitCode, 0);
+  EXPECT_EQ(folder.fileCount(), 3);
+  const std::string page = readBytes(folder / "page.html");
+  std::size_t pictures = 0;
+  for (std::size_t at = 0; (at = page.find("src=", at)) != std::string::npos; ++at) {
+    EXPECT_TRUE(page.substr(at).starts_with("src=\"data:image/png;base64,iVBORw0"));
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 6u);
+  EXPECT_EQ(page.find("http"), std::string::npos);
+}
+
+TEST_F(Command, LodRefusesWhatItCannotDo) {
+  makeSphere();
+  expectFailure("lod s.vdb -o s.ply", 2, "--separate");
+  expectFailure("lod s.vdb -o s.xyz", 2, "ending");
+  expectFailure("lod s.vdb -o 's{}.ply' --compress", 2, "--compress is for .glb only");
+  expectFailure("lod s.vdb -o s.glb --levels 0", 2, "--levels");
+  expectFailure("lod s.vdb -o s.glb --factor 1", 2, "factor");
+  expectFailure("lod s.vdb -o s.glb --scale 0", 2, "--scale");
+  expectFailure("lod s.vdb -o s.glb --up x", 2, "--up");
+  expectFailure("lod s.vdb -o s.glb --tolerances 0.2,0.1", 2, "rise");
+  expectFailure("lod s.vdb -o s.glb --tolerances 0.2,b", 2, "--tolerances");
+  expectFailure("lod s.vdb -o s.glb --tolerances 0.2 --levels 2", 2, "--levels");
+  expectFailure("lod s.vdb -o none/s.glb", 3, "folder");
+  expectFailure("lod s.vdb -o s.glb --report none/page.html", 3, "folder");
+  expectFailure("lod none.vdb -o s.glb", 3, "none.vdb");
+  expectFailure("lod s.vdb -o s.glb --iso 100", 3, "no surface");
+}
+
 TEST_F(Command, CheckAndVoxelizeTakeEveryFormat) {
   makeSphere();
   for (const char* ending : {"ply", "obj", "stl", "off", "glb"}) {

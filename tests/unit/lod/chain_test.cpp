@@ -1,0 +1,165 @@
+// Chains of levels: what every level keeps, and which one a camera gets.
+
+#include <gtest/gtest.h>
+
+#include <tufa/check.h>
+#include <tufa/error.h>
+#include <tufa/lod.h>
+#include <tufa/shapes.h>
+
+#include "support/expect_error.h"
+
+namespace tufa {
+namespace {
+
+using test::expectError;
+
+openvdb::FloatGrid::Ptr shape(Shape kind, double voxelSize) {
+  ShapeOptions options;
+  options.voxelSize = voxelSize;
+  return makeShape(kind, options);
+}
+
+struct Sample {
+  const char* name;
+  Shape shape;
+  double voxelSize;
+};
+
+class LodChains : public ::testing::TestWithParam<Sample> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, LodChains,
+                         ::testing::Values(Sample{"bracket", Shape::Bracket, 0.03},
+                                           Sample{"sphere", Shape::Sphere, 0.03},
+                                           Sample{"torus", Shape::Torus, 0.03},
+                                           Sample{"gyroid", Shape::Gyroid, 0.05},
+                                           Sample{"terrain", Shape::Terrain, 0.03}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_P(LodChains, EveryLevelKeepsItsPromises) {
+  LodOptions options;
+  options.levels = 4;
+  const LodChain chain = buildLods(*shape(GetParam().shape, GetParam().voxelSize), options);
+  ASSERT_GE(chain.levels.size(), 2u);
+  EXPECT_EQ(chain.levels.size() < 4, !chain.stopped.empty()) << chain.stopped;
+  EXPECT_NEAR(chain.voxelSize, GetParam().voxelSize, 1e-12);
+  for (std::size_t i = 0; i < chain.levels.size(); ++i) {
+    const Lod& lod = chain.levels[i];
+    SCOPED_TRACE("level " + std::to_string(i));
+    EXPECT_LE(lod.certificate.maxErrorVoxels, lod.tolerance);
+    EXPECT_LE(lod.certificate.meanErrorVoxels, lod.certificate.maxErrorVoxels);
+    const CheckReport report = check(lod.mesh);
+    EXPECT_TRUE(report.closed && report.manifold && report.oriented);
+    EXPECT_EQ(report.selfIntersectingPairs, 0u);
+    EXPECT_EQ(report.eulerCharacteristic, lod.certificate.eulerCharacteristic);
+    if (i == 0) continue;
+    const Lod& finer = chain.levels[i - 1];
+    EXPECT_EQ(lod.certificate.eulerCharacteristic, finer.certificate.eulerCharacteristic);
+    EXPECT_LT(lod.mesh.triangleCount(), finer.mesh.triangleCount());
+    EXPECT_GT(lod.certificate.maxErrorVoxels, finer.certificate.maxErrorVoxels);
+    EXPECT_GT(lod.tolerance, finer.tolerance);
+    EXPECT_LT(lod.screenCoverage, finer.screenCoverage);
+  }
+  EXPECT_EQ(chain.levels.back().screenCoverage, 0);
+}
+
+TEST(LodChain, TakesAListOfTolerances) {
+  LodOptions options;
+  options.tolerances = {0.05, 0.3, 0.5};
+  const LodChain chain = buildLods(*shape(Shape::Torus, 0.05), options);
+  ASSERT_EQ(chain.levels.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(chain.levels[i].tolerance, options.tolerances[i]);
+  }
+}
+
+TEST(LodChain, LevelZeroIsTheMeshOfContour) {
+  const auto grid = shape(Shape::Bracket, 0.05);
+  LodOptions options;
+  options.levels = 2;
+  const LodChain chain = buildLods(*grid, options);
+  const Mesh mesh = contour(*grid, options.contour);
+  EXPECT_EQ(chain.levels.at(0).mesh.positions, mesh.positions);
+  EXPECT_EQ(chain.levels.at(0).mesh.quads, mesh.quads);
+  EXPECT_EQ(chain.levels.at(0).mesh.triangles, mesh.triangles);
+}
+
+TEST(LodChain, StopsWhereTopologyAllowsNoCoarserMesh) {
+  LodOptions options;
+  options.tolerances = {0.1, 1000, 2000};
+  const LodChain chain = buildLods(*shape(Shape::Sphere, 0.1), options);
+  EXPECT_EQ(chain.levels.size(), 2u);
+  EXPECT_NE(chain.stopped.find("level 2"), std::string::npos) << chain.stopped;
+}
+
+TEST(LodChain, IsEmptyWithoutASurface) {
+  const auto grid = openvdb::FloatGrid::create(1);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  EXPECT_TRUE(buildLods(*grid).levels.empty());
+}
+
+TEST(LodChain, RefusesOptionsOutOfTheirRange) {
+  const auto grid = shape(Shape::Sphere, 0.2);
+  const auto refuses = [&](const char* part, auto change) {
+    LodOptions options;
+    change(options);
+    expectError(ErrorCode::InvalidArgument, part, [&] { (void)buildLods(*grid, options); });
+  };
+  refuses("at least 1", [](LodOptions& o) { o.levels = 0; });
+  refuses("factor", [](LodOptions& o) { o.factor = 1; });
+  refuses("rise", [](LodOptions& o) { o.tolerances = {0.2, 0.1}; });
+  refuses("not negative", [](LodOptions& o) { o.tolerances = {-1}; });
+  refuses("pixelError", [](LodOptions& o) { o.pixelError = 0; });
+  refuses("screenHeight", [](LodOptions& o) { o.screenHeight = 0; });
+}
+
+/// Three levels of errors 0.01, 0.1 and 1 around the origin, radius 1.
+LodChain threeLevels() {
+  LodChain chain;
+  chain.centre = {0, 0, 0};
+  chain.radius = 1;
+  for (const double error : {0.01, 0.1, 1.0}) {
+    chain.levels.emplace_back();
+    chain.levels.back().certificate.maxErrorWorld = error;
+  }
+  return chain;
+}
+
+TEST(SelectLod, TakesTheCoarsestWhoseErrorIsSmallOnTheScreen) {
+  const LodChain chain = threeLevels();
+  Camera camera;
+  camera.verticalAngle = 2 * std::atan(0.5);  // a world unit at distance d has 1000 / d pixels
+  camera.screenHeight = 1000;
+  const auto at = [&](double distance, double pixels) {
+    camera.eye = {0, 0, chain.radius + distance};
+    return selectLod(chain, camera, pixels);
+  };
+  EXPECT_EQ(at(50, 1), 0u);  // 0.1 is 2 pixels
+  EXPECT_EQ(at(99, 1), 0u);
+  EXPECT_EQ(at(101, 1), 1u);
+  EXPECT_EQ(at(999, 1), 1u);
+  EXPECT_EQ(at(1001, 1), 2u);
+  EXPECT_EQ(at(51, 2), 1u);  // twice the error, half the distance
+  camera.eye = {0, 0, 0.5};  // inside the sphere
+  EXPECT_EQ(selectLod(chain, camera, 1000), 0u);
+}
+
+TEST(SelectLod, AgreesWithScreenCoverage) {
+  LodOptions options;
+  options.levels = 3;
+  const LodChain chain = buildLods(*shape(Shape::Sphere, 0.03), options);
+  for (std::size_t i = 0; i + 1 < chain.levels.size(); ++i) {
+    // Far away the sphere takes 2 r / (2 d tan(a/2)) of the height.
+    Camera camera;
+    camera.screenHeight = options.screenHeight;
+    const auto levelAtCoverage = [&](double coverage) {
+      const double distance = chain.radius / (coverage * std::tan(camera.verticalAngle / 2));
+      camera.eye = {chain.centre.x, chain.centre.y, chain.centre.z + chain.radius + distance};
+      return selectLod(chain, camera, options.pixelError);
+    };
+    EXPECT_EQ(levelAtCoverage(chain.levels[i].screenCoverage * 1.01), i);
+    EXPECT_EQ(levelAtCoverage(chain.levels[i].screenCoverage * 0.99), i + 1);
+  }
+}
+
+}  // namespace
+}  // namespace tufa
