@@ -28,7 +28,7 @@ struct LodOptions {
 
 /// One level of detail.
 struct Lod {
-  Mesh mesh;
+  Mesh mesh;                ///< world space
   double tolerance = 0;     ///< voxels
   Certificate certificate;  ///< distance to the uniform mesh of the grid
   /// Draw this level while the model's bounding sphere takes at least this share of the screen's
@@ -41,7 +41,7 @@ struct Lod {
 /// Levels of detail of one surface, the finest first. All have the topology of the uniform mesh;
 /// errors rise and triangles fall from level to level.
 struct LodChain {
-  std::vector<Lod> levels;
+  std::vector<Lod> levels;   ///< the finest first; none without a surface
   double voxelSize = 1;      ///< world units: the cube root of a voxel's volume
   Position centre;           ///< of the bounding sphere of level 0
   double radius = 0;         ///< of that sphere, world units
@@ -69,7 +69,10 @@ struct Camera {
                                     double pixelError = 1);
 
 /// The axis of the volume that points up. glTF's is y: a volume with z up is turned.
-enum class UpAxis { Y, Z };
+enum class UpAxis {
+  Y,  ///< as in Houdini and glTF
+  Z,  ///< as in Blender
+};
 
 /// How a .glb stores vertices and indices.
 enum class LodCompression {

@@ -4,6 +4,7 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <tufa/lod.h>
 #include <tufa/mesh.h>
 #include <tufa/octree.h>
 #include <tufa/progress.h>
