@@ -176,18 +176,23 @@ LodStream indexStream(const ShadedMesh& shaded) {
   return stream;
 }
 
+/// Has the library pack in the versions that the extension is written for, whatever its defaults.
+void setCodecVersions() {
+  static const bool set = [] {
+    meshopt_encodeVertexVersion(0);
+    meshopt_encodeIndexVersion(1);
+    return true;
+  }();
+  static_cast<void>(set);
+}
+
 /// Packs a stream of vertices as EXT_meshopt_compression's mode ATTRIBUTES has it.
 void packVertices(LodStream& stream) {
   std::string packed(meshopt_encodeVertexBufferBound(stream.count, stream.stride), '\0');
   auto* const bytes = reinterpret_cast<unsigned char*>(packed.data());
-#if MESHOPTIMIZER_VERSION >= 230
-  // Newer libraries also know a version 1, which the extension does not.
-  packed.resize(meshopt_encodeVertexBufferLevel(bytes, packed.size(), stream.bytes.data(),
-                                                stream.count, stream.stride, 2, 0));
-#else
+  setCodecVersions();
   packed.resize(meshopt_encodeVertexBuffer(bytes, packed.size(), stream.bytes.data(), stream.count,
                                            stream.stride));
-#endif
   stream.bytes = std::move(packed);
 }
 
@@ -195,7 +200,7 @@ void packVertices(LodStream& stream) {
 void packTriangles(const ShadedMesh& shaded, LodStream& stream) {
   std::string packed(meshopt_encodeIndexBufferBound(shaded.indices.size(), shaded.sources.size()),
                      '\0');
-  meshopt_encodeIndexVersion(1);  // the one that the extension is written for
+  setCodecVersions();
   packed.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(packed.data()),
                                           packed.size(), shaded.indices.data(),
                                           shaded.indices.size()));
