@@ -73,8 +73,8 @@ struct ContourOptions {
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
   /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
   openvdb::FloatGrid::ConstPtr toleranceGrid;
-  /// Look for polygons that pass through each other and mend them: by small moves of vertices, other
-  /// diagonals, smaller cells and, rarely, four triangles in place of a quad.
+  /// Look for polygons that pass through each other and mend them: by small moves of vertices,
+  /// other diagonals, smaller cells and, rarely, four triangles in place of a quad.
   bool repair = true;
   /// Most threads to use; 0: as many as the caller's TBB arena allows. Never changes the result.
   int threads = 0;
