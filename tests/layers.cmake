@@ -3,7 +3,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # The stages of the pipeline: each sees itself and those before it.
-set(pipeline base qef blocks components crossings creases vertices forest cut polygons mend certify level0
+set(pipeline base qef blocks components crossings creases vertices forest cut polygons mend simplify certify level0
     lod chunks)
 # Folders beside the pipeline, and all that each of them sees.
 set(sees_mesh base mesh)

@@ -101,6 +101,8 @@ void addContourOptions(CLI::App& app, ContourOptions& options) {
                        {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
                        "what to do with NaN and infinite values (default refuse)");
   app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
+  app.add_flag("--simplify,!--no-simplify", options.simplify,
+               "collapse edges of an adaptive mesh as far as the tolerance allows (default)");
   app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
   addThreadsOption(app, options.threads);
 }

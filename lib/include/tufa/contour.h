@@ -68,6 +68,9 @@ struct ContourOptions {
   int minCell = 1;
   /// Size in voxels, a power of two, of the largest cells.
   int maxCell = 1 << 20;
+  /// End an adaptive mesh with a pass that collapses edges as far as the tolerance allows: fewer
+  /// triangles at the same certified error, but fewer quads.
+  bool simplify = true;
   /// Keep the leaves of the octree in the certificate.
   bool keepLeaves = false;
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world

@@ -57,6 +57,10 @@ void Job::report(std::size_t done, std::size_t count) {
   if (cancelled_) throw Error(ErrorCode::Cancelled, "cancelled by the caller");
 }
 
+void Job::look(std::size_t done, std::size_t count) {
+  if (std::this_thread::get_id() == caller_) report(done, count);
+}
+
 void Job::forRanges(std::size_t count, std::size_t grain, const RangeBody& body) {
   std::atomic<std::size_t> done{0};
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),

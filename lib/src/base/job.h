@@ -36,6 +36,10 @@ class Job {
   /// least `grain` indices where there are so many. Throws Error(Cancelled) when asked to stop.
   void forRanges(std::size_t count, std::size_t grain, const RangeBody& body);
 
+  /// For long work on one thread, now and then: `done` of `count` parts of the stage are done.
+  /// Throws Error(Cancelled) when asked to stop.
+  void look(std::size_t done, std::size_t count);
+
  private:
   void report(std::size_t done, std::size_t count);
   void closeStage();

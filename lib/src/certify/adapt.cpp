@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "certify/simplify_cut.h"
+
 namespace tufa::certify {
 namespace {
+
+// A mesh that will be simplified is cut at this share of the tolerance.
+constexpr double kCutShare = 0.7;
 
 // Forbids the cells of these vertices. Returns whether any could be split.
 bool splitCells(const std::vector<VertexIndex>& vertices, const cut::Cut& cut, int minLevel,
@@ -20,60 +25,6 @@ bool splitCells(const std::vector<VertexIndex>& vertices, const cut::Cut& cut, i
     if (ref.level >= 3) forbidden.levels[ref.level - 3][ref.parentCell] = 1;
   }
   return any;
-}
-
-// The polygons that may meet others: the suspects of the base mesh that are left, and what is not
-// of the base mesh.
-std::vector<mend::PolygonIndex> suspectsOf(const polygons::CutMesh& made, const cut::Cut& cut,
-                                           const std::vector<std::uint32_t>& baseSuspects) {
-  std::vector<mend::PolygonIndex> suspects;
-  for (std::size_t i = 0; i < made.mesh.quads.size(); ++i) {
-    const auto& v = made.mesh.quads[i].vertices;
-    const bool coarse =
-        std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return cut.clusters[k].level != 0; });
-    if (coarse ||
-        std::binary_search(baseSuspects.begin(), baseSuspects.end(), made.quadSources[i])) {
-      suspects.push_back(static_cast<mend::PolygonIndex>(i));
-    }
-  }
-  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
-    suspects.push_back(static_cast<mend::PolygonIndex>(made.mesh.quads.size() + i));
-  }
-  return suspects;
-}
-
-// Makes small changes to what is not of the base mesh; pairs that these do not help are left.
-mend::MendReport mendCut(const Repair& repair, const cut::Cut& cut,
-                         const std::vector<mend::PolygonIndex>& suspects, Mesh& mesh,
-                         base::Job& job) {
-  mend::Source source = repair.source;
-  source.crossings = nullptr;
-  source.toTheFloor = false;
-  source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
-    std::vector<Position> points;
-    for (const VertexIndex vertex : vertices) points.push_back(mesh.positions[vertex]);
-    return points;
-  };
-  source.isFixed = [&](VertexIndex vertex) { return cut.clusters[vertex].level == 0; };
-  return mend::mend(mesh, suspects, source, job);
-}
-
-// The vertices of some polygons, sorted.
-std::vector<VertexIndex> verticesOf(const Mesh& mesh,
-                                    const std::vector<mend::PolygonIndex>& polygons) {
-  std::vector<VertexIndex> vertices;
-  for (const mend::PolygonIndex polygon : polygons) {
-    if (polygon < mesh.quads.size()) {
-      const auto& v = mesh.quads[polygon].vertices;
-      vertices.insert(vertices.end(), v.begin(), v.end());
-    } else {
-      const auto& v = mesh.triangles[polygon - mesh.quads.size()].vertices;
-      vertices.insert(vertices.end(), v.begin(), v.end());
-    }
-  }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
 }
 
 std::vector<VertexIndex> baseVerticesOf(const cut::Cut& cut) {
@@ -103,51 +54,77 @@ std::int64_t eulerCharacteristic(const Mesh& mesh) {
          static_cast<std::int64_t>(mesh.triangles.size() + mesh.quads.size());
 }
 
+// The vertices whose cells must be split for the tolerance: those of the polygons that are too far,
+// and those that stand for base points that are.
+template <class TreeT>
+std::vector<VertexIndex> tooCoarse(const forest::Base<TreeT>& base, const Measured& mesh) {
+  std::vector<VertexIndex> vertices = mesh.deviation.coarse;
+  const std::size_t points = base.mesh.positions.size();
+  for (const std::uint64_t point : mesh.deviation.farPoints) {
+    if (point < points) {
+      vertices.push_back(mesh.cut.vertexOf[point]);
+      continue;
+    }
+    for (const VertexIndex corner : base.mesh.quads[point - points].vertices) {
+      vertices.push_back(mesh.cut.vertexOf[corner]);
+    }
+  }
+  return vertices;
+}
+
+// The coarsest cut found that keeps the rule.
+template <class TreeT>
+Measured cutAndMeasure(const forest::Base<TreeT>& base, const forest::Forest& forest,
+                       const cut::CutRule& rule, const Repair* repair, Certifier<TreeT>& certifier,
+                       AdaptiveMesh& adaptive, base::Job& job) {
+  cut::CellFlags forbidden(forest);
+  for (adaptive.rounds = 1;; ++adaptive.rounds) {
+    const cut::CellFlags merged = cut::mergeCells(forest, base.topology, rule, forbidden, job);
+    Measured mesh;
+    mesh.cut = cut::makeCut(forest, base.topology, merged, job);
+    mesh.made = polygons::meshCut(forest, mesh.cut, base.mesh, base.affine, job);
+    // Mending comes once the tolerance holds: there is less to mend then.
+    mesh.deviation = certifier.measure(mesh.cut, mesh.made);
+    if (splitCells(tooCoarse(base, mesh), mesh.cut, rule.minLevel, forbidden)) continue;
+    mendAndMeasure(certifier, repair, mesh, job);
+    bool split = splitCells(tooCoarse(base, mesh), mesh.cut, rule.minLevel, forbidden);
+    split |= splitCells(mesh.meeting, mesh.cut, rule.minLevel, forbidden);
+    if (split) continue;
+    adaptive.leaves = cut::collectLeaves(forest, base.topology, merged);
+    return mesh;
+  }
+}
+
 }  // namespace
 
 template <class TreeT>
 AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                   const cut::CutRule& rule, const Repair* repair, base::Job& job) {
-  Certifier<TreeT> certifier(base, forest.levels[0], rule, job);
-  cut::CellFlags forbidden(forest);
+                   const cut::CutRule& rule, const AdaptOptions& options, base::Job& job) {
   AdaptiveMesh adaptive;
-  for (adaptive.rounds = 1;; ++adaptive.rounds) {
-    const cut::CellFlags merged = cut::mergeCells(forest, base.topology, rule, forbidden, job);
-    const cut::Cut cut = cut::makeCut(forest, base.topology, merged, job);
-    polygons::CutMesh made = polygons::meshCut(forest, cut, base.mesh, base.affine, job);
-    Deviation deviation = certifier.measure(cut, made);
-    if (splitCells(deviation.coarse, cut, rule.minLevel, forbidden)) continue;
-    bool beyond = !deviation.coarse.empty();  // the tolerance, where cells may not be split
-    std::vector<VertexIndex> altered;
-    if (repair != nullptr) {
-      adaptive.suspects = suspectsOf(made, cut, repair->suspects);
-      adaptive.mended = mendCut(*repair, cut, adaptive.suspects, made.mesh, job);
-      altered = verticesOf(made.mesh, adaptive.mended.changed);
-      const Deviation after = certifier.measure(cut, made, altered);
-      std::vector<VertexIndex> wanted = after.coarse;
-      for (const auto& [a, b] : adaptive.mended.left) {
-        const std::vector<VertexIndex> corners = verticesOf(made.mesh, {a, b});
-        wanted.insert(wanted.end(), corners.begin(), corners.end());
-      }
-      if (splitCells(wanted, cut, rule.minLevel, forbidden)) continue;
-      beyond |= !after.coarse.empty();
-      deviation = after;
-    }
-    adaptive.largestError = deviation.largest;
-    adaptive.meanError = deviation.mean;
-    if (beyond) {
-      // What was kept from the meshes before is not in this one's worst.
-      Certifier<TreeT> again(base, forest.levels[0], rule, job);
-      adaptive.largestError = again.measure(cut, made, altered).worst;
-    }
-    adaptive.leaves = cut::collectLeaves(forest, base.topology, merged);
-    adaptive.baseVertices = baseVerticesOf(cut);
-    adaptive.baseQuads = std::move(made.quadSources);
-    adaptive.baseQuads.insert(adaptive.baseQuads.end(), made.triangleSources.begin(),
-                              made.triangleSources.end());
-    adaptive.mesh = std::move(made.mesh);
-    return adaptive;
+  cut::CutRule cutRule = rule;
+  if (options.simplify) cutRule.tolerance *= kCutShare;
+  Certifier<TreeT> certifier(base, forest.levels[0], cutRule, job);
+  Measured mesh = cutAndMeasure(base, forest, cutRule, options.repair, certifier, adaptive, job);
+  if (options.simplify) {
+    certifier.setRule(rule);
+    mesh = simplifyCut(base, mesh, rule, options.repair, certifier, job);
   }
+  adaptive.largestError = mesh.deviation.largest;
+  adaptive.meanError = mesh.deviation.mean;
+  if (!mesh.deviation.coarse.empty() || !mesh.deviation.farPoints.empty()) {
+    // Cells that may not be split are off by more; what was kept from the meshes before is not in
+    // this one's worst.
+    Certifier<TreeT> again(base, forest.levels[0], rule, job);
+    adaptive.largestError = again.measure(mesh.cut, mesh.made, mesh.altered).worst;
+  }
+  adaptive.mended = std::move(mesh.mended);
+  adaptive.suspects = std::move(mesh.suspects);
+  adaptive.baseVertices = baseVerticesOf(mesh.cut);
+  adaptive.baseQuads = std::move(mesh.made.quadSources);
+  adaptive.baseQuads.insert(adaptive.baseQuads.end(), mesh.made.triangleSources.begin(),
+                            mesh.made.triangleSources.end());
+  adaptive.mesh = std::move(mesh.made.mesh);
+  return adaptive;
 }
 
 Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves) {
@@ -167,8 +144,8 @@ Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLea
 }
 
 template AdaptiveMesh adapt(const forest::Base<openvdb::FloatTree>&, const forest::Forest&,
-                            const cut::CutRule&, const Repair*, base::Job&);
+                            const cut::CutRule&, const AdaptOptions&, base::Job&);
 template AdaptiveMesh adapt(const forest::Base<openvdb::DoubleTree>&, const forest::Forest&,
-                            const cut::CutRule&, const Repair*, base::Job&);
+                            const cut::CutRule&, const AdaptOptions&, base::Job&);
 
 }  // namespace tufa::certify

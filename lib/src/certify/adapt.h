@@ -2,18 +2,16 @@
 
 #include <tufa/contour.h>
 
-#include "certify/certificate.h"
+#include "certify/measured.h"
 #include "cut/leaves.h"
 #include "forest/forest.h"
-#include "mend/mend.h"
-#include "polygons/cut_polygons.h"
 
 namespace tufa::certify {
 
-/// How the self-intersections of cuts are taken out.
-struct Repair {
-  std::vector<std::uint32_t> suspects;  ///< of the base mesh, see polygons::findSuspects()
-  mend::Source source;                  ///< of the base mesh
+/// What adapt() does beside cutting.
+struct AdaptOptions {
+  const Repair* repair = nullptr;  ///< take self-intersections out; null: leave them
+  bool simplify = false;           ///< collapse edges of the cut's mesh, see simplifyCut()
 };
 
 /// The coarsest mesh found that keeps a rule, and how far it is from the base mesh.
@@ -30,11 +28,12 @@ struct AdaptiveMesh {
 };
 
 /// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the
-/// tolerance or meets itself, and starts again until there are none. If `repair`, small changes are
-/// tried before a cell is split because of polygons that meet.
+/// tolerance or meets itself, and starts again until there are none. Small changes are tried before
+/// a cell is split because of polygons that meet.
 template <class TreeT>
 [[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                                 const cut::CutRule& rule, const Repair* repair, base::Job& job);
+                                 const cut::CutRule& rule, const AdaptOptions& options,
+                                 base::Job& job);
 
 /// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if
 /// they are to be kept.

@@ -19,6 +19,9 @@ namespace {
 // A vertex whose normal has less than this part along the direction asked for faces away; on the
 // corner of a cube the normals of vertex and face have 0.58.
 constexpr double kFacing = 0.2;
+// So many cells on each side of a point are looked at if the nearest vertex does not do.
+constexpr int kAround = 2;
+constexpr int kSide = 2 * kAround + 1;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
@@ -141,16 +144,15 @@ double BaseSurface<TreeT>::distanceToQuad(const Vec3d& point, std::size_t quad) 
 }
 
 template <class TreeT>
-double BaseSurface<TreeT>::distance(const Vec3d& point, const Vec3d& facing, int reach) const {
-  const Near near = nearestVertex(point, facing, reach);
-  if (near.block == forest::kNone) return std::numeric_limits<double>::infinity();
+double BaseSurface<TreeT>::distanceAtCell(std::uint32_t cellBlock, int cellNumber,
+                                          const Vec3d& point) const {
   double best = std::numeric_limits<double>::infinity();
-  const std::array<int, 3> cell = {near.cell >> 6, (near.cell >> 3) & 7, near.cell & 7};
+  const std::array<int, 3> cell = {cellNumber >> 6, (cellNumber >> 3) & 7, cellNumber & 7};
   for (int edge = 0; edge < components::kEdges; ++edge) {
     const int axis = edge / 4, corner = components::edgeCorners(edge)[0];
     const int x = cell[0] + (corner >> 2), y = cell[1] + ((corner >> 1) & 1),
               z = cell[2] + (corner & 1);
-    std::uint32_t block = near.block;
+    std::uint32_t block = cellBlock;
     if (((x | y | z) & 8) != 0) {
       block = base_.topology.neighbour(base_.topology.blocks[block], x >> 3, y >> 3, z >> 3);
       if (block == components::kNoSurfaceBlock) continue;
@@ -162,6 +164,31 @@ double BaseSurface<TreeT>::distance(const Vec3d& point, const Vec3d& facing, int
         base_.topology.blocks[block].firstQuad + edges_[block].before[axis][x & 7] +
         static_cast<std::size_t>(base::countBits(crossed & base::bitsBelow(bit)));
     best = std::min(best, distanceToQuad(point, index));
+  }
+  return best;
+}
+
+template <class TreeT>
+double BaseSurface<TreeT>::distance(const Vec3d& point, const Vec3d& facing, int reach,
+                                    double enough) const {
+  const Near near = nearestVertex(point, facing, reach);
+  if (near.block == forest::kNone) return std::numeric_limits<double>::infinity();
+  double best = distanceAtCell(near.block, near.cell, point);
+  if (best <= enough) return best;
+  // Beside a crease the nearest polygon may not be at the nearest vertex.
+  const Vec3d at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
+  const Coord middle = base_.affine.origin() + Coord::floor(at);
+  BlockCache blocks(blockCells_);
+  for (int i = 0; i < kSide * kSide * kSide && best > enough; ++i) {
+    const Coord cell = middle.offsetBy(i / (kSide * kSide) - kAround, i / kSide % kSide - kAround,
+                                       i % kSide - kAround);
+    const std::uint32_t block = blocks.at(cell);
+    if (block == forest::kNone) continue;
+    const int local = blocks::cellIndex(cell[0] & 7, cell[1] & 7, cell[2] & 7);
+    if (!base_.topology.blocks[block].cells.get(local)) continue;
+    Near facingIt;
+    searchCell(block, local, point, facing, facingIt);
+    if (facingIt.block != forest::kNone) best = std::min(best, distanceAtCell(block, local, point));
   }
   return best;
 }

@@ -16,9 +16,10 @@ class BaseSurface {
 
   /// An upper bound of the distance from `point` to the base mesh, exact if the nearest vertex has
   /// the nearest polygon: to the polygons around the nearest base vertex that does not face away
-  /// from `facing`. Looks `reach` cells far; infinite if there is no such vertex. World units.
+  /// from `facing`; if that is more than `enough`, to those around all near vertices. Looks `reach`
+  /// cells far; infinite if there is no such vertex. World units.
   [[nodiscard]] double distance(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
-                                int reach) const;
+                                int reach, double enough) const;
   /// The distance from `point` to one base quad.
   [[nodiscard]] double distanceToQuad(const openvdb::Vec3d& point, std::size_t quad) const;
 
@@ -36,6 +37,8 @@ class BaseSurface {
 
   void searchCell(std::uint32_t block, int cell, const openvdb::Vec3d& point,
                   const openvdb::Vec3d& facing, Near& near) const;
+  [[nodiscard]] double distanceAtCell(std::uint32_t cellBlock, int cellNumber,
+                                      const openvdb::Vec3d& point) const;
   [[nodiscard]] Near nearestVertex(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
                                    int reach) const;
 

@@ -12,6 +12,7 @@ using openvdb::Vec3d;
 namespace {
 
 constexpr std::size_t kChunk = 2048;
+constexpr std::uint32_t kNoPiece = std::numeric_limits<std::uint32_t>::max();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Samples inside a triangle: one each two voxels of its longest side, but not more than this along
 // it. The base points, which are dense, are measured too; samples find what sticks out between
@@ -27,11 +28,14 @@ constexpr double kNearShare = 0.25;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
-bool sameCluster(const cut::ClusterRef& a, const cut::ClusterRef& b) {
-  return a.level == b.level && a.parentCell == b.parentCell && a.cluster == b.cluster;
-}
-
 }  // namespace
+
+double toleranceAt(const cut::CutRule& rule, const base::Affine& affine, const Vec3d& point) {
+  if (!rule.scale) return rule.tolerance;
+  const openvdb::Coord& origin = affine.origin();
+  return rule.toleranceAt(affine.latticePoint({point[0], point[1], point[2]}, origin) +
+                          origin.asVec3d());
+}
 
 template <class TreeT>
 Certifier<TreeT>::Certifier(const forest::Base<TreeT>& base, const forest::Level& blockCells,
@@ -41,6 +45,7 @@ Certifier<TreeT>::Certifier(const forest::Base<TreeT>& base, const forest::Level
       rule_(rule),
       job_(job),
       vertexErrors_(base.mesh.positions.size()),
+      wandered_(base.mesh.positions.size() + base.mesh.quads.size()),
       quadErrors_(base.mesh.quads.size()) {}
 
 template <class TreeT>
@@ -71,9 +76,12 @@ Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& mad
   total.largest = largestKept_;
   total.worst = std::max(total.worst, samples.worst);
   total.coarse.insert(total.coarse.end(), samples.coarse.begin(), samples.coarse.end());
-  std::sort(total.coarse.begin(), total.coarse.end());
-  total.coarse.erase(std::unique(total.coarse.begin(), total.coarse.end()), total.coarse.end());
-  clusters_ = cut.clusters;
+  total.protruding = std::move(samples.coarse);
+  for (std::vector<VertexIndex>* vertices : {&total.coarse, &total.protruding}) {
+    std::sort(vertices->begin(), vertices->end());
+    vertices->erase(std::unique(vertices->begin(), vertices->end()), vertices->end());
+  }
+  positions_ = made.mesh.positions;
   vertexOf_ = cut.vertexOf;
   alteredKept_ = altered_;
   return total;
@@ -84,13 +92,14 @@ void Certifier<TreeT>::collectPieces() {
   const Mesh& mesh = made_->mesh;
   pieces_.clear();
   const auto take = [&](const std::array<VertexIndex, 4>& v, std::uint32_t source) {
-    pieces_.push_back({v, source,
-                       FlatTriangle(vectorOf(mesh.positions[v[0]]), vectorOf(mesh.positions[v[1]]),
-                                    vectorOf(mesh.positions[v[2]]))});
+    pieces_.push_back(
+        {v, source,
+         base::FlatTriangle(vectorOf(mesh.positions[v[0]]), vectorOf(mesh.positions[v[1]]),
+                            vectorOf(mesh.positions[v[2]]))});
   };
-  // A triangle from a base quad has lost a corner, so at least one of its own is of a larger cell.
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& v = mesh.triangles[i].vertices;
+    if (isFine(v[0]) && isFine(v[1]) && isFine(v[2])) continue;
     take({v[0], v[1], v[2], v[0]}, made_->triangleSources[i]);
   }
   for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
@@ -117,13 +126,14 @@ void Certifier<TreeT>::collectPieces() {
 
 template <class TreeT>
 void Certifier<TreeT>::findChanges() {
-  changed_.assign(cut_->clusters.size(), clusters_.empty() ? 1 : 0);
+  const std::vector<Position>& positions = made_->mesh.positions;
+  changed_.assign(positions.size(), positions_.empty() ? 1 : 0);
   touched_ = changed_;
-  if (clusters_.empty()) return;
+  if (positions_.empty()) return;
   for (std::size_t i = 0; i < vertexOf_.size(); ++i) {
     const VertexIndex vertex = cut_->vertexOf[i], before = vertexOf_[i];
     if (altered_[vertex] != 0 || alteredKept_[before] != 0 ||
-        !sameCluster(cut_->clusters[vertex], clusters_[before])) {
+        !(positions[vertex] == positions_[before])) {
       changed_[vertex] = 1;
     }
   }
@@ -157,10 +167,24 @@ bool Certifier<TreeT>::findAround(VertexIndex vertex, const Vec3d& point, double
   return false;
 }
 
+// Where vertices were joined, what a point lies above may be farther off: goes on from piece to
+// piece while they come nearer, and never to another sheet.
+template <class TreeT>
+void Certifier<TreeT>::walkNearer(const Vec3d& point, double enough, double& squared,
+                                  std::uint32_t& nearest) const {
+  for (std::uint32_t last = kNoPiece; squared > enough && last != nearest;) {
+    last = nearest;
+    const auto corners = pieces_[nearest].corners;
+    for (const VertexIndex corner : corners) {
+      if (findAround(corner, point, enough, squared, nearest)) return;
+    }
+  }
+}
+
 // The distance of a base point to the polygons around its clusters, in voxels.
 template <class TreeT>
 float Certifier<TreeT>::distanceAround(const VertexIndex* vertices, int count, const Vec3d& point,
-                                       Part& part) const {
+                                       std::uint8_t& wandered, Part& part) const {
   double squared = kInfinity;
   std::uint32_t nearest = 0;
   const double bound = toleranceAt(point) * base_.affine.voxelSize();
@@ -172,6 +196,8 @@ float Certifier<TreeT>::distanceAround(const VertexIndex* vertices, int count, c
     part.coarse.insert(part.coarse.end(), vertices, vertices + count);
     return 0;
   }
+  wandered = squared > bound * bound ? 1 : 0;
+  walkNearer(point, bound * bound, squared, nearest);
   const double voxels = std::sqrt(squared) / base_.affine.voxelSize();
   note(point, voxels, pieces_[nearest].corners.data(), 4, part);
   return static_cast<float>(voxels);
@@ -183,9 +209,11 @@ void Certifier<TreeT>::measureVertex(std::size_t index, Part& part) {
   float& error = vertexErrors_[index];
   if (isFine(vertex)) {
     error = 0;
-  } else if (touched_[vertex] != 0) {
-    error = distanceAround(&vertex, 1, vectorOf(base_.mesh.positions[index]), part);
+  } else if (touched_[vertex] != 0 || wandered_[index] != 0) {
+    error =
+        distanceAround(&vertex, 1, vectorOf(base_.mesh.positions[index]), wandered_[index], part);
   }
+  noteFar(index, vectorOf(base_.mesh.positions[index]), static_cast<double>(error), part);
   part.sum += static_cast<double>(error);
 }
 
@@ -200,13 +228,16 @@ void Certifier<TreeT>::measureQuad(std::size_t index, Part& part) {
     touched |= touched_[around[i]] != 0;
   }
   float& error = quadErrors_[index];
+  std::uint8_t& wandered = wandered_[base_.mesh.positions.size() + index];
+  const Vec3d middle =
+      (vectorOf(base_.mesh.positions[v[0]]) + vectorOf(base_.mesh.positions[v[2]])) * 0.5;
   if (fine) {
     error = 0;
-  } else if (touched) {
-    const Vec3d middle =
-        (vectorOf(base_.mesh.positions[v[0]]) + vectorOf(base_.mesh.positions[v[2]])) * 0.5;
-    error = distanceAround(around.data(), 4, middle, part);
+  } else if (touched || wandered != 0) {
+    error = distanceAround(around.data(), 4, middle, wandered, part);
   }
+  if (error > 0)
+    noteFar(base_.mesh.positions.size() + index, middle, static_cast<double>(error), part);
   part.sum += static_cast<double>(error);
 }
 
@@ -216,7 +247,7 @@ void Certifier<TreeT>::measureCorner(VertexIndex vertex, Part& part) const {
   if (firstAround_[vertex] == firstAround_[vertex + 1]) return;
   const Vec3d point = vectorOf(made_->mesh.positions[vertex]);
   const Piece& piece = pieces_[around_[firstAround_[vertex]]];
-  const double distance = std::min(surface_.distance(point, facing(&vertex, 1), reachAt(point)),
+  const double distance = std::min(distanceToBase(point, facing(&vertex, 1)),
                                    surface_.distanceToQuad(point, piece.source));
   const double voxels = distance / base_.affine.voxelSize();
   note(point, voxels, &vertex, 1, part);
@@ -240,11 +271,18 @@ void Certifier<TreeT>::measurePiece(std::size_t index, Part& part) const {
       // The middles of small triangles that fill the large one.
       const double s = (i + 1.0 / 3) / steps, t = (j + 1.0 / 3) / steps;
       const Vec3d point = a + (b - a) * s + (c - a) * t;
-      const double distance = std::min(surface_.distance(point, outward, reachAt(point)),
-                                       surface_.distanceToQuad(point, piece.source));
+      const double distance =
+          std::min(distanceToBase(point, outward), surface_.distanceToQuad(point, piece.source));
       note(point, distance / voxel, v.data(), 4, part);
     }
   }
+}
+
+// Also of what was measured before.
+template <class TreeT>
+void Certifier<TreeT>::noteFar(std::uint64_t index, const Vec3d& point, double voxels,
+                               Part& part) const {
+  if (voxels > toleranceAt(point)) part.farPoints.push_back(index);
 }
 
 // Takes a distance into account. Where it is too large, the largest cells of the polygon must be
@@ -278,10 +316,7 @@ Vec3d Certifier<TreeT>::facing(const VertexIndex* vertices, int count) const {
 
 template <class TreeT>
 double Certifier<TreeT>::toleranceAt(const Vec3d& point) const {
-  if (!rule_.scale) return rule_.tolerance;
-  const openvdb::Coord& origin = base_.affine.origin();
-  return rule_.toleranceAt(base_.affine.latticePoint({point[0], point[1], point[2]}, origin) +
-                           origin.asVec3d());
+  return certify::toleranceAt(rule_, base_.affine, point);
 }
 
 template <class TreeT>
@@ -306,6 +341,7 @@ void Certifier<TreeT>::forChunks(std::size_t count, const Body& body, Deviation&
     total.worst = std::max(total.worst, part.worst);
     sum += part.sum;
     total.coarse.insert(total.coarse.end(), part.coarse.begin(), part.coarse.end());
+    total.farPoints.insert(total.farPoints.end(), part.farPoints.begin(), part.farPoints.end());
   }
 }
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include "base/flat_triangle.h"
 #include "base/job.h"
 #include "certify/base_surface.h"
-#include "certify/flat_triangle.h"
 #include "cut/cut.h"
 #include "forest/forest.h"
 #include "polygons/cut_polygons.h"
@@ -19,7 +19,15 @@ struct Deviation {
   double worst = 0;                 ///< voxels; of all
   double mean = 0;                  ///< voxels, over the vertices and quads of the base mesh
   std::vector<VertexIndex> coarse;  ///< vertices whose cells must be split, sorted
+  /// What is too far, apart: base vertices and, behind them, base quads by their middles; and
+  /// vertices of polygons that are too far from the base mesh, sorted.
+  std::vector<std::uint64_t> farPoints;
+  std::vector<VertexIndex> protruding;
 };
+
+/// The rule's tolerance at a point of the mesh, voxels.
+[[nodiscard]] double toleranceAt(const cut::CutRule& rule, const base::Affine& affine,
+                                 const openvdb::Vec3d& point);
 
 /// Measures meshes taken from cuts against their base mesh: every base vertex and the middle of
 /// every base quad against the polygons around its own clusters; the vertices and samples inside
@@ -32,9 +40,20 @@ class Certifier {
  public:
   Certifier(const forest::Base<TreeT>& base, const forest::Level& blockCells,
             const cut::CutRule& rule, base::Job& job);
+  /// From now on. Rules differ in their tolerance only.
+  void setRule(const cut::CutRule& rule) { rule_ = rule; }
 
-  /// The next cut and its mesh. `altered`: vertices of polygons that are not as the cut alone would
-  /// have them. `largest` counts samples of the meshes before, too.
+  /// World distance from a point of a mesh whose normal there is `facing` to the base mesh;
+  /// infinite if that is nowhere near.
+  [[nodiscard]] double distanceToBase(const openvdb::Vec3d& point,
+                                      const openvdb::Vec3d& facing) const {
+    return surface_.distance(point, facing, reachAt(point),
+                             toleranceAt(point) * base_.affine.voxelSize());
+  }
+
+  /// The next mesh, of a cut or of one whose vertices were joined further. `altered`: vertices of
+  /// polygons that are not as the cut alone would have them. `largest` counts samples of the meshes
+  /// before, too.
   [[nodiscard]] Deviation measure(const cut::Cut& cut, const polygons::CutMesh& made,
                                   const std::vector<VertexIndex>& altered = {});
 
@@ -44,7 +63,7 @@ class Certifier {
     // The corners of its polygon: the triangle's first, then a quad's fourth or the first again.
     std::array<VertexIndex, 4> corners;
     std::uint32_t source;  ///< the base quad its polygon comes from
-    FlatTriangle shape;
+    base::FlatTriangle shape;
   };
   // What a range of points or triangles found.
   struct Part {
@@ -52,6 +71,7 @@ class Certifier {
     double worst = 0;
     double sum = 0;
     std::vector<VertexIndex> coarse;
+    std::vector<std::uint64_t> farPoints;
   };
 
   [[nodiscard]] bool isFine(VertexIndex vertex) const {
@@ -65,11 +85,15 @@ class Certifier {
   void measureCorner(VertexIndex vertex, Part& part) const;
   [[nodiscard]] bool findAround(VertexIndex vertex, const openvdb::Vec3d& point, double enough,
                                 double& squared, std::uint32_t& nearest) const;
+  void walkNearer(const openvdb::Vec3d& point, double enough, double& squared,
+                  std::uint32_t& nearest) const;
   [[nodiscard]] float distanceAround(const VertexIndex* vertices, int count,
-                                     const openvdb::Vec3d& point, Part& part) const;
+                                     const openvdb::Vec3d& point, std::uint8_t& wandered,
+                                     Part& part) const;
   void note(const openvdb::Vec3d& point, double voxels, const VertexIndex* corners, int count,
             Part& part) const;
   [[nodiscard]] openvdb::Vec3d facing(const VertexIndex* vertices, int count) const;
+  void noteFar(std::uint64_t index, const openvdb::Vec3d& point, double voxels, Part& part) const;
   [[nodiscard]] double toleranceAt(const openvdb::Vec3d& point) const;
   [[nodiscard]] int reachAt(const openvdb::Vec3d& point) const;
   template <class Body>
@@ -77,19 +101,21 @@ class Certifier {
 
   const forest::Base<TreeT>& base_;
   BaseSurface<TreeT> surface_;
-  const cut::CutRule& rule_;
+  cut::CutRule rule_;
   base::Job& job_;
   const cut::Cut* cut_ = nullptr;
   const polygons::CutMesh* made_ = nullptr;
   std::vector<std::uint8_t> altered_;      ///< vertices that are not as the cut has them
-  std::vector<cut::ClusterRef> clusters_;  ///< of the mesh before
+  std::vector<Position> positions_;        ///< of the mesh before
   std::vector<VertexIndex> vertexOf_;      ///< of the mesh before
   std::vector<std::uint8_t> alteredKept_;  ///< of the mesh before
   std::vector<std::uint8_t> changed_;      ///< vertices that the mesh before did not have
   std::vector<std::uint8_t> touched_;      ///< these and their neighbours
   std::vector<float> vertexErrors_;        ///< of the base vertices, voxels
-  std::vector<float> quadErrors_;          ///< of the base quads, voxels
-  double largestKept_ = 0;                 ///< of the samples of polygons, over all cuts
+  /// Base vertices, then quads, for which more was looked at than what is around their clusters.
+  std::vector<std::uint8_t> wandered_;
+  std::vector<float> quadErrors_;  ///< of the base quads, voxels
+  double largestKept_ = 0;         ///< of the samples of polygons, over all cuts
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> firstAround_;  ///< of each vertex, its pieces in around_
   std::vector<std::uint32_t> around_;

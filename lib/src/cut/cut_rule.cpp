@@ -30,6 +30,12 @@ void requireRange(double value, double least, double greatest, const char* name)
 
 }  // namespace
 
+bool maySimplify(const ContourOptions& options) {
+  const ContourOptions unbounded;
+  return options.simplify && options.maxAngle >= unbounded.maxAngle &&
+         options.maxCell >= unbounded.maxCell && options.minCell <= unbounded.minCell;
+}
+
 CutRule readRule(const ContourOptions& options, const openvdb::math::Transform& transform) {
   requireRange(options.tolerance, 0, 1e6, "the tolerance");
   requireRange(options.maxAngle, 0, 180, "the largest angle");

@@ -21,6 +21,10 @@ struct CutRule {
   }
 };
 
+/// Whether the options ask for a mesh that is simplified beyond the cells: bounds on cells bound
+/// what one vertex gathers.
+[[nodiscard]] bool maySimplify(const ContourOptions& options);
+
 /// The rule that the options of a call ask for. `transform` is the meshed grid's. Throws
 /// Error(InvalidArgument) for an option out of its range.
 [[nodiscard]] CutRule readRule(const ContourOptions& options,

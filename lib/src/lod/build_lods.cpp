@@ -99,8 +99,8 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
     const double share = static_cast<double>(i + 1) / static_cast<double>(tolerances.size());
     job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
     rule.tolerance = tolerances[i];
-    certify::AdaptiveMesh adaptive =
-        certify::adapt(base, forest, rule, contour.repair ? &repair : nullptr, job);
+    certify::AdaptiveMesh adaptive = certify::adapt(
+        base, forest, rule, {contour.repair ? &repair : nullptr, cut::maySimplify(contour)}, job);
     if (i > 0 && adaptive.mesh.triangleCount() >= chain.levels.back().mesh.triangleCount()) {
       chain.stopped = "level " + std::to_string(i) + " at a tolerance of " +
                       std::to_string(tolerances[i]) + " voxels has no fewer triangles than level " +

@@ -89,9 +89,24 @@ std::vector<Cluster::Edit> Cluster::editsFor(const Pair& pair) const {
 }
 
 // Harm: the gap between the diagonals.
+// Whether an edge joins two vertices already, apart from those of one polygon.
+bool Cluster::isEdge(Local a, Local b, Local apart) const {
+  const auto& around = patch_.around(a);
+  return std::any_of(around.begin(), around.end(), [&](Local polygon) {
+    std::array<Triangle, 2> triangles;
+    const int count = polygon == apart ? 0 : trianglesOf(patch_.corners(polygon), triangles);
+    return std::any_of(triangles.begin(), triangles.begin() + count, [&](const Triangle& t) {
+      const auto& v = t.vertices;
+      return std::find(v.begin(), v.end(), a) != v.end() &&
+             std::find(v.begin(), v.end(), b) != v.end();
+    });
+  });
+}
+
 void Cluster::addTurn(Local polygon, std::vector<Edit>& edits) const {
   const Corners v = patch_.corners(polygon);
-  if (v.size() != 4 || std::none_of(v.begin(), v.end(), [&](Local i) { return canMove(i); }))
+  if (v.size() != 4 || std::none_of(v.begin(), v.end(), [&](Local i) { return canMove(i); }) ||
+      isEdge(v[1], v[3], polygon))
     return;
   const Vec3d p0 = vectorOf(patch_.point(v[0])), p1 = vectorOf(patch_.point(v[1]));
   const Vec3d across = (vectorOf(patch_.point(v[2])) - p0).cross(vectorOf(patch_.point(v[3])) - p1);

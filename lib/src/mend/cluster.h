@@ -52,6 +52,7 @@ class Cluster {
   void addFan(Local polygon, std::vector<Edit>& edits) const;
   void addMoves(Local vertex, std::vector<Edit>& edits) const;
   [[nodiscard]] Edit retreat(const Pair& pair) const;
+  [[nodiscard]] bool isEdge(Local a, Local b, Local apart) const;
   [[nodiscard]] bool canMove(Local vertex) const;
   [[nodiscard]] bool canFan(Local polygon) const;
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace tufa::certify {
+namespace tufa::base {
 
 /// A triangle taken apart for many distance questions: most points lie above its inside, where the
 /// distance is the one to its plane.
@@ -19,6 +19,7 @@ class FlatTriangle {
       inward_[i] = normal_.cross(corners_[(i + 1) % 3] - corners_[i]);
     }
   }
+  [[nodiscard]] const openvdb::Vec3d& corner(int i) const { return corners_[i]; }
   [[nodiscard]] const openvdb::Vec3d& normal() const { return normal_; }
 
   /// Whether the point lies above or below the inside of the triangle. If so, `squared` becomes the
@@ -48,4 +49,4 @@ class FlatTriangle {
   std::array<openvdb::Vec3d, 3> inward_;  ///< across each side, of any length
 };
 
-}  // namespace tufa::certify
+}  // namespace tufa::base

@@ -1,0 +1,86 @@
+#include "certify/measured.h"
+
+#include <algorithm>
+
+namespace tufa::certify {
+namespace {
+
+// The polygons that may meet others: the suspects of the base mesh that are left, and what is not
+// of the base mesh.
+std::vector<mend::PolygonIndex> suspectsOf(const polygons::CutMesh& made, const cut::Cut& cut,
+                                           const std::vector<std::uint32_t>& baseSuspects) {
+  std::vector<mend::PolygonIndex> suspects;
+  const auto look = [&](const auto& v, std::uint32_t source, std::size_t polygon) {
+    const bool coarse =
+        std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return cut.clusters[k].level != 0; });
+    if (coarse || std::binary_search(baseSuspects.begin(), baseSuspects.end(), source)) {
+      suspects.push_back(static_cast<mend::PolygonIndex>(polygon));
+    }
+  };
+  const std::size_t quads = made.mesh.quads.size();
+  for (std::size_t i = 0; i < quads; ++i) {
+    look(made.mesh.quads[i].vertices, made.quadSources[i], i);
+  }
+  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
+    look(made.mesh.triangles[i].vertices, made.triangleSources[i], quads + i);
+  }
+  return suspects;
+}
+
+// Makes small changes to what is not of the base mesh; pairs that these do not help are left.
+mend::MendReport mendCut(const Repair& repair, const cut::Cut& cut,
+                         const std::vector<mend::PolygonIndex>& suspects, Mesh& mesh,
+                         base::Job& job) {
+  mend::Source source = repair.source;
+  source.crossings = nullptr;
+  source.toTheFloor = false;
+  source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
+    std::vector<Position> points;
+    for (const VertexIndex vertex : vertices) points.push_back(mesh.positions[vertex]);
+    return points;
+  };
+  source.isFixed = [&](VertexIndex vertex) { return cut.clusters[vertex].level == 0; };
+  return mend::mend(mesh, suspects, source, job);
+}
+
+// The vertices of some polygons, sorted.
+std::vector<VertexIndex> verticesOf(const Mesh& mesh,
+                                    const std::vector<mend::PolygonIndex>& polygons) {
+  std::vector<VertexIndex> vertices;
+  for (const mend::PolygonIndex polygon : polygons) {
+    if (polygon < mesh.quads.size()) {
+      const auto& v = mesh.quads[polygon].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    } else {
+      const auto& v = mesh.triangles[polygon - mesh.quads.size()].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+template <class TreeT>
+void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured& mesh,
+                    base::Job& job) {
+  if (repair != nullptr) {
+    mesh.suspects = suspectsOf(mesh.made, mesh.cut, repair->suspects);
+    mesh.mended = mendCut(*repair, mesh.cut, mesh.suspects, mesh.made.mesh, job);
+    mesh.altered = verticesOf(mesh.made.mesh, mesh.mended.changed);
+  }
+  mesh.deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
+  std::vector<mend::PolygonIndex> polygons;
+  for (const auto& [a, b] : mesh.mended.left) {
+    polygons.push_back(a);
+    polygons.push_back(b);
+  }
+  mesh.meeting = verticesOf(mesh.made.mesh, polygons);
+}
+
+template void mendAndMeasure(Certifier<openvdb::FloatTree>&, const Repair*, Measured&, base::Job&);
+template void mendAndMeasure(Certifier<openvdb::DoubleTree>&, const Repair*, Measured&, base::Job&);
+
+}  // namespace tufa::certify

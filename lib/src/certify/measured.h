@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "certify/certificate.h"
+#include "cut/cut.h"
+#include "mend/mend.h"
+#include "polygons/cut_polygons.h"
+
+namespace tufa::certify {
+
+/// How the self-intersections of cuts are taken out.
+struct Repair {
+  std::vector<std::uint32_t> suspects;  ///< of the base mesh, see polygons::findSuspects()
+  mend::Source source;                  ///< of the base mesh
+};
+
+/// A mesh that stands for the base mesh, and what was found on it.
+struct Measured {
+  cut::Cut cut;
+  polygons::CutMesh made;
+  std::vector<mend::PolygonIndex> suspects;  ///< polygons, of which each pair that meets has one
+  mend::MendReport mended;
+  std::vector<VertexIndex> altered;  ///< vertices of the polygons that mending changed
+  Deviation deviation;
+  std::vector<VertexIndex> meeting;  ///< of polygons that still meet; sorted
+};
+
+/// Mends a mesh by small moves of what is not of the base mesh, if `repair`, and measures it.
+template <class TreeT>
+void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured& mesh,
+                    base::Job& job);
+
+}  // namespace tufa::certify

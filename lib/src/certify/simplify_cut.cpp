@@ -1,0 +1,235 @@
+#include "certify/simplify_cut.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "simplify/collapse.h"
+
+namespace tufa::certify {
+namespace {
+
+using creases::VertexSides;
+using openvdb::Vec3d;
+
+// The level of vertices that stand for several clusters: above all others, so that they are blamed
+// first.
+constexpr std::uint8_t kJoined = std::numeric_limits<std::uint8_t>::max();
+// What a vertex may move in all is tested at points only; the rest is for what lies between them.
+constexpr double kFirstShare = 0.9;
+// A vertex that was faulty gets this share of its freedom, and none after so many rounds.
+constexpr double kLess = 0.6;
+constexpr int kSoftRounds = 4;
+
+Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
+
+// The planes of the base vertices that each vertex stands for, seen from it.
+template <class TreeT>
+std::vector<simplify::PlaneSum> gatherPlanes(const forest::Base<TreeT>& base,
+                                             const Measured& mesh) {
+  std::vector<simplify::PlaneSum> planes(mesh.cut.clusters.size());
+  const auto add = [&](VertexIndex to, const Vec3d& offset, const Normal& n) {
+    const Vec3d normal(n.x, n.y, n.z);
+    if (normal.lengthSqr() > 0) planes[to].addPlane(offset, normal);
+  };
+  for (std::size_t i = 0; i < base.mesh.positions.size(); ++i) {
+    const auto vertex = static_cast<VertexIndex>(i);
+    const VertexIndex to = mesh.cut.vertexOf[i];
+    const Vec3d offset = vectorOf(base.mesh.positions[i]) - vectorOf(mesh.made.mesh.positions[to]);
+    const VertexSides::Kind kind = base.sides.kind(vertex);
+    const creases::MeetingSides sides = kind == VertexSides::Kind::Meeting
+                                            ? base.sides.sides(base.mesh, vertex)
+                                            : creases::MeetingSides();
+    for (int side = 0; side < sides.count; ++side) add(to, offset, sides.normals[side]);
+    if (sides.count > 0) continue;
+    add(to, offset, base.mesh.normals[i]);
+    if (kind < VertexSides::Kind::Meeting) continue;
+    // Several sides that could not be told apart: the vertex itself must be kept.
+    for (const Normal& axis : {Normal(1, 0, 0), Normal(0, 1, 0), Normal(0, 0, 1)}) {
+      add(to, offset, axis);
+    }
+  }
+  return planes;
+}
+
+// Points of the base mesh to hold a collapse to. At first the middle of each polygon's base quad,
+// where cells meet, and of the base vertices of each vertex the nearest one; then what was found
+// too far.
+template <class TreeT>
+class Samples {
+ public:
+  Samples(const forest::Base<TreeT>& base, const Measured& mesh) : base_(base), mesh_(mesh) {
+    const Mesh& own = mesh.made.mesh;
+    polygonOf_.resize(own.positions.size());
+    std::uint32_t polygon = 0;
+    const auto take = [&](const auto& v, std::uint32_t source) {
+      for (const VertexIndex vertex : v) polygonOf_[vertex] = polygon;
+      addMiddle(source, polygon++);
+    };
+    for (std::size_t i = 0; i < own.quads.size(); ++i) {
+      take(own.quads[i].vertices, mesh.made.quadSources[i]);
+    }
+    for (std::size_t i = 0; i < own.triangles.size(); ++i) {
+      take(own.triangles[i].vertices, mesh.made.triangleSources[i]);
+    }
+    addNearest();
+  }
+
+  /// Adds a point by its number in Deviation::farPoints.
+  void addFar(std::uint64_t number) {
+    const std::size_t vertices = base_.mesh.positions.size();
+    if (number < vertices) {
+      addVertex(static_cast<VertexIndex>(number));
+    } else {
+      const auto quad = static_cast<std::uint32_t>(number - vertices);
+      addMiddle(quad, polygonOf_[mesh_.cut.vertexOf[base_.mesh.quads[quad].vertices[0]]]);
+    }
+  }
+  [[nodiscard]] const std::vector<simplify::Sample>& all() const { return samples_; }
+
+ private:
+  void addMiddle(std::uint32_t quad, std::uint32_t polygon) {
+    const auto& v = base_.mesh.quads[quad].vertices;
+    const Vec3d middle =
+        (vectorOf(base_.mesh.positions[v[0]]) + vectorOf(base_.mesh.positions[v[2]])) * 0.5;
+    samples_.push_back({{middle[0], middle[1], middle[2]}, base_.mesh.normals[v[0]], polygon});
+  }
+  void addVertex(VertexIndex vertex) {
+    samples_.push_back({base_.mesh.positions[vertex], base_.mesh.normals[vertex],
+                        polygonOf_[mesh_.cut.vertexOf[vertex]]});
+  }
+  void addNearest() {
+    const Mesh& own = mesh_.made.mesh;
+    std::vector<VertexIndex> nearest(own.positions.size());
+    std::vector<double> least(own.positions.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < base_.mesh.positions.size(); ++i) {
+      const VertexIndex to = mesh_.cut.vertexOf[i];
+      const double squared =
+          (vectorOf(base_.mesh.positions[i]) - vectorOf(own.positions[to])).lengthSqr();
+      if (squared >= least[to]) continue;
+      least[to] = squared;
+      nearest[to] = static_cast<VertexIndex>(i);
+    }
+    for (const VertexIndex vertex : nearest) addVertex(vertex);
+  }
+
+  const forest::Base<TreeT>& base_;
+  const Measured& mesh_;
+  std::vector<std::uint32_t> polygonOf_;  // one around each vertex
+  std::vector<simplify::Sample> samples_;
+};
+
+// Marks vertices of polygons that protrude or meet, and those around base points that are too far.
+template <class TreeT>
+std::vector<std::uint8_t> findFaulty(const forest::Base<TreeT>& base, const Measured& mesh) {
+  std::vector<std::uint8_t> faulty(mesh.cut.clusters.size(), 0);
+  for (const VertexIndex vertex : mesh.deviation.protruding) faulty[vertex] = 1;
+  for (const VertexIndex vertex : mesh.meeting) faulty[vertex] = 1;
+  const std::size_t vertices = base.mesh.positions.size();
+  for (const std::uint64_t point : mesh.deviation.farPoints) {
+    if (point < vertices) {
+      faulty[mesh.cut.vertexOf[point]] = 1;
+      continue;
+    }
+    for (const VertexIndex corner : base.mesh.quads[point - vertices].vertices) {
+      faulty[mesh.cut.vertexOf[corner]] = 1;
+    }
+  }
+  return faulty;
+}
+
+// The marks and those of all neighbours, so many rings of them.
+std::vector<std::uint8_t> widen(const Mesh& mesh, std::vector<std::uint8_t> marks, int rings) {
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<std::uint8_t> wider = marks;
+    const auto look = [&](const auto& v) {
+      if (std::none_of(v.begin(), v.end(), [&](VertexIndex i) { return marks[i] != 0; })) return;
+      for (const VertexIndex i : v) wider[i] = 1;
+    };
+    for (const Quad& quad : mesh.quads) look(quad.vertices);
+    for (const Triangle& triangle : mesh.triangles) look(triangle.vertices);
+    marks = std::move(wider);
+  }
+  return marks;
+}
+
+// The mesh after a collapse of `from`, told in the terms of the base mesh.
+Measured compose(const Measured& from, const simplify::Collapsed& collapsed) {
+  Measured mesh;
+  const std::vector<VertexIndex>& vertexOf = collapsed.vertexOf;
+  mesh.cut.vertexOf.resize(from.cut.vertexOf.size());
+  for (std::size_t i = 0; i < from.cut.vertexOf.size(); ++i) {
+    mesh.cut.vertexOf[i] = vertexOf[from.cut.vertexOf[i]];
+  }
+  mesh.cut.clusters.resize(collapsed.mesh.positions.size());
+  for (std::size_t i = 0; i < vertexOf.size(); ++i) {
+    mesh.cut.clusters[vertexOf[i]] = from.cut.clusters[i];
+  }
+  for (std::size_t i = 0; i < mesh.cut.clusters.size(); ++i) {
+    if (collapsed.members[i] > 1) mesh.cut.clusters[i].level = kJoined;
+  }
+  const std::size_t quadsBefore = from.made.mesh.quads.size();
+  const auto sourceOf = [&](std::uint32_t polygon) {
+    return polygon < quadsBefore ? from.made.quadSources[polygon]
+                                 : from.made.triangleSources[polygon - quadsBefore];
+  };
+  const std::size_t quads = collapsed.mesh.quads.size();
+  for (std::size_t i = 0; i < collapsed.sources.size(); ++i) {
+    (i < quads ? mesh.made.quadSources : mesh.made.triangleSources)
+        .push_back(sourceOf(collapsed.sources[i]));
+  }
+  mesh.made.mesh = collapsed.mesh;
+  return mesh;
+}
+
+}  // namespace
+
+template <class TreeT>
+Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh,
+                     const cut::CutRule& rule, const Repair* repair, Certifier<TreeT>& certifier,
+                     base::Job& job) {
+  const std::vector<simplify::PlaneSum> planes = gatherPlanes(base, mesh);
+  Samples<TreeT> samples(base, mesh);
+  simplify::Bounds bounds;
+  bounds.distance = [&certifier](const Vec3d& point, const Vec3d& normal) {
+    return certifier.distanceToBase(point, normal);
+  };
+  for (const Position& p : mesh.made.mesh.positions) {
+    const double tolerance = toleranceAt(rule, base.affine, vectorOf(p));
+    bounds.allowed.push_back(
+        static_cast<float>(kFirstShare * std::max(0.0, tolerance) * base.affine.voxelSize()));
+  }
+  simplify::Collapsed collapsed;
+  for (int round = 1;; ++round) {
+    bounds.samples = samples.all();
+    collapsed = simplify::collapse(mesh.made.mesh, planes, bounds, job);
+    Measured result = compose(mesh, collapsed);
+    mendAndMeasure(certifier, repair, result, job);
+    for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);
+    const bool soft = round < kSoftRounds;
+    const std::vector<std::uint8_t> faulty = findFaulty(base, result);
+    // Less freedom where it is needed, and at last none in an ever wider neighbourhood.
+    const std::vector<std::uint8_t> less =
+        widen(result.made.mesh, faulty, std::max(0, round - kSoftRounds + 1));
+    const std::vector<std::uint8_t> reopened = widen(result.made.mesh, less, 2);
+    bool any = soft && !result.deviation.farPoints.empty();
+    bounds.reopened.resize(collapsed.vertexOf.size());
+    for (std::size_t i = 0; i < collapsed.vertexOf.size(); ++i) {
+      const VertexIndex vertex = collapsed.vertexOf[i];
+      bounds.reopened[i] = reopened[vertex];
+      if (less[vertex] == 0 || !(bounds.allowed[i] > 0)) continue;
+      bounds.allowed[i] = soft ? bounds.allowed[i] * static_cast<float>(kLess) : 0;
+      any = true;
+    }
+    bounds.before = &collapsed;
+    if (!any) return result;
+  }
+}
+
+template Measured simplifyCut(const forest::Base<openvdb::FloatTree>&, const Measured&,
+                              const cut::CutRule&, const Repair*, Certifier<openvdb::FloatTree>&,
+                              base::Job&);
+template Measured simplifyCut(const forest::Base<openvdb::DoubleTree>&, const Measured&,
+                              const cut::CutRule&, const Repair*, Certifier<openvdb::DoubleTree>&,
+                              base::Job&);
+
+}  // namespace tufa::certify

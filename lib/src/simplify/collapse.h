@@ -1,0 +1,56 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "base/job.h"
+#include "simplify/plane_sum.h"
+
+namespace tufa::simplify {
+
+/// A point of the surface that a mesh stands for.
+struct Sample {
+  Position point;
+  Normal normal;          ///< of the surface there
+  std::uint32_t polygon;  ///< of the mesh, near the point; quads first
+};
+
+/// A mesh with fewer vertices.
+struct Collapsed {
+  Mesh mesh;
+  std::vector<std::uint32_t> sources;  ///< polygon of the input of each polygon, quads first
+  std::vector<VertexIndex> vertexOf;   ///< for each vertex of the input
+  std::vector<std::uint32_t> members;  ///< number of input vertices of each vertex
+  std::vector<std::uint32_t> sampleTriangles;  ///< for a next collapse
+};
+
+/// What bounds a collapse.
+struct Bounds {
+  /// None may be farther from the mesh than is allowed there.
+  std::vector<Sample> samples;
+  /// For each vertex, how far the surface may move there, world length; 0: the vertex stays as it
+  /// is.
+  std::vector<float> allowed;
+  /// The distance to the surface from a point of the mesh with a normal. Asked where samples of
+  /// several sides are near.
+  std::function<double(const openvdb::Vec3d& point, const openvdb::Vec3d& normal)> distance;
+  std::size_t triangles = 0;  ///< stop at so many
+  /// A result for the same mesh and the first of the samples to go on from, or null, and which
+  /// vertices of the input are to be collapsed anew.
+  const Collapsed* before = nullptr;
+  std::vector<std::uint8_t> reopened;
+};
+
+/// Collapses edges of a mesh with normals, the one of least error first, each to the point of least
+/// squared distance to the planes of both its vertices (`planes`, each seen from its vertex).
+///
+/// Keeps the mesh a manifold of the same topology (the link condition; vertices on a boundary
+/// stay). A collapse is not made if a triangle around it would turn over or become a needle, if a
+/// sample near those triangles would be farther from them than is allowed, or the new vertex from
+/// the surface at its nearest sample. Quads of which nothing was collapsed stay quads. One thread.
+[[nodiscard]] Collapsed collapse(const Mesh& mesh, const std::vector<PlaneSum>& planes,
+                                 const Bounds& bounds, base::Job& job);
+
+}  // namespace tufa::simplify
