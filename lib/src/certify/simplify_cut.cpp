@@ -19,6 +19,8 @@ constexpr double kFirstShare = 0.9;
 // A vertex that was faulty gets this share of its freedom, and none after so many rounds.
 constexpr double kLess = 0.6;
 constexpr int kSoftRounds = 4;
+// After so many further rounds its neighbours get none either, then theirs.
+constexpr int kRoundsPerRing = 4;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
@@ -208,9 +210,9 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh,
     const bool soft = round < kSoftRounds;
     const std::vector<std::uint8_t> faulty = findFaulty(base, result);
     // Less freedom where it is needed, and at last none in an ever wider neighbourhood.
-    const std::vector<std::uint8_t> less =
-        widen(result.made.mesh, faulty, std::max(0, round - kSoftRounds + 1));
-    const std::vector<std::uint8_t> reopened = widen(result.made.mesh, less, 2);
+    const int rings = std::max(0, (round - kSoftRounds) / kRoundsPerRing);
+    const std::vector<std::uint8_t> less = widen(result.made.mesh, faulty, rings);
+    const std::vector<std::uint8_t> reopened = widen(result.made.mesh, less, 1);
     bool any = soft && !result.deviation.farPoints.empty();
     bounds.reopened.resize(collapsed.vertexOf.size());
     for (std::size_t i = 0; i < collapsed.vertexOf.size(); ++i) {
