@@ -1,0 +1,141 @@
+#include "simplify/collapse.h"
+
+#include <gtest/gtest.h>
+#include <tufa/contour.h>
+#include <tufa/shapes.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "simplify/edge_queue.h"
+#include "support/mesh_oracle.h"
+#include "support/uniform_mesh.h"
+
+namespace tufa::simplify {
+namespace {
+
+using openvdb::Vec3d;
+
+struct Problem {
+  Mesh mesh;
+  std::vector<PlaneSum> planes;
+  Bounds bounds;
+};
+
+// A uniform mesh, each vertex with its own plane, and all vertices as samples.
+Problem problemOf(Shape shape, double voxelSize, double allowed) {
+  ShapeOptions options;
+  options.voxelSize = voxelSize;
+  Problem problem;
+  problem.mesh = test::uniformMesh(*makeShape(shape, options));
+  const Mesh& mesh = problem.mesh;
+  std::vector<std::uint32_t> polygonOf(mesh.positions.size());
+  for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
+    for (const VertexIndex vertex : mesh.quads[i].vertices) polygonOf[vertex] = i;
+  }
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Normal& n = mesh.normals[i];
+    problem.planes.emplace_back().addPlane(Vec3d(0.0), Vec3d(n.x, n.y, n.z));
+    problem.bounds.samples.push_back({mesh.positions[i], n, polygonOf[i]});
+  }
+  problem.bounds.allowed.assign(mesh.positions.size(), static_cast<float>(allowed * voxelSize));
+  problem.bounds.distance = [](const Vec3d&, const Vec3d&) { return 0.0; };
+  return problem;
+}
+
+Collapsed solve(const Problem& problem) {
+  base::Job job(1, {});
+  return collapse(problem.mesh, problem.planes, problem.bounds, job);
+}
+
+TEST(PlaneSum, HasItsLeastErrorWhereThePlanesMeet) {
+  PlaneSum sum;
+  const Vec3d corner(0.3, -0.2, 0.1);
+  for (const Vec3d& normal : {Vec3d(1, 0, 0), Vec3d(0, 0.6, 0.8), Vec3d(0, -0.8, 0.6)}) {
+    sum.addPlane(corner, normal);
+  }
+  EXPECT_NEAR((sum.least() - corner).length(), 0, 2e-3);
+  EXPECT_NEAR(sum.at(corner), 0, 1e-12);
+  const Vec3d away(0.5, 0.5, -1);
+  EXPECT_NEAR(sum.at(corner + away), away.lengthSqr(), 1e-12);
+  EXPECT_NEAR(sum.seenFrom(away).at(corner - away), 0, 1e-12);
+}
+
+TEST(PlaneSum, LeavesFreeDirectionsAlone) {
+  PlaneSum sum;
+  sum.addPlane(Vec3d(0, 0, 2), Vec3d(0, 0, 1));
+  const Vec3d least = sum.least();
+  EXPECT_EQ(least[0], 0);
+  EXPECT_EQ(least[1], 0);
+  EXPECT_NEAR(least[2], 2, 1e-2);
+}
+
+TEST(EdgeQueue, GivesTheLeastFirstAndEqualOnesInTurn) {
+  EdgeQueue queue;
+  queue.push(4, {4, 0, 0, 0});
+  queue.push(1, {1, 0, 0, 0});
+  queue.push(1, {2, 0, 0, 0});
+  EdgeQueue::Entry entry{};
+  ASSERT_TRUE(queue.pop(entry));
+  EXPECT_EQ(entry.a, 1U);
+  queue.push(0, {0, 0, 0, 0});
+  for (const VertexIndex expected : {0U, 2U, 4U}) {
+    ASSERT_TRUE(queue.pop(entry));
+    EXPECT_EQ(entry.a, expected);
+  }
+  EXPECT_FALSE(queue.pop(entry));
+}
+
+TEST(Collapse, KeepsTheTopology) {
+  for (const Shape shape : {Shape::Sphere, Shape::Torus, Shape::Gyroid}) {
+    const Problem problem = problemOf(shape, 0.06, 0.2);
+    const Collapsed collapsed = solve(problem);
+    const test::MeshTopology before = test::inspect(problem.mesh),
+                             after = test::inspect(test::triangulated(collapsed.mesh));
+    EXPECT_TRUE(after.manifold() && after.closed()) << after;
+    EXPECT_EQ(after.euler(), before.euler());
+    EXPECT_EQ(after.components, before.components);
+    EXPECT_LT(collapsed.mesh.triangleCount(), problem.mesh.triangleCount() * 4 / 5);
+    ASSERT_EQ(collapsed.vertexOf.size(), problem.mesh.positions.size());
+    ASSERT_EQ(collapsed.sources.size(),
+              collapsed.mesh.quads.size() + collapsed.mesh.triangles.size());
+  }
+}
+
+TEST(Collapse, LeavesWhatMayNotMove) {
+  Problem problem = problemOf(Shape::Sphere, 0.1, 0.5);
+  std::fill(problem.bounds.allowed.begin(), problem.bounds.allowed.end(), 0.0F);
+  const Collapsed collapsed = solve(problem);
+  EXPECT_EQ(collapsed.mesh.positions, problem.mesh.positions);
+  EXPECT_EQ(collapsed.mesh.quads, problem.mesh.quads);
+}
+
+TEST(Collapse, StopsAtSoManyTriangles) {
+  Problem problem = problemOf(Shape::Sphere, 0.06, 1);
+  const std::size_t half = problem.mesh.triangleCount() / 2;
+  problem.bounds.triangles = half;
+  EXPECT_LE(solve(problem).mesh.triangleCount(), half);
+  EXPECT_GE(solve(problem).mesh.triangleCount(), half - 1);
+}
+
+TEST(Collapse, GoesOnFromAResultWhereItIsReopened) {
+  Problem problem = problemOf(Shape::Torus, 0.06, 0.3);
+  const Collapsed first = solve(problem);
+  problem.bounds.before = &first;
+  problem.bounds.reopened.assign(problem.mesh.positions.size(), 0);
+  EXPECT_EQ(solve(problem).mesh.triangleCount(), first.mesh.triangleCount());
+  // One half anew, and with less freedom.
+  for (std::size_t i = 0; i < problem.mesh.positions.size(); ++i) {
+    if (problem.mesh.positions[i].x < 0) continue;
+    problem.bounds.reopened[i] = 1;
+    problem.bounds.allowed[i] = 0;
+  }
+  const Collapsed second = solve(problem);
+  const test::MeshTopology topology = test::inspect(test::triangulated(second.mesh));
+  EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
+  EXPECT_EQ(topology.euler(), 0);
+  EXPECT_GT(second.mesh.triangleCount(), first.mesh.triangleCount());
+}
+
+}  // namespace
+}  // namespace tufa::simplify
