@@ -8,6 +8,7 @@
 #include <string>
 
 #include "creases/promote.h"
+#include "level0/lone_samples.h"
 #include "level0/with_grid.h"
 #include "polygons/suspects.h"
 #include "vertices/place_vertices.h"
@@ -108,6 +109,7 @@ mend::Source Level0<TreeT>::source(base::Job& job) const {
 
 template <class TreeT>
 void Level0<TreeT>::repair(base::Job& job) {
+  report_.movedVertices = unfoldLonePieces(mesh_, source(job));
   // Rounding moves each of two polygons.
   const double margin = 2 * kMostRounding * affine_.leastHeight();
   suspects_ = polygons::findSuspects(quads(), mesh_, margin, job);
@@ -120,7 +122,7 @@ void Level0<TreeT>::repair(base::Job& job) {
   suspects_ = std::move(all);
   report_.intersectionsFound = mended.pairsFound;
   report_.intersectionsLeft = mended.left.size();
-  report_.movedVertices = mended.movedVertices;
+  report_.movedVertices += mended.movedVertices;
   report_.turnedQuads = mended.turnedQuads;
 }
 

@@ -16,6 +16,7 @@
 #include "blocks/blocks.h"
 #include "components/topology.h"
 #include "creases/promote.h"
+#include "level0/lone_samples.h"
 #include "polygons/suspects.h"
 #include "vertices/place_vertices.h"
 
@@ -171,6 +172,33 @@ TEST(Mend, GivesTheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(one.triangles, three.triangles);
     EXPECT_EQ(one.normals, three.normals);
   }
+}
+
+TEST(LonePieces, AreTurnedTheRightWayOut) {
+  auto grid = openvdb::FloatGrid::create(1.0F);
+  for (const openvdb::Coord& at : {openvdb::Coord(4, 4, 4), openvdb::Coord(20, 3, 9)}) {
+    grid->tree().setValue(at, -0.5F);
+  }
+  ContourOptions options;
+  options.isovalue = 0;
+  options.inside = Inside::Below;
+  options.uniform = true;
+  const Mesh good = contour(*grid, options);
+  ASSERT_EQ(good.quads.size(), 12U);
+  Mesh mesh = good;
+  const mend::Source source = sourceOf(good);
+  EXPECT_EQ(level0::unfoldLonePieces(mesh, source), 0U);
+  // One of them mirrored at a plane through it.
+  std::size_t mirrored = 0;
+  for (Position& p : mesh.positions) {
+    if (p.x > 10) continue;
+    p.x = 8 - p.x;
+    ++mirrored;
+  }
+  ASSERT_EQ(mirrored, 8U);
+  EXPECT_FALSE(check(mesh).outward);
+  EXPECT_EQ(level0::unfoldLonePieces(mesh, source), 8U);
+  EXPECT_EQ(mesh.positions, good.positions);
 }
 
 // What findSuspects() promises: every pair has a suspect.

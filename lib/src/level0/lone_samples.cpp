@@ -1,0 +1,110 @@
+#include "level0/lone_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+
+namespace tufa::level0 {
+namespace {
+
+using openvdb::Vec3d;
+
+constexpr std::uint8_t kThree = 3;
+constexpr std::size_t kCorners = 8;
+constexpr std::size_t kSides = 6;
+
+Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
+
+// The quads of which all vertices have three quads.
+std::vector<std::uint32_t> findCandidates(const Mesh& mesh) {
+  std::vector<std::uint8_t> quadsAt(mesh.positions.size());
+  for (const Quad& quad : mesh.quads) {
+    for (const VertexIndex vertex : quad.vertices) {
+      quadsAt[vertex] = static_cast<std::uint8_t>(std::min<int>(quadsAt[vertex] + 1, kThree + 1));
+    }
+  }
+  std::vector<std::uint32_t> candidates;
+  for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
+    const auto& v = mesh.quads[i].vertices;
+    if (std::all_of(v.begin(), v.end(), [&](VertexIndex at) { return quadsAt[at] == kThree; })) {
+      candidates.push_back(i);
+    }
+  }
+  return candidates;
+}
+
+// Closed pieces of six quads; each in the order of the mesh.
+std::vector<std::array<std::uint32_t, kSides>> findPieces(const Mesh& mesh) {
+  const std::vector<std::uint32_t> candidates = findCandidates(mesh);
+  std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around;
+  for (const std::uint32_t quad : candidates) {
+    for (const VertexIndex vertex : mesh.quads[quad].vertices) around[vertex].push_back(quad);
+  }
+  std::vector<std::array<std::uint32_t, kSides>> pieces;
+  std::vector<std::uint32_t> piece;
+  for (const std::uint32_t first : candidates) {
+    piece = {first};
+    for (std::size_t i = 0; i < piece.size() && piece.size() <= kSides; ++i) {
+      for (const VertexIndex vertex : mesh.quads[piece[i]].vertices) {
+        for (const std::uint32_t next : around[vertex]) {
+          if (std::find(piece.begin(), piece.end(), next) == piece.end()) piece.push_back(next);
+        }
+      }
+    }
+    if (piece.size() != kSides || *std::min_element(piece.begin(), piece.end()) != first) continue;
+    std::sort(piece.begin(), piece.end());
+    std::copy(piece.begin(), piece.end(), pieces.emplace_back().begin());
+  }
+  return pieces;
+}
+
+// Six times the volume of quads whose corners are at `at(vertex)`.
+template <class At>
+double volumeOf(const Mesh& mesh, const std::array<std::uint32_t, kSides>& piece, const At& at) {
+  const Vec3d origin = at(mesh.quads[piece[0]].vertices[0]);
+  double volume = 0;
+  for (const std::uint32_t quad : piece) {
+    const auto& v = mesh.quads[quad].vertices;
+    const Vec3d p = at(v[0]) - origin, q = at(v[2]) - origin;
+    volume += p.dot((at(v[1]) - origin).cross(q)) + p.dot(q.cross(at(v[3]) - origin));
+  }
+  return volume;
+}
+
+}  // namespace
+
+std::size_t unfoldLonePieces(Mesh& mesh, const mend::Source& source) {
+  const auto pieces = findPieces(mesh);
+  std::vector<VertexIndex> vertices;
+  for (const auto& piece : pieces) {
+    for (const std::uint32_t quad : piece) {
+      const auto& v = mesh.quads[quad].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  if (vertices.empty()) return 0;
+  const std::vector<Position> havens = source.massPoints(vertices);
+  const auto havenOf = [&](VertexIndex vertex) {
+    const auto found = std::lower_bound(vertices.begin(), vertices.end(), vertex);
+    return havens[static_cast<std::size_t>(found - vertices.begin())];
+  };
+  std::size_t moved = 0;
+  for (const auto& piece : pieces) {
+    const double is =
+        volumeOf(mesh, piece, [&](VertexIndex v) { return vectorOf(mesh.positions[v]); });
+    const double box = volumeOf(mesh, piece, [&](VertexIndex v) { return vectorOf(havenOf(v)); });
+    if (is * box > 0) continue;
+    for (const std::uint32_t quad : piece) {
+      for (const VertexIndex vertex : mesh.quads[quad].vertices) {
+        mesh.positions[vertex] = havenOf(vertex);
+      }
+    }
+    moved += kCorners;
+  }
+  return moved;
+}
+
+}  // namespace tufa::level0
