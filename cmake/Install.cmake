@@ -1,28 +1,51 @@
-# The installed package: find_package(tufa) gives tufa::tufa, and with the component check, which
-# needs CGAL, tufa::check too.
+# The installed package: find_package(Tufa) gives Tufa::tufa, and with the component check Tufa::check
+# too; pkg-config has tufa and tufa-check; the command comes with manual pages and shell completion.
 
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
-set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/tufa)
+set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/Tufa)
+
+# tufa_install_library(TARGET EXPORT PKG_CONFIG_NAME)
+function(tufa_install_library target export pkg_config)
+  install(TARGETS ${target} EXPORT ${export}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(EXPORT ${export} NAMESPACE Tufa:: DESTINATION ${_package})
+  configure_file(cmake/${pkg_config}.pc.in ${pkg_config}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${pkg_config}.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()
+
+if(NOT BUILD_SHARED_LIBS)
+  set(TUFA_STATIC TRUE)
+  set(TUFA_PC_STATIC -lmeshoptimizer)
+  set(TUFA_PC_STATIC_CHECK "-lmpfr -lgmp")
+endif()
+# The file says where it is, so that the folder can be moved.
+file(RELATIVE_PATH TUFA_PC_PREFIX /p/${CMAKE_INSTALL_LIBDIR}/pkgconfig /p)
+string(REGEX REPLACE "/$" "" TUFA_PC_PREFIX "${TUFA_PC_PREFIX}")
 
 set(_headers_of_check PATTERN check.h EXCLUDE)
 if(TUFA_BUILD_CHECK)
   set(_headers_of_check "")
-  install(TARGETS tufa_check EXPORT tufaCheckTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(EXPORT tufaCheckTargets NAMESPACE tufa:: DESTINATION ${_package})
+  tufa_install_library(tufa_check TufaCheckTargets tufa-check)
 endif()
-install(TARGETS tufa EXPORT tufaTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT tufaTargets NAMESPACE tufa:: DESTINATION ${_package})
+tufa_install_library(tufa TufaTargets tufa)
 install(DIRECTORY lib/include/tufa DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${_headers_of_check})
 if(TUFA_BUILD_TOOLS)
+  file(RELATIVE_PATH _to_libraries /p/${CMAKE_INSTALL_BINDIR} /p/${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(tufa_command PROPERTIES INSTALL_RPATH "$ORIGIN/${_to_libraries}")
   install(TARGETS tufa_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY ${TUFA_PAGES}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+  install(FILES ${TUFA_PAGES}/tufa.bash RENAME tufa
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-configure_package_config_file(cmake/tufaConfig.cmake.in tufaConfig.cmake
+configure_package_config_file(cmake/TufaConfig.cmake.in TufaConfig.cmake
   INSTALL_DESTINATION ${_package})
 # Before 1.0 a minor version may change the interface.
-write_basic_package_version_file(tufaConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/tufaConfig.cmake ${PROJECT_BINARY_DIR}/tufaConfigVersion.cmake
+write_basic_package_version_file(TufaConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/TufaConfig.cmake ${PROJECT_BINARY_DIR}/TufaConfigVersion.cmake
   cmake/FindOpenVDB.cmake DESTINATION ${_package})

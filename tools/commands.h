@@ -11,6 +11,9 @@ namespace tufa::tools {
 /// What a subcommand does once the command line is read; gives the exit code.
 using Command = std::function<int()>;
 
+/// Declares the whole command: what it is, and its subcommands.
+void declareCommand(CLI::App& app, Command& chosen);
+
 // Each declares one subcommand with its options, and puts its work into `chosen` when the command
 // line names it.
 void addMakeCommand(CLI::App& app, Command& chosen);

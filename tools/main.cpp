@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 
 #include <tufa/error.h>
-#include <tufa/version.h>
 #include <exception>
 #include <new>
 #include <string>
@@ -51,25 +50,11 @@ std::string oneLine(std::string text) {
 
 }  // namespace
 
-void tufa::tools::addThreadsOption(CLI::App& app, int& threads) {
-  constexpr int kMost = 4096;
-  app.add_option("--threads", threads, "most threads, 0: all")
-      ->check(CLI::Range(0, kMost))
-      ->capture_default_str();
-}
-
 int main(int argc, char** argv) {
   installSignalHandlers();
-  CLI::App app("Watertight 2-manifold meshes from sparse OpenVDB volumes", "tufa");
-  app.set_version_flag("--version", std::string("tufa ") + tufa::version());
-  app.require_subcommand(1);
+  CLI::App app;
   Command chosen;
-  addMakeCommand(app, chosen);
-  addVoxelizeCommand(app, chosen);
-  addInfoCommand(app, chosen);
-  addMeshCommand(app, chosen);
-  addLodCommand(app, chosen);
-  addCheckCommand(app, chosen);
+  declareCommand(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

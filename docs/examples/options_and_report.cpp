@@ -32,7 +32,7 @@ int main() {
       std::cout << "  " << time.stage << ": " << time.seconds << " s\n";
     }
 
-    // The checker lives in tufa::check, which links CGAL and falls under the GPL.
+    // The checker lives in Tufa::check, which links CGAL and falls under the GPL.
     const tufa::CheckReport check = tufa::check(mesh);
     std::cout << check.components.size() << " pieces, " << check.selfIntersectingPairs.value_or(0)
               << " intersecting pairs, " << (check.watertight() ? "watertight" : "not watertight")

@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/export.h>
 #include <tufa/mesh.h>
 #include <tufa/progress.h>
 #include <cstddef>
@@ -69,7 +70,7 @@ struct CheckReport {
   double seconds = 0;  ///< wall clock
 
   /// Closed, manifold, oriented, outward, and free of invalid, collapsed and duplicate faces.
-  [[nodiscard]] bool watertight() const;
+  [[nodiscard]] TUFA_API bool watertight() const;
 };
 
 /// Options of check().
@@ -87,8 +88,8 @@ struct CheckOptions {
 /// Error only for the call itself: InvalidArgument (threads), LimitExceeded (2^32 triangles),
 /// Cancelled.
 ///
-/// Uses CGAL (GPL): lives in the target tufa::check, apart from tufa::tufa.
-[[nodiscard]] CheckReport check(const Mesh& mesh, const CheckOptions& options = {});
+/// Uses CGAL (GPL): lives in the target Tufa::check, apart from Tufa::tufa.
+[[nodiscard]] TUFA_API CheckReport check(const Mesh& mesh, const CheckOptions& options = {});
 
 /// Distances in voxels, where a voxel is the cube root of its world volume. Infinite where there
 /// are samples but nothing to measure to.
@@ -118,13 +119,14 @@ struct DistanceOptions {
 
 /// Measures how far the mesh is from the trilinear isosurface of `grid`, both ways. Throws Error as
 /// contour() does for grids that cannot be meshed.
-[[nodiscard]] DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
-                                          const DistanceOptions& options = {});
+[[nodiscard]] TUFA_API DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
+                                                   const DistanceOptions& options = {});
 
 /// The distance from each point to the nearest triangle of a mesh, in world units; infinite if the
 /// mesh has none. Of the options, `threads` and `progress` are used. Points that lie near the point
 /// before them are answered much faster.
-[[nodiscard]] std::vector<double> distancesTo(const Mesh& mesh, const std::vector<Position>& points,
-                                              const DistanceOptions& options = {});
+[[nodiscard]] TUFA_API std::vector<double> distancesTo(const Mesh& mesh,
+                                                       const std::vector<Position>& points,
+                                                       const DistanceOptions& options = {});
 
 }  // namespace tufa

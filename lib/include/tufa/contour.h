@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/export.h>
 #include <tufa/mesh.h>
 #include <tufa/octree.h>
 #include <tufa/progress.h>
@@ -138,7 +139,8 @@ struct ContourReport {
 /// Throws Error: UnsupportedGrid (other value types, frustum transforms), NonFiniteValues,
 /// InvalidArgument (isovalue not finite, an option out of its range), LimitExceeded (2^32 vertices
 /// or more), Cancelled.
-[[nodiscard]] Mesh contour(const openvdb::GridBase& grid, const ContourOptions& options = {},
-                           ContourReport* report = nullptr);
+[[nodiscard]] TUFA_API Mesh contour(const openvdb::GridBase& grid,
+                                    const ContourOptions& options = {},
+                                    ContourReport* report = nullptr);
 
 }  // namespace tufa

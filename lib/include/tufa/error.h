@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tufa/export.h>
 #include <stdexcept>
 #include <string>
 
@@ -19,7 +20,7 @@ enum class ErrorCode {
 
 /// The one exception type that Tufa throws on its own. The message says what was wrong, where, and
 /// what to do, in one line.
-class Error : public std::runtime_error {
+class TUFA_API Error : public std::runtime_error {
  public:
   /// `message` is what what() gives: one line.
   Error(ErrorCode code, const std::string& message);

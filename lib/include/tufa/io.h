@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/export.h>
 #include <tufa/mesh.h>
 #include <tufa/progress.h>
 #include <cstddef>
@@ -29,21 +30,22 @@ struct WriteOptions {
 ///
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending), LimitExceeded (more than the
 /// format can hold), Cancelled.
-void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options = {});
+TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
+                    const WriteOptions& options = {});
 
 /// Throws Error(InvalidArgument) if write() knows no format of this ending.
-void requireMeshEnding(const std::filesystem::path& path);
+TUFA_API void requireMeshEnding(const std::filesystem::path& path);
 
 /// Throws Error(UnwritableFile) if it is plain now that write() or writeGrids() could not write
 /// there: for programs that work long before they do. A full disk shows only later.
-void requireWritable(const std::filesystem::path& path);
+TUFA_API void requireWritable(const std::filesystem::path& path);
 
 /// Reads a mesh: .ply (text or binary), .obj, .stl (text or binary), .off or .glb. Polygons with
 /// more than four corners are fanned; vertices at equal positions are shared in .stl and, where
 /// normals or the like could have split them, in .glb. Of a .glb with levels of detail the finest
 /// is read. Throws Error: UnreadableFile with the place where reading failed, InvalidArgument
 /// (unknown ending).
-[[nodiscard]] Mesh readMesh(const std::filesystem::path& path);
+[[nodiscard]] TUFA_API Mesh readMesh(const std::filesystem::path& path);
 
 /// What a .vdb file says of one grid.
 struct GridInfo {
@@ -67,19 +69,19 @@ struct GridInfo {
 };
 
 /// Describes a grid.
-[[nodiscard]] GridInfo describeGrid(const openvdb::GridBase& grid);
+[[nodiscard]] TUFA_API GridInfo describeGrid(const openvdb::GridBase& grid);
 
 /// Describes every grid of a .vdb file. Throws Error(UnreadableFile).
-[[nodiscard]] std::vector<GridInfo> describeGrids(const std::filesystem::path& path);
+[[nodiscard]] TUFA_API std::vector<GridInfo> describeGrids(const std::filesystem::path& path);
 
 /// Reads one grid of a .vdb file: by name, or, without one, the first level set that can be meshed,
 /// else the first grid that can be meshed. Throws Error: UnreadableFile, UnknownGrid (the message
 /// lists the names there are), UnsupportedGrid (nothing in the file can be meshed).
-[[nodiscard]] openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
-                                              const std::optional<std::string>& name = {});
+[[nodiscard]] TUFA_API openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
+                                                       const std::optional<std::string>& name = {});
 
 /// Writes grids to a .vdb file, whole or not at all. Throws Error(UnwritableFile).
-void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
-                const std::filesystem::path& path);
+TUFA_API void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
+                         const std::filesystem::path& path);
 
 }  // namespace tufa

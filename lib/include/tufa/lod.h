@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <tufa/contour.h>
+#include <tufa/export.h>
 #include <tufa/mesh.h>
 #include <tufa/progress.h>
 #include <cstddef>
@@ -60,13 +61,14 @@ struct Camera {
 /// Makes levels of detail of the surface of `grid`: each a cut of one forest, so that the volume is
 /// read once. See contour() for what each mesh keeps, and for the errors thrown; throws
 /// Error(InvalidArgument) for options out of their range, too.
-[[nodiscard]] LodChain buildLods(const openvdb::GridBase& grid, const LodOptions& options = {},
-                                 ContourReport* report = nullptr);
+[[nodiscard]] TUFA_API LodChain buildLods(const openvdb::GridBase& grid,
+                                          const LodOptions& options = {},
+                                          ContourReport* report = nullptr);
 
 /// The coarsest level whose certified error is seen under at most `pixelError` pixels; 0 if there
 /// is none.
-[[nodiscard]] std::size_t selectLod(const LodChain& chain, const Camera& camera,
-                                    double pixelError = 1);
+[[nodiscard]] TUFA_API std::size_t selectLod(const LodChain& chain, const Camera& camera,
+                                             double pixelError = 1);
 
 /// The axis of the volume that points up. glTF's is y: a volume with z up is turned.
 enum class UpAxis {
@@ -106,7 +108,8 @@ struct LodWriteReport {
 
 /// The file of a level: `path` with braces {} in its file name replaced by the level's number, or
 /// `path` itself if it has none.
-[[nodiscard]] std::filesystem::path lodFile(const std::filesystem::path& path, std::size_t level);
+[[nodiscard]] TUFA_API std::filesystem::path lodFile(const std::filesystem::path& path,
+                                                     std::size_t level);
 
 /// Writes all levels to one .glb: nodes and meshes NAME_LOD0, NAME_LOD1, ..., of which the first
 /// has the extension MSFT_lod and alone stands in the default scene, so that programs that know
@@ -119,7 +122,7 @@ struct LodWriteReport {
 /// Each file appears whole or not at all. Throws Error: UnwritableFile, InvalidArgument (an option
 /// out of its range, one file of a format without levels), LimitExceeded (more than the format can
 /// hold, or vertices nearer to each other than single precision tells apart), Cancelled.
-void writeLods(const LodChain& chain, const std::filesystem::path& path,
-               const LodWriteOptions& options = {}, LodWriteReport* report = nullptr);
+TUFA_API void writeLods(const LodChain& chain, const std::filesystem::path& path,
+                        const LodWriteOptions& options = {}, LodWriteReport* report = nullptr);
 
 }  // namespace tufa

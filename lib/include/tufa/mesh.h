@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tufa/export.h>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -70,6 +71,6 @@ struct Mesh {
 
 /// All faces as triangles: the mesh's own first, then two for each quad, split from vertices[0] to
 /// vertices[2].
-[[nodiscard]] std::vector<Triangle> triangulate(const Mesh& mesh);
+[[nodiscard]] TUFA_API std::vector<Triangle> triangulate(const Mesh& mesh);
 
 }  // namespace tufa

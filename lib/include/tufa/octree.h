@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tufa/export.h>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -15,6 +16,6 @@ struct LeafCell {
 
 /// Whether no two leaves that touch, by a face, an edge or a corner, differ by more than one level,
 /// and no leaf holds another.
-[[nodiscard]] bool isRestricted(const std::vector<LeafCell>& leaves);
+[[nodiscard]] TUFA_API bool isRestricted(const std::vector<LeafCell>& leaves);
 
 }  // namespace tufa

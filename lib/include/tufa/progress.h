@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tufa/export.h>
 #include <functional>
 #include <string_view>
 

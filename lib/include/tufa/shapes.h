@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/export.h>
 #include <tufa/mesh.h>
 #include <tufa/progress.h>
 #include <array>
@@ -34,22 +35,23 @@ struct ShapeOptions {
 };
 
 /// The shape of that name ("sphere", "torus", ...), if there is one.
-[[nodiscard]] std::optional<Shape> shapeByName(std::string_view name);
+[[nodiscard]] TUFA_API std::optional<Shape> shapeByName(std::string_view name);
 
 /// Names of all shapes, in the order of the enum.
-[[nodiscard]] const std::array<std::string_view, 8>& shapeNames();
+[[nodiscard]] TUFA_API const std::array<std::string_view, 8>& shapeNames();
 
 /// Samples the shape on a grid of the given voxel size. Noise is a dense cube of 64^3 random
 /// samples with a border of outside samples. Throws Error(InvalidArgument) for a voxel size or half
 /// width that is not positive, or so small that the grid's coordinates overflow.
-[[nodiscard]] openvdb::FloatGrid::Ptr makeShape(Shape shape, const ShapeOptions& options = {});
+[[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr makeShape(Shape shape,
+                                                         const ShapeOptions& options = {});
 
 /// Exact signed distance from a world point to the true shape, negative inside; for Gyroid and
 /// Terrain the field that defines them, whose zero set is the shape. Throws
 /// Error(InvalidArgument) for Noise and Fog, which have no such truth.
-[[nodiscard]] double shapeDistance(Shape shape, const Position& point);
+[[nodiscard]] TUFA_API double shapeDistance(Shape shape, const Position& point);
 
 /// Points along the true creases of Box and Bracket, at most `spacing` apart; empty for the others.
-[[nodiscard]] std::vector<Position> shapeCreasePoints(Shape shape, double spacing);
+[[nodiscard]] TUFA_API std::vector<Position> shapeCreasePoints(Shape shape, double spacing);
 
 }  // namespace tufa

@@ -1,6 +1,6 @@
 #pragma once
 
-// The whole of tufa::tufa. The checker, <tufa/check.h>, is apart: it links CGAL under the GPL.
+// The whole of Tufa::tufa. The checker, <tufa/check.h>, is apart: it links CGAL under the GPL.
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/io.h>

@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/export.h>
 #include <tufa/mesh.h>
 #include <tufa/progress.h>
 
@@ -20,6 +21,7 @@ struct VoxelizeOptions {
 /// tenth of a voxel. The mesh should be closed; an open one gives an unsigned shell that OpenVDB
 /// decides the inside of. Throws Error: InvalidArgument (voxel size, half width, empty mesh),
 /// Cancelled.
-[[nodiscard]] openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options);
+[[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh,
+                                                        const VoxelizeOptions& options);
 
 }  // namespace tufa
