@@ -323,6 +323,14 @@ void addChainOptions(CLI::App& app, LodArguments& arguments) {
       ->excludes("--levels")
       ->excludes("--tolerance")
       ->excludes("--factor");
+  app.add_option("--triangles", arguments.lod.triangles,
+                 "most triangles of all levels, falling, with commas between: each level has up to "
+                 "5 % fewer")
+      ->delimiter(',')
+      ->excludes("--levels")
+      ->excludes("--tolerance")
+      ->excludes("--factor")
+      ->excludes("--tolerances");
 }
 
 void addGlbOptions(CLI::App& app, LodArguments& arguments) {

@@ -22,6 +22,10 @@ struct LodOptions {
   double factor = 4;  ///< each level's tolerance over that of the level before; above 1
   /// Tolerances of all levels in voxels, rising, in place of `levels` and `factor`.
   std::vector<double> tolerances;
+  /// Most triangles of each level, falling, in place of tolerances: each level has as many, or up
+  /// to 5 % fewer, and tells what error came of it. Level 0 has no more than the uniform mesh.
+  /// Needs edges to be collapsed: `contour.simplify`, and no bounds on cells or angles.
+  std::vector<std::size_t> triangles;
   /// The projected error, in pixels, at which a level comes in; see Lod::screenCoverage.
   double pixelError = 1;
   int screenHeight = 1080;  ///< pixels, for Lod::screenCoverage
@@ -29,8 +33,8 @@ struct LodOptions {
 
 /// One level of detail.
 struct Lod {
-  Mesh mesh;                ///< world space
-  double tolerance = 0;     ///< voxels
+  Mesh mesh;             ///< world space
+  double tolerance = 0;  ///< voxels; if triangles were asked for, the largest error that came of it
   Certificate certificate;  ///< distance to the uniform mesh of the grid
   /// Draw this level while the model's bounding sphere takes at least this share of the screen's
   /// height: below, the next level's error is no more than LodOptions::pixelError. 0 for the last.
@@ -58,9 +62,11 @@ struct Camera {
   int screenHeight = 1080;          ///< pixels
 };
 
-/// Makes levels of detail of the surface of `grid`: each a cut of one forest, so that the volume is
-/// read once. See contour() for what each mesh keeps, and for the errors thrown; throws
-/// Error(InvalidArgument) for options out of their range, too.
+/// Makes levels of detail of the surface of `grid`, which is read once: the first is the mesh of
+/// contour(), each other one comes from the one before by collapsing edges or, where
+/// `contour.simplify` and the bounds on cells rule that out, is another cut of the same forest. See
+/// contour() for what each mesh keeps, and for the errors thrown; throws Error(InvalidArgument) for
+/// options out of their range, too.
 [[nodiscard]] TUFA_API LodChain buildLods(const openvdb::GridBase& grid,
                                           const LodOptions& options = {},
                                           ContourReport* report = nullptr);

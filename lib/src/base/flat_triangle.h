@@ -1,10 +1,11 @@
 #pragma once
 
-#include <openvdb/math/Proximity.h>
+#include <openvdb/openvdb.h>
 
-#include <tufa/mesh.h>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace tufa::base {
 
@@ -27,7 +28,7 @@ class FlatTriangle {
   [[nodiscard]] bool isAbove(const openvdb::Vec3d& point, double& squared) const {
     const openvdb::Vec3d from = point - corners_[0];
     if (inward_[0].dot(from) < 0 || inward_[1].dot(point - corners_[1]) < 0 ||
-        inward_[2].dot(from) < 0 || normal_.lengthSqr() < 0.5) {
+        inward_[2].dot(point - corners_[2]) < 0 || normal_.lengthSqr() < 0.5) {
       return false;
     }
     const double height = normal_.dot(from);
@@ -36,11 +37,19 @@ class FlatTriangle {
   }
   /// Squared distance of the point.
   [[nodiscard]] double squaredDistance(const openvdb::Vec3d& point) const {
-    openvdb::Vec3d weights;
-    return (openvdb::math::closestPointOnTriangleToPoint(corners_[0], corners_[1], corners_[2],
-                                                         point, weights) -
-            point)
-        .lengthSqr();
+    double squared = 0;
+    if (isAbove(point, squared)) return squared;
+    // The nearest point lies on a side that the point is beyond.
+    squared = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+      const openvdb::Vec3d from = point - corners_[i];
+      if (inward_[i].dot(from) > 0) continue;
+      const openvdb::Vec3d side = corners_[(i + 1) % 3] - corners_[i];
+      const double length = side.lengthSqr();
+      const double share = length > 0 ? std::clamp(side.dot(from) / length, 0.0, 1.0) : 0.0;
+      squared = std::min(squared, (from - side * share).lengthSqr());
+    }
+    return squared;
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "certify/adapt.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "certify/simplify_cut.h"
@@ -10,6 +11,13 @@ namespace {
 
 // A mesh that will be simplified is cut at this share of the tolerance.
 constexpr double kCutShare = 0.7;
+// One that is to have so many triangles is cut with so many times as many, at a tolerance found in
+// so many steps from a first one, voxels. Collapsing begins with a share of it, or the least one.
+constexpr double kLeastCut = 2, kMostCut = 4;
+constexpr int kMostSteps = 12;
+constexpr double kFirstTolerance = 0.1;
+constexpr double kFirstShare = 0.25;
+constexpr double kLeastTolerance = 0.01;
 
 // Forbids the cells of these vertices. Returns whether any could be split.
 bool splitCells(const std::vector<VertexIndex>& vertices, const cut::Cut& cut, int minLevel,
@@ -95,20 +103,35 @@ Measured cutAndMeasure(const forest::Base<TreeT>& base, const forest::Forest& fo
   }
 }
 
-}  // namespace
+// The tolerance of a cut of between two and four times so many triangles, found on the errors that
+// the forest has stored; 0 if all cells together have no more.
+double toleranceFor(std::size_t triangles, const forest::Forest& forest,
+                    const components::Topology& topology, cut::CutRule rule, base::Job& job) {
+  const cut::CellFlags none(forest);
+  const auto wanted = static_cast<double>(triangles);
+  // A closed mesh has two triangles for each vertex.
+  if (2.0 * static_cast<double>(topology.vertexCount) <= kLeastCut * wanted) return 0;
+  double low = 0, high = 0;
+  rule.tolerance = kFirstTolerance;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const cut::CellFlags merged = cut::mergeCells(forest, topology, rule, none, job);
+    const auto found =
+        2.0 * static_cast<double>(cut::makeCut(forest, topology, merged, job).clusters.size());
+    if (found >= kLeastCut * wanted && found <= kMostCut * wanted) break;
+    (found > kLeastCut * wanted ? low : high) = rule.tolerance;
+    // On curved surfaces the number goes with the inverse of the tolerance.
+    const double guess = rule.tolerance * found / (std::sqrt(kLeastCut * kMostCut) * wanted);
+    const bool between = guess > low && (high == 0 || guess < high);
+    rule.tolerance = between ? guess : (high > 0 ? 0.5 * (low + high) : 2 * low);
+  }
+  return rule.tolerance;
+}
 
 template <class TreeT>
-AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                   const cut::CutRule& rule, const AdaptOptions& options, base::Job& job) {
-  AdaptiveMesh adaptive;
-  cut::CutRule cutRule = rule;
-  if (options.simplify) cutRule.tolerance *= kCutShare;
-  Certifier<TreeT> certifier(base, forest.levels[0], cutRule, job);
-  Measured mesh = cutAndMeasure(base, forest, cutRule, options.repair, certifier, adaptive, job);
-  if (options.simplify) {
-    certifier.setRule(rule);
-    mesh = simplifyCut(base, mesh, rule, options.repair, certifier, job);
-  }
+AdaptiveMesh finish(const forest::Base<TreeT>& base, const forest::Forest& forest,
+                    const cut::CutRule& rule, Measured mesh, AdaptiveMesh adaptive,
+                    base::Job& job) {
+  adaptive.tolerance = rule.tolerance;
   adaptive.largestError = mesh.deviation.largest;
   adaptive.meanError = mesh.deviation.mean;
   if (!mesh.deviation.coarse.empty() || !mesh.deviation.farPoints.empty()) {
@@ -125,6 +148,40 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
                             mesh.made.triangleSources.end());
   adaptive.mesh = std::move(mesh.made.mesh);
   return adaptive;
+}
+
+}  // namespace
+
+template <class TreeT>
+AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
+                   const cut::CutRule& rule, const AdaptOptions& options, base::Job& job,
+                   Measured* kept) {
+  AdaptiveMesh adaptive;
+  cut::CutRule cutRule = rule, last = rule;
+  if (options.simplify) cutRule.tolerance *= kCutShare;
+  if (options.simplify && options.triangles > 0) {
+    cutRule.tolerance = toleranceFor(options.triangles, forest, base.topology, rule, job);
+    last.tolerance = std::max(kFirstShare * cutRule.tolerance, kLeastTolerance);
+  }
+  Certifier<TreeT> certifier(base, forest.levels[0], cutRule, job);
+  Measured mesh = cutAndMeasure(base, forest, cutRule, options.repair, certifier, adaptive, job);
+  if (options.simplify) {
+    mesh = simplifyCut(base, mesh, last, options.triangles, options.repair, certifier, job);
+  }
+  if (kept != nullptr) *kept = mesh;
+  return finish(base, forest, last, std::move(mesh), std::move(adaptive), job);
+}
+
+template <class TreeT>
+AdaptiveMesh coarsen(const forest::Base<TreeT>& base, const forest::Forest& forest,
+                     const cut::CutRule& rule, const AdaptOptions& options, base::Job& job,
+                     Measured& kept) {
+  AdaptiveMesh adaptive;
+  cut::CutRule last = rule;
+  Certifier<TreeT> certifier(base, forest.levels[0], last, job);
+  kept = simplifyCut(base, kept, last, options.triangles, options.repair, certifier, job);
+  adaptive.rounds = 1;
+  return finish(base, forest, last, kept, std::move(adaptive), job);
 }
 
 Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves) {
@@ -144,8 +201,12 @@ Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLea
 }
 
 template AdaptiveMesh adapt(const forest::Base<openvdb::FloatTree>&, const forest::Forest&,
-                            const cut::CutRule&, const AdaptOptions&, base::Job&);
+                            const cut::CutRule&, const AdaptOptions&, base::Job&, Measured*);
+template AdaptiveMesh coarsen(const forest::Base<openvdb::FloatTree>&, const forest::Forest&,
+                              const cut::CutRule&, const AdaptOptions&, base::Job&, Measured&);
 template AdaptiveMesh adapt(const forest::Base<openvdb::DoubleTree>&, const forest::Forest&,
-                            const cut::CutRule&, const AdaptOptions&, base::Job&);
+                            const cut::CutRule&, const AdaptOptions&, base::Job&, Measured*);
+template AdaptiveMesh coarsen(const forest::Base<openvdb::DoubleTree>&, const forest::Forest&,
+                              const cut::CutRule&, const AdaptOptions&, base::Job&, Measured&);
 
 }  // namespace tufa::certify

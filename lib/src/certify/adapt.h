@@ -12,6 +12,9 @@ namespace tufa::certify {
 struct AdaptOptions {
   const Repair* repair = nullptr;  ///< take self-intersections out; null: leave them
   bool simplify = false;           ///< collapse edges of the cut's mesh, see simplifyCut()
+  /// If not 0 and edges are collapsed: down to so many triangles, and the tolerance is what comes
+  /// of it.
+  std::size_t triangles = 0;
 };
 
 /// The coarsest mesh found that keeps a rule, and how far it is from the base mesh.
@@ -25,15 +28,24 @@ struct AdaptiveMesh {
   double meanError = 0;                      ///< voxels
   int rounds = 0;                            ///< meshes made and measured
   mend::MendReport mended;                   ///< of the last round
+  double tolerance = 0;                      ///< voxels; that it was collapsed with
 };
 
 /// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the
 /// tolerance or meets itself, and starts again until there are none. Small changes are tried before
-/// a cell is split because of polygons that meet.
+/// a cell is split because of polygons that meet. `kept`, if not null, becomes what coarsen() goes
+/// on from.
 template <class TreeT>
 [[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
                                  const cut::CutRule& rule, const AdaptOptions& options,
-                                 base::Job& job);
+                                 base::Job& job, Measured* kept = nullptr);
+
+/// Collapses edges of a mesh that keeps a finer rule until this one, or the number of triangles,
+/// allows no more. `kept` is that mesh and becomes the new one. The result tells no leaves.
+template <class TreeT>
+[[nodiscard]] AdaptiveMesh coarsen(const forest::Base<TreeT>& base, const forest::Forest& forest,
+                                   const cut::CutRule& rule, const AdaptOptions& options,
+                                   base::Job& job, Measured& kept);
 
 /// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if
 /// they are to be kept.

@@ -1,11 +1,10 @@
 #include "certify/base_surface.h"
 
-#include <openvdb/math/Proximity.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/bits.h"
+#include "base/flat_triangle.h"
 
 namespace tufa::certify {
 
@@ -134,11 +133,8 @@ double BaseSurface<TreeT>::distanceToQuad(const Vec3d& point, std::size_t quad) 
   const Vec3d p[4] = {vectorOf(base_.mesh.positions[v[0]]), vectorOf(base_.mesh.positions[v[1]]),
                       vectorOf(base_.mesh.positions[v[2]]), vectorOf(base_.mesh.positions[v[3]])};
   double best = std::numeric_limits<double>::infinity();
-  Vec3d weights;
   for (int i = 1; i <= 2; ++i) {
-    const Vec3d foot =
-        openvdb::math::closestPointOnTriangleToPoint(p[0], p[i], p[i + 1], point, weights);
-    best = std::min(best, (foot - point).lengthSqr());
+    best = std::min(best, base::FlatTriangle(p[0], p[i], p[i + 1]).squaredDistance(point));
   }
   return std::sqrt(best);
 }

@@ -320,8 +320,8 @@ double Certifier<TreeT>::toleranceAt(const Vec3d& point) const {
 }
 
 template <class TreeT>
-int Certifier<TreeT>::reachAt(const Vec3d& point) const {
-  return 3 + static_cast<int>(std::min(kLongestReach, toleranceAt(point)));
+int Certifier<TreeT>::reachOf(double voxels) {
+  return 3 + static_cast<int>(std::min(kLongestReach, voxels));
 }
 
 // Sums up in order, so that the mean is the same for any number of threads.

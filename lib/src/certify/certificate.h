@@ -44,11 +44,10 @@ class Certifier {
   void setRule(const cut::CutRule& rule) { rule_ = rule; }
 
   /// World distance from a point of a mesh whose normal there is `facing` to the base mesh;
-  /// infinite if that is nowhere near.
-  [[nodiscard]] double distanceToBase(const openvdb::Vec3d& point,
-                                      const openvdb::Vec3d& facing) const {
-    return surface_.distance(point, facing, reachAt(point),
-                             toleranceAt(point) * base_.affine.voxelSize());
+  /// infinite if that is nowhere near. No nearer place is looked for than one nearer than `enough`.
+  [[nodiscard]] double distanceToBase(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
+                                      double enough) const {
+    return surface_.distance(point, facing, reachOf(enough / base_.affine.voxelSize()), enough);
   }
 
   /// The next mesh, of a cut or of one whose vertices were joined further. `altered`: vertices of
@@ -95,7 +94,11 @@ class Certifier {
   [[nodiscard]] openvdb::Vec3d facing(const VertexIndex* vertices, int count) const;
   void noteFar(std::uint64_t index, const openvdb::Vec3d& point, double voxels, Part& part) const;
   [[nodiscard]] double toleranceAt(const openvdb::Vec3d& point) const;
-  [[nodiscard]] int reachAt(const openvdb::Vec3d& point) const;
+  [[nodiscard]] double distanceToBase(const openvdb::Vec3d& point,
+                                      const openvdb::Vec3d& facing) const {
+    return distanceToBase(point, facing, toleranceAt(point) * base_.affine.voxelSize());
+  }
+  [[nodiscard]] static int reachOf(double voxels);
   template <class Body>
   void forChunks(std::size_t count, const Body& body, Deviation& total, double& sum);
 

@@ -27,6 +27,25 @@ std::vector<mend::PolygonIndex> suspectsOf(const polygons::CutMesh& made, const 
   return suspects;
 }
 
+// Those of the polygons that have a marked vertex; all without marks.
+std::vector<mend::PolygonIndex> withMarks(const Mesh& mesh,
+                                          const std::vector<mend::PolygonIndex>& polygons,
+                                          const std::vector<std::uint8_t>& marks) {
+  if (marks.empty()) return polygons;
+  std::vector<mend::PolygonIndex> some;
+  const auto look = [&](const auto& v, mend::PolygonIndex polygon) {
+    if (std::any_of(v.begin(), v.end(), [&](VertexIndex i) { return marks[i] != 0; })) {
+      some.push_back(polygon);
+    }
+  };
+  for (const mend::PolygonIndex polygon : polygons) {
+    polygon < mesh.quads.size()
+        ? look(mesh.quads[polygon].vertices, polygon)
+        : look(mesh.triangles[polygon - mesh.quads.size()].vertices, polygon);
+  }
+  return some;
+}
+
 // Makes small changes to what is not of the base mesh; pairs that these do not help are left.
 mend::MendReport mendCut(const Repair& repair, const cut::Cut& cut,
                          const std::vector<mend::PolygonIndex>& suspects, Mesh& mesh,
@@ -65,10 +84,11 @@ std::vector<VertexIndex> verticesOf(const Mesh& mesh,
 
 template <class TreeT>
 void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured& mesh,
-                    base::Job& job) {
+                    base::Job& job, const std::vector<std::uint8_t>& fresh) {
   if (repair != nullptr) {
     mesh.suspects = suspectsOf(mesh.made, mesh.cut, repair->suspects);
-    mesh.mended = mendCut(*repair, mesh.cut, mesh.suspects, mesh.made.mesh, job);
+    mesh.mended = mendCut(*repair, mesh.cut, withMarks(mesh.made.mesh, mesh.suspects, fresh),
+                          mesh.made.mesh, job);
     mesh.altered = verticesOf(mesh.made.mesh, mesh.mended.changed);
   }
   mesh.deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
@@ -80,7 +100,9 @@ void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured&
   mesh.meeting = verticesOf(mesh.made.mesh, polygons);
 }
 
-template void mendAndMeasure(Certifier<openvdb::FloatTree>&, const Repair*, Measured&, base::Job&);
-template void mendAndMeasure(Certifier<openvdb::DoubleTree>&, const Repair*, Measured&, base::Job&);
+template void mendAndMeasure(Certifier<openvdb::FloatTree>&, const Repair*, Measured&, base::Job&,
+                             const std::vector<std::uint8_t>&);
+template void mendAndMeasure(Certifier<openvdb::DoubleTree>&, const Repair*, Measured&, base::Job&,
+                             const std::vector<std::uint8_t>&);
 
 }  // namespace tufa::certify

@@ -27,8 +27,10 @@ struct Measured {
 };
 
 /// Mends a mesh by small moves of what is not of the base mesh, if `repair`, and measures it.
+/// `fresh`: for each vertex, whether something around it is not as in a mesh that had no pairs that
+/// meet; empty: all.
 template <class TreeT>
 void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured& mesh,
-                    base::Job& job);
+                    base::Job& job, const std::vector<std::uint8_t>& fresh = {});
 
 }  // namespace tufa::certify

@@ -16,11 +16,13 @@ using openvdb::Vec3d;
 constexpr std::uint8_t kJoined = std::numeric_limits<std::uint8_t>::max();
 // What a vertex may move in all is tested at points only; the rest is for what lies between them.
 constexpr double kFirstShare = 0.9;
-// A vertex that was faulty gets this share of its freedom, and none after so many rounds.
+// A vertex that was faulty gets this share of its freedom. After so many rounds nothing is
+// collapsed anew, and what made it faulty is undone.
 constexpr double kLess = 0.6;
-constexpr int kSoftRounds = 4;
-// After so many further rounds its neighbours get none either, then theirs.
+constexpr int kSoftRounds = 5;
+// After so many further rounds its neighbours are undone, too, then theirs, at most so far at once.
 constexpr int kRoundsPerRing = 4;
+constexpr int kMostRings = 8;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
@@ -120,12 +122,17 @@ class Samples {
   std::vector<simplify::Sample> samples_;
 };
 
-// Marks vertices of polygons that protrude or meet, and those around base points that are too far.
+// Marks vertices of polygons that protrude or meet and those around base points that are too far.
+// Of the latter, samples take care while that is `soft`; and where there is to be a number of
+// triangles, nothing is too far after that.
 template <class TreeT>
-std::vector<std::uint8_t> findFaulty(const forest::Base<TreeT>& base, const Measured& mesh) {
+std::vector<std::uint8_t> findFaulty(const forest::Base<TreeT>& base, const Measured& mesh,
+                                     bool soft, bool counted) {
   std::vector<std::uint8_t> faulty(mesh.cut.clusters.size(), 0);
-  for (const VertexIndex vertex : mesh.deviation.protruding) faulty[vertex] = 1;
   for (const VertexIndex vertex : mesh.meeting) faulty[vertex] = 1;
+  if (!soft && counted) return faulty;
+  for (const VertexIndex vertex : mesh.deviation.protruding) faulty[vertex] = 1;
+  if (soft) return faulty;
   const std::size_t vertices = base.mesh.positions.size();
   for (const std::uint64_t point : mesh.deviation.farPoints) {
     if (point < vertices) {
@@ -152,6 +159,30 @@ std::vector<std::uint8_t> widen(const Mesh& mesh, std::vector<std::uint8_t> mark
     marks = std::move(wider);
   }
   return marks;
+}
+
+// Marks the later half of the collapses behind each faulty vertex and, so many rings wide, its
+// neighbours; as many rings as it takes. False if there are no such collapses.
+bool undo(const simplify::Collapsed& collapsed, const Mesh& mesh, std::vector<std::uint8_t> faulty,
+          int rings, std::vector<std::uint8_t>& undone) {
+  undone.assign(collapsed.steps.size(), 0);
+  faulty = widen(mesh, std::move(faulty), rings);
+  for (int wider = 0; wider < kMostRings; ++wider, faulty = widen(mesh, std::move(faulty), 1)) {
+    bool any = false;
+    std::vector<std::uint32_t> left(collapsed.members.size());
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      left[i] = faulty[i] != 0 ? collapsed.members[i] / 2 : 0;
+    }
+    for (std::size_t i = collapsed.steps.size(); i-- > 0;) {
+      std::uint32_t& count = left[collapsed.vertexOf[collapsed.steps[i].keep]];
+      if (count == 0) continue;
+      --count;
+      undone[i] = 1;
+      any = true;
+    }
+    if (any) return true;
+  }
+  return false;
 }
 
 // The mesh after a collapse of `from`, told in the terms of the base mesh.
@@ -183,44 +214,67 @@ Measured compose(const Measured& from, const simplify::Collapsed& collapsed) {
   return mesh;
 }
 
+// Marks the vertices around which something is not as in the collapse before, and those that could
+// be, or were not, mended there.
+std::vector<std::uint8_t> findFresh(const simplify::Collapsed& before, const Measured& was,
+                                    const simplify::Collapsed& now) {
+  std::vector<std::uint8_t> mended(before.members.size(), 0), fresh(now.members.size(), 0);
+  for (const VertexIndex vertex : was.altered) mended[vertex] = 1;
+  for (const VertexIndex vertex : was.meeting) mended[vertex] = 1;
+  for (std::size_t i = 0; i < now.vertexOf.size(); ++i) {
+    const VertexIndex from = before.vertexOf[i], to = now.vertexOf[i];
+    if (mended[from] != 0 || before.members[from] != now.members[to] ||
+        !(before.mesh.positions[from] == now.mesh.positions[to])) {
+      fresh[to] = 1;
+    }
+  }
+  return fresh;
+}
+
 }  // namespace
 
 template <class TreeT>
-Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh,
-                     const cut::CutRule& rule, const Repair* repair, Certifier<TreeT>& certifier,
+Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut::CutRule& rule,
+                     std::size_t triangles, const Repair* repair, Certifier<TreeT>& certifier,
                      base::Job& job) {
   const std::vector<simplify::PlaneSum> planes = gatherPlanes(base, mesh);
   Samples<TreeT> samples(base, mesh);
   simplify::Bounds bounds;
-  bounds.distance = [&certifier](const Vec3d& point, const Vec3d& normal) {
-    return certifier.distanceToBase(point, normal);
+  bounds.distance = [&certifier](const Vec3d& point, const Vec3d& normal, double enough) {
+    return certifier.distanceToBase(point, normal, enough);
   };
+  bounds.triangles = triangles;
+  const double tolerance = rule.tolerance;
   for (const Position& p : mesh.made.mesh.positions) {
-    const double tolerance = toleranceAt(rule, base.affine, vectorOf(p));
-    bounds.allowed.push_back(
-        static_cast<float>(kFirstShare * std::max(0.0, tolerance) * base.affine.voxelSize()));
+    const double least = std::max(0.0, toleranceAt(rule, base.affine, vectorOf(p)));
+    bounds.allowed.push_back(static_cast<float>(kFirstShare * least * base.affine.voxelSize()));
   }
   simplify::Collapsed collapsed;
+  Measured result;
   for (int round = 1;; ++round) {
     bounds.samples = samples.all();
-    collapsed = simplify::collapse(mesh.made.mesh, planes, bounds, job);
-    Measured result = compose(mesh, collapsed);
-    mendAndMeasure(certifier, repair, result, job);
+    simplify::Collapsed next = simplify::collapse(mesh.made.mesh, planes, bounds, job);
+    const std::vector<std::uint8_t> fresh =
+        round == 1 ? std::vector<std::uint8_t>() : findFresh(collapsed, result, next);
+    collapsed = std::move(next);
+    rule.tolerance = tolerance * collapsed.looseness;
+    certifier.setRule(rule);
+    result = compose(mesh, collapsed);
+    mendAndMeasure(certifier, repair, result, job, fresh);
     for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);
     const bool soft = round < kSoftRounds;
-    const std::vector<std::uint8_t> faulty = findFaulty(base, result);
-    // Less freedom where it is needed, and at last none in an ever wider neighbourhood.
-    const int rings = std::max(0, (round - kSoftRounds) / kRoundsPerRing);
-    const std::vector<std::uint8_t> less = widen(result.made.mesh, faulty, rings);
-    const std::vector<std::uint8_t> reopened = widen(result.made.mesh, less, 1);
+    const std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, triangles > 0);
     bool any = soft && !result.deviation.farPoints.empty();
-    bounds.reopened.resize(collapsed.vertexOf.size());
-    for (std::size_t i = 0; i < collapsed.vertexOf.size(); ++i) {
-      const VertexIndex vertex = collapsed.vertexOf[i];
-      bounds.reopened[i] = reopened[vertex];
-      if (less[vertex] == 0 || !(bounds.allowed[i] > 0)) continue;
-      bounds.allowed[i] = soft ? bounds.allowed[i] * static_cast<float>(kLess) : 0;
-      any = true;
+    if (soft) {
+      for (std::size_t i = 0; i < collapsed.vertexOf.size(); ++i) {
+        if (faulty[collapsed.vertexOf[i]] == 0) continue;
+        bounds.allowed[i] *= static_cast<float>(kLess);
+        any = true;
+      }
+    } else {
+      bounds.onlyRepeat = true;
+      any = undo(collapsed, result.made.mesh, faulty, (round - kSoftRounds) / kRoundsPerRing,
+                 bounds.undone);
     }
     bounds.before = &collapsed;
     if (!any) return result;
@@ -228,10 +282,10 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh,
 }
 
 template Measured simplifyCut(const forest::Base<openvdb::FloatTree>&, const Measured&,
-                              const cut::CutRule&, const Repair*, Certifier<openvdb::FloatTree>&,
-                              base::Job&);
+                              cut::CutRule&, std::size_t, const Repair*,
+                              Certifier<openvdb::FloatTree>&, base::Job&);
 template Measured simplifyCut(const forest::Base<openvdb::DoubleTree>&, const Measured&,
-                              const cut::CutRule&, const Repair*, Certifier<openvdb::DoubleTree>&,
-                              base::Job&);
+                              cut::CutRule&, std::size_t, const Repair*,
+                              Certifier<openvdb::DoubleTree>&, base::Job&);
 
 }  // namespace tufa::certify

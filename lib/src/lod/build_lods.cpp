@@ -25,31 +25,69 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::vector<double> tolerancesOf(const LodOptions& options) {
-  std::vector<double> tolerances = options.tolerances;
-  if (tolerances.empty()) {
+// What a level must keep: one or the other.
+struct Target {
+  double tolerance = 0;
+  std::size_t triangles = 0;  ///< 0: none
+};
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::InvalidArgument, why); }
+
+std::vector<Target> budgetsOf(const LodOptions& options) {
+  if (!options.tolerances.empty()) refuse("tolerances and triangles exclude each other");
+  if (!cut::maySimplify(options.contour)) {
+    refuse(
+        "numbers of triangles are met by collapsing edges: not without simplifying, or with "
+        "bounds on angles or cells");
+  }
+  std::vector<Target> targets;
+  for (std::size_t i = 0; i < options.triangles.size(); ++i) {
+    if (options.triangles[i] < 4) refuse("a level needs at least 4 triangles");
+    if (i > 0 && options.triangles[i] >= options.triangles[i - 1]) {
+      refuse("numbers of triangles must fall from level to level");
+    }
+    targets.push_back({options.contour.tolerance, options.triangles[i]});
+  }
+  return targets;
+}
+
+std::vector<Target> targetsOf(const LodOptions& options) {
+  if (!options.triangles.empty()) return budgetsOf(options);
+  std::vector<Target> targets;
+  for (const double tolerance : options.tolerances) targets.push_back({tolerance});
+  if (targets.empty()) {
     if (options.levels < 1) {
-      throw Error(ErrorCode::InvalidArgument,
-                  "a chain needs at least 1 level, not " + std::to_string(options.levels));
+      refuse("a chain needs at least 1 level, not " + std::to_string(options.levels));
     }
     if (!(options.factor > 1 && std::isfinite(options.factor))) {
-      throw Error(ErrorCode::InvalidArgument,
-                  "the factor between the tolerances of two levels must be above 1");
+      refuse("the factor between the tolerances of two levels must be above 1");
     }
     double tolerance = options.contour.tolerance;
     for (int i = 0; i < options.levels; ++i, tolerance *= options.factor) {
-      tolerances.push_back(tolerance);
+      targets.push_back({tolerance});
     }
   }
-  for (std::size_t i = 0; i < tolerances.size(); ++i) {
-    if (!(std::isfinite(tolerances[i]) && tolerances[i] >= 0)) {
-      throw Error(ErrorCode::InvalidArgument, "tolerances must be finite and not negative");
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (!(std::isfinite(targets[i].tolerance) && targets[i].tolerance >= 0)) {
+      refuse("tolerances must be finite and not negative");
     }
-    if (i > 0 && !(tolerances[i] > tolerances[i - 1])) {
-      throw Error(ErrorCode::InvalidArgument, "tolerances must rise from level to level");
+    if (i > 0 && !(targets[i].tolerance > targets[i - 1].tolerance)) {
+      refuse("tolerances must rise from level to level");
     }
   }
-  return tolerances;
+  return targets;
+}
+
+// Why a level is no coarser, or not as coarse as asked for.
+std::string stopOf(std::size_t level, const Target& target, std::size_t triangles) {
+  const std::string because = ": the surface's topology allows no coarser mesh";
+  if (target.triangles > 0) {
+    return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
+           " triangles but " + std::to_string(triangles) + because;
+  }
+  return "level " + std::to_string(level) + " at a tolerance of " +
+         std::to_string(target.tolerance) + " voxels has no fewer triangles than level " +
+         std::to_string(level - 1) + because;
 }
 
 void setBounds(LodChain& chain) {
@@ -79,7 +117,7 @@ template <class TreeT>
 LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
                     ContourReport& report, base::Job& job) {
   const Clock::time_point start = Clock::now();
-  const std::vector<double> tolerances = tolerancesOf(options);
+  const std::vector<Target> targets = targetsOf(options);
   ContourOptions contour = options.contour;
   contour.uniform = false;
   cut::CutRule rule = cut::readRule(contour, grid.transform());
@@ -94,22 +132,29 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
   const certify::Repair repair{level0.suspects(), level0.source(job)};
   chain.sharedSeconds = secondsSince(start);
 
-  for (std::size_t i = 0; i < tolerances.size(); ++i) {
+  const bool collapses = cut::maySimplify(contour);
+  certify::Measured kept;
+  for (std::size_t i = 0; i < targets.size() && chain.stopped.empty(); ++i) {
     const Clock::time_point begin = Clock::now();
-    const double share = static_cast<double>(i + 1) / static_cast<double>(tolerances.size());
+    const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
     job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
-    rule.tolerance = tolerances[i];
-    certify::AdaptiveMesh adaptive = certify::adapt(
-        base, forest, rule, {contour.repair ? &repair : nullptr, cut::maySimplify(contour)}, job);
-    if (i > 0 && adaptive.mesh.triangleCount() >= chain.levels.back().mesh.triangleCount()) {
-      chain.stopped = "level " + std::to_string(i) + " at a tolerance of " +
-                      std::to_string(tolerances[i]) + " voxels has no fewer triangles than level " +
-                      std::to_string(i - 1) + ": the surface's topology allows no coarser mesh";
-      break;
+    const Target& target = targets[i];
+    const certify::AdaptOptions how{contour.repair ? &repair : nullptr, collapses,
+                                    target.triangles};
+    rule.tolerance = target.triangles > 0 && i > 0 ? rule.tolerance : target.tolerance;
+    certify::AdaptiveMesh adaptive = i > 0 && collapses
+                                         ? coarsen(base, forest, rule, how, job, kept)
+                                         : adapt(base, forest, rule, how, job, &kept);
+    rule.tolerance = adaptive.tolerance;
+    const std::size_t triangles = adaptive.mesh.triangleCount();
+    const bool coarser = i == 0 || triangles < chain.levels.back().mesh.triangleCount();
+    if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
+      chain.stopped = stopOf(i, target, triangles);
     }
+    if (!coarser) break;
     Lod lod;
-    lod.tolerance = tolerances[i];
     lod.certificate = certify::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves);
+    lod.tolerance = target.triangles > 0 ? lod.certificate.maxErrorVoxels : target.tolerance;
     lod.mesh = std::move(adaptive.mesh);
     const level0::Origins origins{std::move(adaptive.baseVertices), std::move(adaptive.baseQuads)};
     level0::finishMesh(level0, contour, origins, adaptive.suspects, lod.mesh, report, job);

@@ -4,11 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <tuple>
 
-#include "base/flat_triangle.h"
+#include "simplify/edge_mesh.h"
 #include "simplify/edge_queue.h"
+#include "simplify/ring.h"
 
 namespace tufa::simplify {
 namespace {
@@ -16,82 +15,93 @@ namespace {
 using base::FlatTriangle;
 using openvdb::Vec3d;
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
 // Weight of an edge's squared length beside its error, so that flat places are thinned evenly.
 constexpr double kLengthShare = 1e-4;
-// Least cosine between the normals of a triangle before and after.
-// Least cosine between the normals of two triangles at an edge.
-constexpr double kFold = -0.3;
 // Cosine of the angle up to which a sample's normal and a triangle's belong to one side.
 constexpr double kOneSide = 0.9;
-constexpr double kLeastTurn = 0.5;
-// Triangles are kept this round (1: equilateral), or no worse than this share of what they were.
-constexpr double kRound = 0.2;
-constexpr double kWorse = 0.7;
+// Freedom for a number of triangles grows by this factor at a time, by the larger one where that
+// gave less than this share of the triangles, up to so much.
+constexpr double kLooser = 1.25;
+constexpr double kMuchLooser = 2;
+constexpr double kLittle = 0.01;
+constexpr double kLoosest = 1e9;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
-
-double roundness(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const double squares = (b - a).lengthSqr() + (c - b).lengthSqr() + (a - c).lengthSqr();
-  return squares > 0 ? 2 * std::sqrt(3.0) * (b - a).cross(c - a).length() / squares : 0;
-}
 
 class Collapser {
  public:
   Collapser(const Mesh& mesh, const std::vector<PlaneSum>& planes, const Bounds& bounds)
-      : mesh_(mesh), bounds_(bounds) {
-    start(planes, bounds.before);
-    setRanks();
-    if (bounds.before != nullptr && !(keepsEuler() && isManifold())) start(planes, nullptr);
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
-      if (vertexOf_[i] == i && isOnBoundary(i)) allowed_[i] = 0;
+      : given_(mesh),
+        bounds_(bounds),
+        mesh_(mesh),
+        planes_(planes),
+        allowed_(bounds.allowed),
+        joined_(mesh.positions.size(), 0),
+        version_(mesh.positions.size(), 0),
+        firstSample_(mesh_.cornerCount() / 3, kNone),
+        nextSample_(bounds.samples.size()),
+        sampleTriangles_(bounds.samples.size()) {
+    for (std::uint32_t i = 0; i < mesh_.vertexCount(); ++i) {
+      if (mesh_.isOnBoundary(i)) allowed_[i] = 0;
     }
-    firstSample_.assign(corners_.size() / 3, kNone);
-    nextSample_.resize(bounds_.samples.size());
-    sampleTriangles_.resize(bounds_.samples.size());
-    for (std::uint32_t i = 0; i < bounds_.samples.size(); ++i) attach(i, locate(i));
   }
 
   void run(base::Job& job) {
-    for (const VertexIndex a : order_) {
-      if (vertexOf_[a] != a) continue;
-      collectNeighbours(a, aroundA_);
-      for (const VertexIndex b : aroundA_) {
-        if (ranks_[a] < ranks_[b] && (isNearOpen(a) || isNearOpen(b))) propose(a, b);
-      }
+    const std::size_t all = mesh_.triangleCount();
+    if (bounds_.before != nullptr) {
+      repeat(*bounds_.before);
+    } else {
+      attachFrom(0);
     }
-    constexpr std::size_t kBetweenLooks = 4096;
-    const std::size_t all = alive_;
-    EdgeQueue::Entry best{};
-    for (std::size_t steps = 0; alive_ > bounds_.triangles && queue_.pop(best); ++steps) {
-      if (steps % kBetweenLooks == 0) job.look(all - alive_, all);
-      if (best.versionA != version_[best.a] || best.versionB != version_[best.b]) continue;
-      const Edge edge = solve(best.a, best.b);
-      if (canCollapse(edge)) apply(edge);
+    if (bounds_.onlyRepeat) return;
+    for (bool anew = bounds_.before == nullptr;; anew = true) {
+      const std::size_t start = mesh_.triangleCount();
+      tooFar_ = false;
+      proposeAll(anew);
+      constexpr std::size_t kBetweenLooks = 4096;
+      EdgeQueue::Entry best{};
+      for (std::size_t steps = 0; mesh_.triangleCount() > bounds_.triangles && queue_.pop(best);
+           ++steps) {
+        if (steps % kBetweenLooks == 0) job.look(all - mesh_.triangleCount(), all);
+        if (best.versionA != version_[best.a] || best.versionB != version_[best.b]) continue;
+        const Edge edge = solve(best.a, best.b);
+        double reach = 0;
+        if (canCollapse(edge, reach)) apply(edge, reach);
+      }
+      const std::size_t left = mesh_.triangleCount();
+      if (left <= bounds_.triangles || bounds_.triangles == 0) return;
+      if (anew && !tooFar_) return;  // more freedom is of no use
+      const bool little = static_cast<double>(start - left) < kLittle * static_cast<double>(start);
+      looseness_ *= anew && little ? kMuchLooser : kLooser;
+      if (looseness_ > kLoosest) return;
     }
   }
 
-  [[nodiscard]] Collapsed result() const {
+  [[nodiscard]] Collapsed result() {
     Collapsed out;
-    out.sampleTriangles = sampleTriangles_;
-    std::vector<VertexIndex> numbers(points_.size(), kNone);
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (vertexOf_[i] != i) continue;
+    out.looseness = looseness_;
+    out.sampleTriangles = std::move(sampleTriangles_);
+    out.steps = std::move(steps_);
+    const auto vertices = static_cast<std::uint32_t>(mesh_.vertexCount());
+    std::vector<VertexIndex> numbers(vertices, kNone);
+    for (std::uint32_t i = 0; i < vertices; ++i) {
+      if (!mesh_.isRoot(i)) continue;
       numbers[i] = static_cast<VertexIndex>(out.mesh.positions.size());
-      out.mesh.positions.emplace_back(points_[i][0], points_[i][1], points_[i][2]);
-      out.mesh.normals.push_back(normalOf(static_cast<VertexIndex>(i)));
+      const Vec3d& p = mesh_.point(i);
+      out.mesh.positions.emplace_back(p[0], p[1], p[2]);
+      out.mesh.normals.push_back(normalOf(i));
     }
     out.members.resize(out.mesh.positions.size());
-    out.vertexOf.resize(points_.size());
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
-      out.vertexOf[i] = numbers[rootOf(i)];
+    out.vertexOf.resize(vertices);
+    for (std::uint32_t i = 0; i < vertices; ++i) {
+      out.vertexOf[i] = numbers[mesh_.rootOf(i)];
       ++out.members[out.vertexOf[i]];
     }
-    const auto corner = [&](std::size_t i) { return numbers[corners_[i]]; };
+    const auto corner = [&](std::size_t i) { return numbers[mesh_.corner(i)]; };
     std::vector<std::uint32_t> sources;
-    for (std::uint32_t polygon = 0; polygon < mesh_.quads.size(); ++polygon) {
+    for (std::uint32_t polygon = 0; polygon < given_.quads.size(); ++polygon) {
       const std::size_t t = std::size_t{6} * polygon;
-      const bool first = isAlive(t), second = isAlive(t + 3);
+      const bool first = mesh_.isAlive(t), second = mesh_.isAlive(t + 3);
       if (first && second) {
         out.mesh.quads.emplace_back(corner(t), corner(t + 1), corner(t + 2), corner(t + 5));
         out.sources.push_back(polygon);
@@ -101,11 +111,11 @@ class Collapser {
         sources.push_back(polygon);
       }
     }
-    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const std::size_t t = 6 * mesh_.quads.size() + 3 * i;
-      if (!isAlive(t)) continue;
+    for (std::size_t i = 0; i < given_.triangles.size(); ++i) {
+      const std::size_t t = 6 * given_.quads.size() + 3 * i;
+      if (!mesh_.isAlive(t)) continue;
       out.mesh.triangles.emplace_back(corner(t), corner(t + 1), corner(t + 2));
-      sources.push_back(static_cast<std::uint32_t>(mesh_.quads.size() + i));
+      sources.push_back(static_cast<std::uint32_t>(given_.quads.size() + i));
     }
     out.sources.insert(out.sources.end(), sources.begin(), sources.end());
     return out;
@@ -117,172 +127,92 @@ class Collapser {
     Vec3d point;   ///< that takes the place of both
     double error;  ///< sum of squared distances to its planes
     double planes;
+    PlaneSum sum;  ///< of both, seen from the point
   };
 
-  [[nodiscard]] bool isAlive(std::size_t t) const { return corners_[t] != kNone; }
-  [[nodiscard]] VertexIndex rootOf(VertexIndex vertex) const {
-    while (vertexOf_[vertex] != vertex) vertex = vertexOf_[vertex];
-    return vertex;
+  [[nodiscard]] double allowedAt(VertexIndex a, VertexIndex b) const {
+    return looseness_ * static_cast<double>(std::min(allowed_[a], allowed_[b]));
   }
-  // Calls visit(triangle's first corner, the two corners after the vertex in order).
-  template <class Visit>
-  void forTriangles(VertexIndex vertex, const Visit& visit) const {
-    for (std::uint32_t corner = first_[vertex]; corner != kNone; corner = next_[corner]) {
-      if (corners_[corner] != vertex) continue;  // of a triangle that is gone
-      const std::uint32_t t = corner - corner % 3;
-      visit(t, corners_[t + (corner + 1) % 3], corners_[t + (corner + 2) % 3]);
-    }
-  }
-  [[nodiscard]] bool isOnBoundary(VertexIndex vertex) const {
-    // Around an inner vertex each neighbour follows once and leads once.
-    std::int64_t balance = 0;
-    std::size_t triangles = 0;
-    forTriangles(vertex, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
-      balance += std::int64_t{x} - std::int64_t{y};
-      ++triangles;
-    });
-    return triangles < 3 || balance != 0;
-  }
+
   [[nodiscard]] Normal normalOf(VertexIndex vertex) const {
     Vec3d sum = planes_[vertex].normals;
-    if (version_[vertex] == 0 || !sum.normalize()) return mesh_.normals[vertex];
+    if (joined_[vertex] == 0 || !sum.normalize()) return given_.normals[vertex];
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
   }
 
-  // The mesh as it is given, or with what `before` joined and is not reopened.
-  void start(std::vector<PlaneSum> planes, const Collapsed* before) {
-    planes_ = std::move(planes);
-    allowed_ = bounds_.allowed;
-    const std::size_t vertices = mesh_.positions.size();
-    points_.clear();
-    for (const Position& p : mesh_.positions) points_.push_back(vectorOf(p));
-    version_.assign(vertices, 0);
-    vertexOf_.resize(vertices);
-    for (std::uint32_t i = 0; i < vertices; ++i) vertexOf_[i] = i;
-    open_.clear();
-    if (before != nullptr) joinAgain(*before);
-    corners_.clear();
-    for (const Quad& quad : mesh_.quads) {
-      const auto& v = quad.vertices;
-      corners_.insert(corners_.end(), {v[0], v[1], v[2], v[0], v[2], v[3]});
+  // Collapses again what was collapsed before, in the same order, except where a new sample or less
+  // freedom forbids it, or the mesh around is no longer as it was then. What is around may then be
+  // collapsed in another way.
+  void repeat(const Collapsed& before) {
+    looseness_ = before.looseness;
+    changed_.assign(mesh_.vertexCount(), 0);
+    const std::size_t known = before.sampleTriangles.size();
+    attachFrom(known);
+    steps_.reserve(before.steps.size());
+    for (std::size_t i = 0; i < before.steps.size(); ++i) {
+      const Step& step = before.steps[i];
+      const bool undone = !bounds_.undone.empty() && bounds_.undone[i] != 0;
+      if (!undone && repeatStep(step)) continue;
+      changed_[step.keep] = 1;
+      changed_[step.drop] = 1;
     }
-    for (const Triangle& triangle : mesh_.triangles) {
-      corners_.insert(corners_.end(), triangle.vertices.begin(), triangle.vertices.end());
-    }
-    alive_ = 0;
-    first_.assign(vertices, kNone);
-    next_.assign(corners_.size(), kNone);
-    for (std::uint32_t t = 0; t < corners_.size(); t += 3) {
-      std::uint32_t* v = &corners_[t];
-      for (int i = 0; i < 3; ++i) v[i] = vertexOf_[v[i]];
-      if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) {
-        std::fill_n(v, 3, kNone);
-        continue;
-      }
-      ++alive_;
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        next_[t + i] = first_[v[i]];
-        first_[v[i]] = t + i;
-      }
+    for (std::uint32_t i = 0; i < known; ++i) {
+      const std::uint32_t t = before.sampleTriangles[i];
+      const bool same = mesh_.isAlive(t) && changed_[mesh_.corner(t)] == 0 &&
+                        changed_[mesh_.corner(t + 1)] == 0 && changed_[mesh_.corner(t + 2)] == 0;
+      attach(i, same ? t : locate(i));
     }
   }
 
-  // By place: a grid that is moved has its vertices in another order.
-  void setRanks() {
-    std::vector<VertexIndex> order(points_.size());
-    std::iota(order.begin(), order.end(), VertexIndex{0});
-    std::sort(order.begin(), order.end(), [&](VertexIndex a, VertexIndex b) {
-      const Position& p = mesh_.positions[a];
-      const Position& q = mesh_.positions[b];
-      return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-    });
-    ranks_.resize(order.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) ranks_[order[i]] = i;
-    order_ = std::move(order);
-  }
-
-  void joinAgain(const Collapsed& before) {
-    open_ = bounds_.reopened;
-    std::vector<VertexIndex> rootOfGroup(before.mesh.positions.size(), kNone);
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
-      const VertexIndex group = before.vertexOf[i];
-      if (open_[i] != 0 || before.members[group] < 2) continue;
-      const Vec3d at = vectorOf(before.mesh.positions[group]);
-      const PlaneSum moved = planes_[i].seenFrom(at - vectorOf(mesh_.positions[i]));
-      VertexIndex& root = rootOfGroup[group];
-      if (root == kNone) {
-        root = i;
-        planes_[i] = moved;
-        points_[i] = at;
-        version_[i] = 1;
-      } else {
-        planes_[root] += moved;
-        allowed_[root] = std::min(allowed_[root], allowed_[i]);
-      }
-      vertexOf_[i] = root;
-    }
-  }
-
-  // A collapse takes away one vertex and two triangles.
-  [[nodiscard]] bool keepsEuler() const {
-    std::size_t gone = 0;
-    for (std::uint32_t i = 0; i < vertexOf_.size(); ++i) gone += vertexOf_[i] != i ? 1 : 0;
-    return alive_ + 2 * gone == corners_.size() / 3;
-  }
-
-  // Whether the triangles around each vertex are one fan, open or closed, of different neighbours.
-  [[nodiscard]] bool isManifold() {
-    std::vector<VertexIndex> leading, following;
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
-      if (first_[i] == kNone) continue;
-      leading.clear();
-      following.clear();
-      forTriangles(i, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
-        leading.push_back(x);
-        following.push_back(y);
+  bool repeatStep(const Step& step) {
+    if (changed_[step.keep] != 0 || changed_[step.drop] != 0) return false;
+    if (static_cast<double>(step.reach) > allowedAt(step.keep, step.drop)) return false;
+    if (allowed_[step.keep] <= 0 || allowed_[step.drop] <= 0) return false;
+    bool same = true, sampled = false;
+    for (const VertexIndex own : {step.keep, step.drop}) {
+      mesh_.forTriangles(own, [&](std::uint32_t t, VertexIndex x, VertexIndex) {
+        same &= changed_[x] == 0;
+        sampled |= firstSample_[t / 3] != kNone;
       });
-      // Walks around from the start of the fan, if it has one.
-      std::size_t at = 0;
-      for (std::size_t k = 0; k < leading.size(); ++k) {
-        if (std::find(following.begin(), following.end(), leading[k]) == following.end()) at = k;
-      }
-      std::size_t walked = 1;
-      const VertexIndex start = leading[at];
-      for (; walked <= leading.size(); ++walked) {
-        const auto next = std::find(leading.begin(), leading.end(), following[at]);
-        if (next == leading.end() || *next == start) break;
-        at = static_cast<std::size_t>(next - leading.begin());
-      }
-      std::sort(leading.begin(), leading.end());
-      if (walked != leading.size() || hasTwice(leading)) return false;
     }
+    if (!same) return false;
+    Edge edge{step.keep, step.drop, step.point, 0, 0, {}};
+    edge.sum = joined(edge.a, edge.b, edge.point);
+    auto reach = static_cast<double>(step.reach);
+    if (sampled) {
+      // Always keeps its shape, as it did so before.
+      (void)ring_.collect(mesh_, edge.a, edge.b, edge.point, edge.sum.normals);
+      if (!samplesStayNear(edge, reach)) return false;
+    }
+    join(edge, reach, sampled);
     return true;
   }
 
-  [[nodiscard]] bool isNearOpen(VertexIndex vertex) const {
-    if (open_.empty() || open_[vertex] != 0) return true;
-    bool near = false;
-    forTriangles(vertex, [&](std::uint32_t, VertexIndex x, VertexIndex) { near |= open_[x] != 0; });
-    return near;
-  }
-
-  // The first corner of the triangle that a sample is nearest to: of those that came from its
-  // polygon or are around its corners, or what was found before.
-  [[nodiscard]] std::uint32_t locate(std::uint32_t sample) const {
-    if (!open_.empty() && sample < bounds_.before->sampleTriangles.size()) {
-      const std::uint32_t t = bounds_.before->sampleTriangles[sample];
-      const auto settled = [&](std::uint32_t corner) { return open_[corners_[corner]] == 0; };
-      if (isAlive(t) && settled(t) && settled(t + 1) && settled(t + 2)) return t;
+  // Puts the samples from `first` on onto their triangles.
+  void attachFrom(std::size_t first) {
+    for (std::size_t i = first; i < bounds_.samples.size(); ++i) {
+      const auto sample = static_cast<std::uint32_t>(i);
+      attach(sample, locate(sample));
     }
-    const std::size_t polygon = bounds_.samples[sample].polygon, quads = mesh_.quads.size();
+  }
+  void attach(std::uint32_t sample, std::uint32_t t) {
+    sampleTriangles_[sample] = t;
+    nextSample_[sample] = firstSample_[t / 3];
+    firstSample_[t / 3] = sample;
+  }
+  // The first corner of the triangle that a sample is nearest to, of those around the corners of
+  // its polygon.
+  [[nodiscard]] std::uint32_t locate(std::uint32_t sample) const {
+    const std::size_t polygon = bounds_.samples[sample].polygon, quads = given_.quads.size();
     const Vec3d at = vectorOf(bounds_.samples[sample].point);
     std::uint32_t nearest = kNone;
     double least = std::numeric_limits<double>::infinity();
     const auto look = [&](const auto& vertices) {
       for (const VertexIndex vertex : vertices) {
-        forTriangles(rootOf(vertex), [&](std::uint32_t t, VertexIndex, VertexIndex) {
+        mesh_.forTriangles(mesh_.rootOf(vertex), [&](std::uint32_t t, VertexIndex, VertexIndex) {
           const double squared =
-              FlatTriangle(points_[corners_[t]], points_[corners_[t + 1]], points_[corners_[t + 2]])
+              FlatTriangle(mesh_.point(mesh_.corner(t)), mesh_.point(mesh_.corner(t + 1)),
+                           mesh_.point(mesh_.corner(t + 2)))
                   .squaredDistance(at);
           if (squared >= least) return;
           least = squared;
@@ -290,159 +220,91 @@ class Collapser {
         });
       }
     };
-    polygon < quads ? look(mesh_.quads[polygon].vertices)
-                    : look(mesh_.triangles[polygon - quads].vertices);
+    polygon < quads ? look(given_.quads[polygon].vertices)
+                    : look(given_.triangles[polygon - quads].vertices);
     return nearest;
   }
-  void attach(std::uint32_t sample, std::uint32_t t) {
-    sampleTriangles_[sample] = t;
-    nextSample_[sample] = firstSample_[t / 3];
-    firstSample_[t / 3] = sample;
+
+  // Proposes all edges, or those where something is not as in the result before.
+  void proposeAll(bool anew) {
+    const auto isNear = [&](VertexIndex vertex) {
+      bool near = anew || changed_[vertex] != 0;
+      if (near) return true;
+      mesh_.forTriangles(
+          vertex, [&](std::uint32_t, VertexIndex x, VertexIndex) { near |= changed_[x] != 0; });
+      return near;
+    };
+    for (const VertexIndex a : mesh_.byPlace()) {
+      if (!mesh_.isRoot(a)) continue;
+      mesh_.collectNeighbours(a, around_);
+      for (const VertexIndex b : around_) {
+        if (mesh_.isBefore(a, b) && (isNear(a) || isNear(b))) propose(a, b);
+      }
+    }
+  }
+
+  // The planes of both, seen from `point`.
+  [[nodiscard]] PlaneSum joined(VertexIndex a, VertexIndex b, const Vec3d& point) const {
+    PlaneSum planes = planes_[a].seenFrom(point - mesh_.point(a));
+    planes += planes_[b].seenFrom(point - mesh_.point(b));
+    return planes;
   }
 
   [[nodiscard]] Edge solve(VertexIndex a, VertexIndex b) const {
-    const Vec3d middle = (points_[a] + points_[b]) * 0.5;
-    PlaneSum planes = planes_[a].seenFrom(middle - points_[a]);
-    planes += planes_[b].seenFrom(middle - points_[b]);
+    const Vec3d &pa = mesh_.point(a), &pb = mesh_.point(b);
+    const Vec3d middle = (pa + pb) * 0.5;
+    const PlaneSum planes = joined(a, b, middle);
     Vec3d offset = planes.least();
-    if (!(offset.lengthSqr() <= (points_[a] - points_[b]).lengthSqr())) offset = Vec3d(0.0);
-    return {a, b, middle + offset, planes.at(offset), planes.count};
+    if (!(offset.lengthSqr() <= (pa - pb).lengthSqr())) offset = Vec3d(0.0);
+    return {a, b, middle + offset, planes.at(offset), planes.count, planes.seenFrom(offset)};
   }
 
   void propose(VertexIndex a, VertexIndex b) {
-    if (ranks_[b] < ranks_[a]) std::swap(a, b);
-    const auto allowed = static_cast<double>(std::min(allowed_[a], allowed_[b]));
+    if (mesh_.isBefore(b, a)) std::swap(a, b);
+    const double allowed = allowedAt(a, b);
     if (!(allowed > 0)) return;
     const Edge edge = solve(a, b);
-    if (edge.error > allowed * allowed * edge.planes) return;
-    const double squaredLength = (points_[a] - points_[b]).lengthSqr();
+    if (edge.error > allowed * allowed * edge.planes) {
+      tooFar_ = true;
+      return;
+    }
+    const double squaredLength = (mesh_.point(a) - mesh_.point(b)).lengthSqr();
     queue_.push(edge.error + kLengthShare * squaredLength, {a, b, version_[a], version_[b]});
   }
 
-  // Neighbours of a vertex, sorted by place.
-  void collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const {
-    out.clear();
-    forTriangles(vertex, [&](std::uint32_t, VertexIndex x, VertexIndex) { out.push_back(x); });
-    std::sort(out.begin(), out.end(),
-              [&](VertexIndex a, VertexIndex b) { return ranks_[a] < ranks_[b]; });
+  bool canCollapse(const Edge& edge, double& reach) {
+    reach = edge.planes > 0 ? std::sqrt(edge.error / edge.planes) : 0;
+    return mesh_.mayCollapse(edge.a, edge.b) &&
+           ring_.collect(mesh_, edge.a, edge.b, edge.point, edge.sum.normals) &&
+           ring_.staysUnfolded(mesh_) && staysNear(edge, reach);
   }
 
-  // An edge of four triangles, as a quad's diagonal may be.
-  static bool hasTwice(const std::vector<VertexIndex>& sorted) {
-    return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+  bool staysNear(const Edge& edge, double& reach) {
+    const bool near = samplesStayNear(edge, reach) && ringStaysNear(edge, reach);
+    tooFar_ |= !near;
+    return near;
   }
 
-  // The link condition for an edge off the boundary, and no vertex left with two triangles.
-  bool keepsTopology(VertexIndex a, VertexIndex b) {
-    collectNeighbours(a, aroundA_);
-    collectNeighbours(b, aroundB_);
-    common_.clear();
-    std::set_intersection(aroundA_.begin(), aroundA_.end(), aroundB_.begin(), aroundB_.end(),
-                          std::back_inserter(common_),
-                          [&](VertexIndex x, VertexIndex y) { return ranks_[x] < ranks_[y]; });
-    if (common_.size() != 2 || hasTwice(aroundA_) || hasTwice(aroundB_)) return false;
-    std::array<VertexIndex, 2> beside{kNone, kNone};
-    int count = 0;
-    forTriangles(a, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
-      if (x == b || y == b) beside[std::min(count++, 1)] = x == b ? y : x;
-    });
-    if (count != 2 || !std::is_permutation(beside.begin(), beside.end(), common_.begin())) {
-      return false;
-    }
-    for (const VertexIndex vertex : common_) {
-      std::size_t triangles = 0;
-      forTriangles(vertex, [&](std::uint32_t, VertexIndex, VertexIndex) { ++triangles; });
-      if (triangles <= 3) return false;
-    }
-    return true;
-  }
-
-  // The triangles around a and b with both at `point`. False if one turns over or becomes a needle.
-  bool collectRing(const Edge& edge) {
-    ring_.clear();
-    ringTriangles_.clear();
-    ringEdges_.clear();
-    star_.clear();
-    double before = 1, after = 1;
-    bool upright = true;
-    const auto take = [&](VertexIndex own, VertexIndex other) {
-      forTriangles(own, [&](std::uint32_t t, VertexIndex x, VertexIndex y) {
-        const Vec3d& p = points_[own];
-        before = std::min(before, roundness(p, points_[x], points_[y]));
-        if (x == other || y == other) {
-          if (own < other) star_.push_back(t);
-          return;
-        }
-        star_.push_back(t);
-        ringTriangles_.push_back(t);
-        ringEdges_.push_back({x, y});
-        const Vec3d was = (points_[x] - p).cross(points_[y] - p);
-        const Vec3d is = (points_[x] - edge.point).cross(points_[y] - edge.point);
-        after = std::min(after, roundness(edge.point, points_[x], points_[y]));
-        const double along = was.dot(is);
-        upright &= along > 0 &&
-                   along * along >= kLeastTurn * kLeastTurn * was.lengthSqr() * is.lengthSqr();
-        ring_.emplace_back(edge.point, points_[x], points_[y]);
-      });
-    };
-    take(edge.a, edge.b);
-    take(edge.b, edge.a);
-    return upright && after >= std::min(kRound, kWorse * before);
-  }
-
-  // The triangle of the ring that is nearest to the point, and its squared distance.
-  [[nodiscard]] std::pair<std::size_t, double> nearestInRing(const Vec3d& point) const {
-    std::pair<std::size_t, double> best{0, std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < ring_.size(); ++i) {
-      double squared = 0;
-      if (ring_[i].isAbove(point, squared) && squared < best.second) best = {i, squared};
-    }
-    if (!std::isinf(best.second)) return best;
-    for (std::size_t i = 0; i < ring_.size(); ++i) {
-      const double squared = ring_[i].squaredDistance(point);
-      if (squared < best.second) best = {i, squared};
-    }
-    return best;
-  }
-
-  // No triangle of the ring is folded back over a neighbour, in the ring or outside.
-  [[nodiscard]] bool staysUnfolded() const {
-    for (std::size_t i = 0; i < ring_.size(); ++i) {
-      const auto [x, y] = ringEdges_[i];
-      bool flat = true;
-      const auto look = [&](const Vec3d& normal) { flat &= ring_[i].normal().dot(normal) > kFold; };
-      for (std::size_t j = 0; j < i; ++j) {
-        if (ringEdges_[j][0] == y || ringEdges_[j][1] == x) look(ring_[j].normal());
-      }
-      forTriangles(y, [&](std::uint32_t, VertexIndex next, VertexIndex last) {
-        if (next != x) return;
-        Vec3d normal = (points_[x] - points_[y]).cross(points_[last] - points_[y]);
-        if (normal.normalize()) look(normal);
-      });
-      if (!flat) return false;
-    }
-    return true;
-  }
-
-  // Whether all samples of the triangles around a and b are near the ring; notes which triangle of
-  // it each is nearest to.
-  bool staysNear(const Edge& edge) {
-    const auto allowed = static_cast<double>(std::min(allowed_[edge.a], allowed_[edge.b]));
-    const double enough = allowed * allowed;
-    double nearest = std::numeric_limits<double>::infinity(), height = 0;
-    bool smooth = true;
+  // Whether all samples of the triangles around the edge are near the ring; notes which triangle of
+  // it each is nearest to, and where they are of several sides.
+  bool samplesStayNear(const Edge& edge, double& reach) {
+    const double allowed = allowedAt(edge.a, edge.b), enough = allowed * allowed;
     // What failed once lies at the front and mostly fails again.
-    for (const std::uint32_t t : star_) {
+    for (const std::uint32_t t : ring_.star()) {
       const std::uint32_t i = firstSample_[t / 3];
-      if (i == kNone) continue;
-      if (nearestInRing(vectorOf(bounds_.samples[i].point)).second > enough) return false;
+      if (i != kNone && ring_.nearest(vectorOf(bounds_.samples[i].point)).second > enough) {
+        return false;
+      }
     }
     attached_.clear();
-    for (const std::uint32_t t : star_) {
+    sides_.assign(ring_.shapes().size(), Sides::None);
+    nearestSample_ = kNone;
+    double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+    for (const std::uint32_t t : ring_.star()) {
       std::uint32_t before = kNone;
       for (std::uint32_t i = firstSample_[t / 3]; i != kNone; before = i, i = nextSample_[i]) {
         const Vec3d at = vectorOf(bounds_.samples[i].point);
-        const auto [triangle, squared] = nearestInRing(at);
+        const auto [triangle, squared] = ring_.nearest(at);
         if (squared > enough) {
           if (before != kNone) {
             nextSample_[before] = nextSample_[i];
@@ -450,101 +312,102 @@ class Collapser {
           }
           return false;
         }
-        attached_.emplace_back(i, ringTriangles_[triangle]);
+        farthest = std::max(farthest, squared);
+        attached_.emplace_back(i, ring_.triangles()[triangle]);
         const Normal& n = bounds_.samples[i].normal;
-        const Vec3d normal(n.x, n.y, n.z);
-        smooth &= normal.dot(ring_[triangle].normal()) > kOneSide;
+        const bool own = Vec3d(n.x, n.y, n.z).dot(ring_.shapes()[triangle].normal()) > kOneSide;
+        Sides& sides = sides_[triangle];
+        sides = own && sides != Sides::Several ? Sides::One : Sides::Several;
         const double apart = (at - edge.point).lengthSqr();
         if (apart >= nearest) continue;
         nearest = apart;
-        height = std::abs(normal.dot(edge.point - at));
+        nearestSample_ = i;
       }
     }
-    return smooth ? height <= allowed : ringStaysNear(edge, allowed);
+    reach = std::max(reach, std::sqrt(farthest));
+    return true;
   }
 
-  // The way back, from the ring to the surface: planes of samples tell nothing beside a crease.
-  [[nodiscard]] bool ringStaysNear(const Edge& edge, double allowed) const {
+  // The way back, from the ring to the surface. Where all samples are of one side, the planes of
+  // samples tell; beside a crease, the surface is asked.
+  [[nodiscard]] bool ringStaysNear(const Edge& edge, double& reach) const {
+    const double allowed = allowedAt(edge.a, edge.b);
+    const bool smooth = std::none_of(sides_.begin(), sides_.end(),
+                                     [](Sides sides) { return sides == Sides::Several; });
+    if (smooth) {
+      if (nearestSample_ == kNone) return true;
+      const Sample& sample = bounds_.samples[nearestSample_];
+      const double height = std::abs(Vec3d(sample.normal.x, sample.normal.y, sample.normal.z)
+                                         .dot(edge.point - vectorOf(sample.point)));
+      reach = std::max(reach, height);
+      return height <= allowed;
+    }
+    const auto isNear = [&](const Vec3d& point, const Vec3d& normal) {
+      const double distance = bounds_.distance(point, normal, allowed);
+      reach = std::max(reach, distance);
+      return distance <= allowed;
+    };
     Vec3d sum(0.0);
-    for (const FlatTriangle& triangle : ring_) sum += triangle.normal();
+    for (const FlatTriangle& triangle : ring_.shapes()) sum += triangle.normal();
     sum.normalize();
-    if (bounds_.distance(edge.point, sum) > allowed) return false;
-    for (const FlatTriangle& triangle : ring_) {
+    if (!isNear(edge.point, sum)) return false;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      if (sides_[i] == Sides::One) continue;
+      const FlatTriangle& triangle = ring_.shapes()[i];
       const Vec3d& p = triangle.corner(0);
       const Vec3d& x = triangle.corner(1);
       const Vec3d& y = triangle.corner(2);
-      if (bounds_.distance((p + x + y) / 3.0, triangle.normal()) > allowed) return false;
-      if (bounds_.distance((p + x) * 0.5, triangle.normal()) > allowed) return false;
+      if (!isNear((p + x + y) / 3.0, triangle.normal())) return false;
+      if (!isNear((p + x) * 0.5, triangle.normal())) return false;
+      if (!isNear((p + y) * 0.5, triangle.normal())) return false;
     }
     return true;
   }
 
-  bool canCollapse(const Edge& edge) {
-    return keepsTopology(edge.a, edge.b) && collectRing(edge) && staysUnfolded() && staysNear(edge);
+  void apply(const Edge& edge, double reach) {
+    join(edge, reach, true);
+    mesh_.collectNeighbours(edge.a, around_);
+    for (const VertexIndex vertex : around_) propose(edge.a, vertex);
   }
 
-  void apply(const Edge& edge) {
-    const VertexIndex keep = edge.a, drop = edge.b;
-    planes_[keep] = planes_[keep].seenFrom(edge.point - points_[keep]);
-    planes_[keep] += planes_[drop].seenFrom(edge.point - points_[drop]);
-    points_[keep] = edge.point;
-    allowed_[keep] = std::min(allowed_[keep], allowed_[drop]);
-    forTriangles(drop, [&](std::uint32_t t, VertexIndex x, VertexIndex y) {
-      if (x != keep && y != keep) return;
-      for (std::uint32_t i = 0; i < 3; ++i) corners_[t + i] = kNone;
-      --alive_;
-    });
-    std::uint32_t last = kNone;
-    for (std::uint32_t corner = first_[drop]; corner != kNone; corner = next_[corner]) {
-      if (corners_[corner] == drop) corners_[corner] = keep;
-      last = corner;
+  // Collapses the edge; `moved`: the samples go where samplesStayNear() said.
+  void join(const Edge& edge, double reach, bool moved) {
+    steps_.push_back({edge.a, edge.b, edge.point, static_cast<float>(reach)});
+    planes_[edge.a] = edge.sum;
+    allowed_[edge.a] = std::min(allowed_[edge.a], allowed_[edge.b]);
+    mesh_.collapse(edge.a, edge.b, edge.point);
+    if (moved) {
+      for (const std::uint32_t t : ring_.star()) firstSample_[t / 3] = kNone;
+      for (const auto& [sample, t] : attached_) attach(sample, t);
     }
-    next_[last] = first_[keep];
-    first_[keep] = first_[drop];
-    dropDead(keep);
-    vertexOf_[drop] = keep;
-    for (const std::uint32_t t : star_) firstSample_[t / 3] = kNone;
-    for (const auto& [sample, t] : attached_) attach(sample, t);
-    ++version_[keep];
-    ++version_[drop];
-    collectNeighbours(keep, aroundA_);
-    for (const VertexIndex vertex : aroundA_) propose(keep, vertex);
+    joined_[edge.a] = 1;
+    ++version_[edge.a];
+    ++version_[edge.b];
   }
 
-  void dropDead(VertexIndex vertex) {
-    std::uint32_t* link = &first_[vertex];
-    while (*link != kNone) {
-      if (corners_[*link] == vertex) {
-        link = &next_[*link];
-      } else {
-        *link = next_[*link];
-      }
-    }
-  }
+  // What the samples nearest to a triangle of the ring say of the surface there.
+  enum class Sides : std::uint8_t { None, One, Several };
 
-  const Mesh& mesh_;
-  std::vector<PlaneSum> planes_;
+  const Mesh& given_;
   const Bounds& bounds_;
+  EdgeMesh mesh_;
+  std::vector<PlaneSum> planes_;
   std::vector<float> allowed_;
-  std::vector<Vec3d> points_;
-  std::vector<std::uint32_t> ranks_;         // of each vertex by its place
-  std::vector<VertexIndex> order_;           // the vertices by rank
-  std::vector<VertexIndex> corners_;         // three for each triangle; kNone once it is gone
-  std::vector<std::uint32_t> first_, next_;  // the corners at each vertex, as lists
+  double looseness_ = 1;
+  bool tooFar_ = false;                // an edge was refused for want of freedom
+  std::vector<std::uint8_t> joined_;   // vertices that others went into
+  std::vector<std::uint8_t> changed_;  // vertices that are not as in the result before
   std::vector<std::uint32_t> version_;
-  std::vector<VertexIndex> vertexOf_;  // what a vertex went into
-  std::size_t alive_ = 0;
-  std::vector<std::uint8_t> open_;  // vertices that a result before does not settle; empty: all
   EdgeQueue queue_;
-  std::vector<VertexIndex> aroundA_, aroundB_, common_;
+  std::vector<Step> steps_;
+  std::vector<VertexIndex> around_;
   std::vector<std::uint32_t> firstSample_, nextSample_;  // the samples of each triangle, as lists
   std::vector<std::uint32_t> sampleTriangles_;           // where each sample is
-  // Of the edge at hand: the triangles around it, those that stay and what they become, and where
-  // the samples go.
-  std::vector<std::uint32_t> star_, ringTriangles_;
-  std::vector<std::array<VertexIndex, 2>> ringEdges_;  // opposite to the new vertex
-  std::vector<FlatTriangle> ring_;
+  // Of the edge at hand: what it would become, where the samples go, and what they say.
+  Ring ring_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> attached_;
+  std::vector<Sides> sides_;
+  std::uint32_t nearestSample_ = kNone;
 };
 
 }  // namespace

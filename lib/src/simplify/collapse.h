@@ -17,13 +17,22 @@ struct Sample {
   std::uint32_t polygon;  ///< of the mesh, near the point; quads first
 };
 
+/// One collapse.
+struct Step {
+  VertexIndex keep, drop;  ///< of the input
+  openvdb::Vec3d point;    ///< of both from then on
+  float reach;             ///< how far the surface moved as far as was seen, world length
+};
+
 /// A mesh with fewer vertices.
 struct Collapsed {
   Mesh mesh;
   std::vector<std::uint32_t> sources;  ///< polygon of the input of each polygon, quads first
   std::vector<VertexIndex> vertexOf;   ///< for each vertex of the input
   std::vector<std::uint32_t> members;  ///< number of input vertices of each vertex
+  double looseness = 1;                ///< what `allowed` was multiplied by to get so far
   std::vector<std::uint32_t> sampleTriangles;  ///< for a next collapse
+  std::vector<Step> steps;                     ///< in order, for a next collapse
 };
 
 /// What bounds a collapse.
@@ -33,14 +42,18 @@ struct Bounds {
   /// For each vertex, how far the surface may move there, world length; 0: the vertex stays as it
   /// is.
   std::vector<float> allowed;
-  /// The distance to the surface from a point of the mesh with a normal. Asked where samples of
-  /// several sides are near.
-  std::function<double(const openvdb::Vec3d& point, const openvdb::Vec3d& normal)> distance;
-  std::size_t triangles = 0;  ///< stop at so many
-  /// A result for the same mesh and the first of the samples to go on from, or null, and which
-  /// vertices of the input are to be collapsed anew.
+  /// The distance to the surface from a point of the mesh with a normal; what is less than `enough`
+  /// may be more than it is. Asked where samples of several sides are near.
+  std::function<double(const openvdb::Vec3d& point, const openvdb::Vec3d& normal, double enough)>
+      distance;
+  /// Stop at so many; `allowed` is multiplied by more and more until that is reached or nothing
+  /// helps. 0: as few as is allowed.
+  std::size_t triangles = 0;
+  /// A result for the same mesh, more freedom, and the first of the samples, or null: what it
+  /// collapsed is collapsed again where that is still allowed.
   const Collapsed* before = nullptr;
-  std::vector<std::uint8_t> reopened;
+  std::vector<std::uint8_t> undone;  ///< of its steps, those not to be made again; empty: none
+  bool onlyRepeat = false;           ///< make no new steps
 };
 
 /// Collapses edges of a mesh with normals, the one of least error first, each to the point of least

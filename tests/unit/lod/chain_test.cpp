@@ -35,13 +35,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, LodChains,
                                            Sample{"terrain", Shape::Terrain, 0.03}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST_P(LodChains, EveryLevelKeepsItsPromises) {
-  LodOptions options;
-  options.levels = 4;
-  const LodChain chain = buildLods(*shape(GetParam().shape, GetParam().voxelSize), options);
-  ASSERT_GE(chain.levels.size(), 2u);
-  EXPECT_EQ(chain.levels.size() < 4, !chain.stopped.empty()) << chain.stopped;
-  EXPECT_NEAR(chain.voxelSize, GetParam().voxelSize, 1e-12);
+/// What holds for each level of every chain.
+void expectPromises(const LodChain& chain) {
   for (std::size_t i = 0; i < chain.levels.size(); ++i) {
     const Lod& lod = chain.levels[i];
     SCOPED_TRACE("level " + std::to_string(i));
@@ -57,9 +52,63 @@ TEST_P(LodChains, EveryLevelKeepsItsPromises) {
     EXPECT_LT(lod.mesh.triangleCount(), finer.mesh.triangleCount());
     EXPECT_GT(lod.certificate.maxErrorVoxels, finer.certificate.maxErrorVoxels);
     EXPECT_GT(lod.tolerance, finer.tolerance);
-    EXPECT_LT(lod.screenCoverage, finer.screenCoverage);
+    EXPECT_LE(lod.screenCoverage, finer.screenCoverage);
   }
+}
+
+TEST_P(LodChains, EveryLevelKeepsItsPromises) {
+  LodOptions options;
+  options.levels = 4;
+  const LodChain chain = buildLods(*shape(GetParam().shape, GetParam().voxelSize), options);
+  ASSERT_GE(chain.levels.size(), 2u);
+  EXPECT_EQ(chain.levels.size() < 4, !chain.stopped.empty()) << chain.stopped;
+  EXPECT_NEAR(chain.voxelSize, GetParam().voxelSize, 1e-12);
+  expectPromises(chain);
   EXPECT_EQ(chain.levels.back().screenCoverage, 0);
+}
+
+TEST_P(LodChains, KeepTheirBudgets) {
+  const auto grid = shape(GetParam().shape, GetParam().voxelSize);
+  ContourOptions uniform;
+  uniform.uniform = true;
+  const std::size_t all = contour(*grid, uniform).triangleCount();
+  LodOptions options;
+  options.triangles = {all / 4, all / 16, all / 48};
+  // The gyroid's handles need a sixth of them.
+  if (GetParam().shape == Shape::Gyroid) options.triangles = {all / 2, all / 3, all / 5};
+  const LodChain chain = buildLods(*grid, options);
+  ASSERT_EQ(chain.levels.size(), 3u) << chain.stopped;
+  EXPECT_EQ(chain.stopped, "");
+  expectPromises(chain);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto most = static_cast<double>(options.triangles[i]);
+    const auto count = static_cast<double>(chain.levels[i].mesh.triangleCount());
+    EXPECT_LE(count, most);
+    EXPECT_GE(count, 0.95 * most);
+    EXPECT_EQ(chain.levels[i].tolerance, chain.levels[i].certificate.maxErrorVoxels);
+  }
+}
+
+TEST(LodChain, SaysWhichBudgetCannotBeMet) {
+  LodOptions options;
+  options.triangles = {1000, 4};
+  const LodChain chain = buildLods(*shape(Shape::Torus, 0.05), options);
+  ASSERT_EQ(chain.levels.size(), 2u);
+  EXPECT_NE(chain.stopped.find("level 1 cannot have 4 triangles"), std::string::npos)
+      << chain.stopped;
+  expectPromises(chain);
+}
+
+TEST(LodChain, HasNoMoreThanTheUniformMesh) {
+  const auto grid = shape(Shape::Sphere, 0.2);
+  ContourOptions uniform;
+  uniform.uniform = true;
+  LodOptions options;
+  options.triangles = {1000000, 100};
+  const LodChain chain = buildLods(*grid, options);
+  ASSERT_EQ(chain.levels.size(), 2u);
+  EXPECT_EQ(chain.levels[0].mesh.triangleCount(), contour(*grid, uniform).triangleCount());
+  EXPECT_EQ(chain.levels[0].certificate.maxErrorVoxels, 0);
 }
 
 TEST(LodChain, TakesAListOfTolerances) {
@@ -108,6 +157,16 @@ TEST(LodChain, RefusesOptionsOutOfTheirRange) {
   refuses("factor", [](LodOptions& o) { o.factor = 1; });
   refuses("rise", [](LodOptions& o) { o.tolerances = {0.2, 0.1}; });
   refuses("not negative", [](LodOptions& o) { o.tolerances = {-1}; });
+  refuses("fall", [](LodOptions& o) { o.triangles = {100, 100}; });
+  refuses("at least 4", [](LodOptions& o) { o.triangles = {100, 3}; });
+  refuses("exclude", [](LodOptions& o) {
+    o.triangles = {100};
+    o.tolerances = {1};
+  });
+  refuses("simplifying", [](LodOptions& o) {
+    o.triangles = {100};
+    o.contour.simplify = false;
+  });
   refuses("pixelError", [](LodOptions& o) { o.pixelError = 0; });
   refuses("screenHeight", [](LodOptions& o) { o.screenHeight = 0; });
 }

@@ -39,7 +39,7 @@ Problem problemOf(Shape shape, double voxelSize, double allowed) {
     problem.bounds.samples.push_back({mesh.positions[i], n, polygonOf[i]});
   }
   problem.bounds.allowed.assign(mesh.positions.size(), static_cast<float>(allowed * voxelSize));
-  problem.bounds.distance = [](const Vec3d&, const Vec3d&) { return 0.0; };
+  problem.bounds.distance = [](const Vec3d&, const Vec3d&, double) { return 0.0; };
   return problem;
 }
 
@@ -118,23 +118,64 @@ TEST(Collapse, StopsAtSoManyTriangles) {
   EXPECT_GE(solve(problem).mesh.triangleCount(), half - 1);
 }
 
-TEST(Collapse, GoesOnFromAResultWhereItIsReopened) {
+TEST(Collapse, LoosensItsBoundsForANumberOfTriangles) {
+  Problem problem = problemOf(Shape::Torus, 0.06, 0.05);
+  const Collapsed bounded = solve(problem);
+  EXPECT_EQ(bounded.looseness, 1);
+  problem.bounds.triangles = bounded.mesh.triangleCount() / 4;
+  const Collapsed loose = solve(problem);
+  EXPECT_LE(loose.mesh.triangleCount(), problem.bounds.triangles);
+  EXPECT_GE(loose.mesh.triangleCount(), problem.bounds.triangles - 1);
+  EXPECT_GT(loose.looseness, 1);
+  // As few as that has no torus.
+  problem.bounds.triangles = 4;
+  const Collapsed least = solve(problem);
+  EXPECT_GT(least.mesh.triangleCount(), 4U);
+  const test::MeshTopology topology = test::inspect(test::triangulated(least.mesh));
+  EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
+  EXPECT_EQ(topology.euler(), 0);
+}
+
+TEST(Collapse, RepeatsAResult) {
   Problem problem = problemOf(Shape::Torus, 0.06, 0.3);
   const Collapsed first = solve(problem);
   problem.bounds.before = &first;
-  problem.bounds.reopened.assign(problem.mesh.positions.size(), 0);
-  EXPECT_EQ(solve(problem).mesh.triangleCount(), first.mesh.triangleCount());
-  // One half anew, and with less freedom.
+  const Collapsed second = solve(problem);
+  EXPECT_EQ(second.mesh.positions, first.mesh.positions);
+  EXPECT_EQ(second.mesh.triangles, first.mesh.triangles);
+  EXPECT_EQ(second.vertexOf, first.vertexOf);
+}
+
+TEST(Collapse, RepeatsAResultOnlyWhereThatIsStillAllowed) {
+  Problem problem = problemOf(Shape::Torus, 0.06, 0.3);
+  const Collapsed first = solve(problem);
+  problem.bounds.before = &first;
   for (std::size_t i = 0; i < problem.mesh.positions.size(); ++i) {
-    if (problem.mesh.positions[i].x < 0) continue;
-    problem.bounds.reopened[i] = 1;
-    problem.bounds.allowed[i] = 0;
+    if (problem.mesh.positions[i].x > 0) problem.bounds.allowed[i] = 0;
   }
   const Collapsed second = solve(problem);
   const test::MeshTopology topology = test::inspect(test::triangulated(second.mesh));
   EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
   EXPECT_EQ(topology.euler(), 0);
   EXPECT_GT(second.mesh.triangleCount(), first.mesh.triangleCount());
+  for (std::size_t i = 0; i < problem.mesh.positions.size(); ++i) {
+    if (problem.bounds.allowed[i] > 0) continue;
+    EXPECT_EQ(second.members[second.vertexOf[i]], 1U);
+  }
+}
+
+TEST(Collapse, UndoesStepsAndThoseThatNeedThem) {
+  Problem problem = problemOf(Shape::Sphere, 0.06, 0.3);
+  const Collapsed first = solve(problem);
+  problem.bounds.before = &first;
+  problem.bounds.onlyRepeat = true;
+  problem.bounds.undone.assign(first.steps.size(), 0);
+  problem.bounds.undone[first.steps.size() / 2] = 1;
+  const Collapsed some = solve(problem);
+  EXPECT_GT(some.mesh.triangleCount(), first.mesh.triangleCount());
+  EXPECT_LT(some.mesh.triangleCount(), problem.mesh.triangleCount());
+  problem.bounds.undone.assign(first.steps.size(), 1);
+  EXPECT_EQ(solve(problem).mesh.positions, problem.mesh.positions);
 }
 
 }  // namespace

@@ -1,0 +1,114 @@
+#include "simplify/edge_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <tuple>
+
+namespace tufa::simplify {
+
+EdgeMesh::EdgeMesh(const Mesh& mesh)
+    : ranks_(mesh.positions.size()),
+      order_(mesh.positions.size()),
+      first_(mesh.positions.size(), kNone),
+      vertexOf_(mesh.positions.size()),
+      marks_(mesh.positions.size(), 0) {
+  points_.reserve(mesh.positions.size());
+  for (const Position& p : mesh.positions) points_.emplace_back(p.x, p.y, p.z);
+  std::iota(vertexOf_.begin(), vertexOf_.end(), VertexIndex{0});
+  // By place: a grid that is moved has its vertices in another order.
+  std::iota(order_.begin(), order_.end(), VertexIndex{0});
+  std::sort(order_.begin(), order_.end(), [&](VertexIndex a, VertexIndex b) {
+    const Position& p = mesh.positions[a];
+    const Position& q = mesh.positions[b];
+    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+  });
+  for (std::uint32_t i = 0; i < order_.size(); ++i) ranks_[order_[i]] = i;
+
+  corners_.reserve(6 * mesh.quads.size() + 3 * mesh.triangles.size());
+  for (const Quad& quad : mesh.quads) {
+    const auto& v = quad.vertices;
+    corners_.insert(corners_.end(), {v[0], v[1], v[2], v[0], v[2], v[3]});
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    corners_.insert(corners_.end(), triangle.vertices.begin(), triangle.vertices.end());
+  }
+  alive_ = corners_.size() / 3;
+  next_.resize(corners_.size());
+  for (std::uint32_t place = 0; place < corners_.size(); ++place) {
+    next_[place] = first_[corners_[place]];
+    first_[corners_[place]] = place;
+  }
+}
+
+bool EdgeMesh::isOnBoundary(VertexIndex vertex) const {
+  // Around an inner vertex each neighbour follows once and leads once.
+  std::int64_t balance = 0;
+  std::size_t triangles = 0;
+  forTriangles(vertex, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
+    balance += std::int64_t{x} - std::int64_t{y};
+    ++triangles;
+  });
+  return triangles < 3 || balance != 0;
+}
+
+void EdgeMesh::collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const {
+  out.clear();
+  forTriangles(vertex, [&](std::uint32_t, VertexIndex x, VertexIndex) { out.push_back(x); });
+  std::sort(out.begin(), out.end(), [&](VertexIndex a, VertexIndex b) { return isBefore(a, b); });
+}
+
+bool EdgeMesh::mayCollapse(VertexIndex a, VertexIndex b) {
+  if (mark_ > kNone - 2) {
+    std::fill(marks_.begin(), marks_.end(), 0);
+    mark_ = 0;
+  }
+  const std::uint32_t atA = ++mark_, atB = ++mark_;
+  // A neighbour met twice is at an edge of four triangles, as a quad's diagonal may be.
+  bool twice = false;
+  std::array<VertexIndex, 2> beside{kNone, kNone};
+  std::size_t shared = 0, common = 0;
+  forTriangles(a, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
+    twice |= marks_[x] == atA;
+    marks_[x] = atA;
+    if (x == b || y == b) beside[std::min<std::size_t>(shared++, 1)] = x == b ? y : x;
+  });
+  if (twice || shared != 2 || beside[0] == beside[1]) return false;
+  forTriangles(b, [&](std::uint32_t, VertexIndex x, VertexIndex) {
+    twice |= marks_[x] == atB;
+    common += marks_[x] == atA ? 1 : 0;
+    marks_[x] = atB;
+  });
+  if (twice || common != 2) return false;
+  return std::all_of(beside.begin(), beside.end(), [&](VertexIndex vertex) {
+    std::size_t triangles = 0;
+    forTriangles(vertex, [&](std::uint32_t, VertexIndex, VertexIndex) { ++triangles; });
+    return triangles > 3;
+  });
+}
+
+void EdgeMesh::collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d& point) {
+  points_[keep] = point;
+  forTriangles(drop, [&](std::uint32_t t, VertexIndex x, VertexIndex y) {
+    if (x != keep && y != keep) return;
+    std::fill_n(&corners_[t], 3, kNone);
+    --alive_;
+  });
+  std::uint32_t last = kNone;
+  for (std::uint32_t place = first_[drop]; place != kNone; place = next_[place]) {
+    if (corners_[place] == drop) corners_[place] = keep;
+    last = place;
+  }
+  next_[last] = first_[keep];
+  first_[keep] = first_[drop];
+  vertexOf_[drop] = keep;
+  for (std::uint32_t* link = &first_[keep]; *link != kNone;) {  // takes what is gone out
+    if (corners_[*link] == keep) {
+      link = &next_[*link];
+    } else {
+      *link = next_[*link];
+    }
+  }
+}
+
+}  // namespace tufa::simplify

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/mesh.h>
+#include <cstdint>
+#include <vector>
+
+namespace tufa::simplify {
+
+inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+/// The triangles of a mesh while its edges are collapsed, with what each vertex went into. Quads
+/// are two triangles each. A triangle is known by the place of its first corner.
+class EdgeMesh {
+ public:
+  explicit EdgeMesh(const Mesh& mesh);
+
+  [[nodiscard]] std::size_t triangleCount() const { return alive_; }
+  /// Vertices, and corners of triangles, of the mesh as it was given.
+  [[nodiscard]] std::size_t vertexCount() const { return points_.size(); }
+  [[nodiscard]] std::size_t cornerCount() const { return corners_.size(); }
+  [[nodiscard]] const openvdb::Vec3d& point(VertexIndex vertex) const { return points_[vertex]; }
+  [[nodiscard]] VertexIndex corner(std::size_t place) const { return corners_[place]; }
+  [[nodiscard]] bool isAlive(std::size_t triangle) const { return corners_[triangle] != kNone; }
+  /// Whether the vertex went into no other.
+  [[nodiscard]] bool isRoot(VertexIndex vertex) const { return vertexOf_[vertex] == vertex; }
+  /// What the vertex went into.
+  [[nodiscard]] VertexIndex rootOf(VertexIndex vertex) const {
+    while (vertexOf_[vertex] != vertex) vertex = vertexOf_[vertex];
+    return vertex;
+  }
+  /// The vertices by place, whatever their order in the mesh.
+  [[nodiscard]] const std::vector<VertexIndex>& byPlace() const { return order_; }
+  [[nodiscard]] bool isBefore(VertexIndex a, VertexIndex b) const { return ranks_[a] < ranks_[b]; }
+
+  /// Calls visit(triangle, the two corners after the vertex in order) for each triangle around it.
+  template <class Visit>
+  void forTriangles(VertexIndex vertex, const Visit& visit) const {
+    for (std::uint32_t place = first_[vertex]; place != kNone; place = next_[place]) {
+      if (corners_[place] != vertex) continue;  // of a triangle that is gone
+      const std::uint32_t turn = place % 3, t = place - turn;
+      visit(t, corners_[turn == 2 ? t : place + 1], corners_[turn == 0 ? t + 2 : place - 1]);
+    }
+  }
+  [[nodiscard]] bool isOnBoundary(VertexIndex vertex) const;
+  /// Neighbours of a vertex off the boundary, by place.
+  void collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const;
+
+  /// Whether the topology stays the same without the edge: the link condition for an edge off the
+  /// boundary, and no vertex left with two triangles.
+  [[nodiscard]] bool mayCollapse(VertexIndex a, VertexIndex b);
+  /// Lets `drop` go into its neighbour `keep`, and that to `point`.
+  void collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d& point);
+
+ private:
+  std::vector<openvdb::Vec3d> points_;
+  std::vector<std::uint32_t> ranks_;         // of each vertex by its place
+  std::vector<VertexIndex> order_;           // the vertices by rank
+  std::vector<VertexIndex> corners_;         // three for each triangle; kNone once it is gone
+  std::vector<std::uint32_t> first_, next_;  // the corners at each vertex, as lists
+  std::vector<VertexIndex> vertexOf_;        // what a vertex went into
+  std::size_t alive_ = 0;
+  std::vector<std::uint32_t> marks_;  // of the vertices around an edge
+  std::uint32_t mark_ = 0;
+};
+
+}  // namespace tufa::simplify

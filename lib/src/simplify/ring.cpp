@@ -1,0 +1,130 @@
+#include "simplify/ring.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tufa::simplify {
+
+using openvdb::Vec3d;
+
+namespace {
+
+// Least cosine between the normals of a triangle before and after.
+constexpr double kLeastTurn = 0.5;
+// A triangle no rounder than this has no direction to speak of: what counts then is the least
+// cosine between its normal and that of the surface.
+constexpr double kNeedle = 0.05;
+constexpr double kLeastFacing = 0.3;
+// Least cosine between the normals of two triangles at an edge.
+constexpr double kFold = -0.3;
+// Triangles are kept this round (1: equilateral), or no worse than this share of what they were.
+constexpr double kRound = 0.1;
+constexpr double kWorse = 0.5;
+
+// 1 for an equilateral triangle of twice this area vector's length, 0 for three points on a line.
+double roundness(double twiceArea, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const double squares = (b - a).lengthSqr() + (c - b).lengthSqr() + (a - c).lengthSqr();
+  return squares > 0 ? 2 * std::sqrt(3.0) * twiceArea / squares : 0;
+}
+
+// Whether two vectors form an angle of at least this cosine.
+bool isWithin(const Vec3d& a, const Vec3d& b, double cosine) {
+  const double along = a.dot(b);
+  return along > 0 && along * along >= cosine * cosine * a.lengthSqr() * b.lengthSqr();
+}
+
+}  // namespace
+
+bool Ring::collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b, const Vec3d& point,
+                   const Vec3d& facing) {
+  shapes_.clear();
+  triangles_.clear();
+  edges_.clear();
+  star_.clear();
+  double before = 1, after = 1;
+  bool upright = true;
+  const auto take = [&](VertexIndex own, VertexIndex other) {
+    const Vec3d& p = mesh.point(own);
+    mesh.forTriangles(own, [&](std::uint32_t t, VertexIndex x, VertexIndex y) {
+      if (!upright) return;
+      const Vec3d& px = mesh.point(x);
+      const Vec3d& py = mesh.point(y);
+      const Vec3d was = (px - p).cross(py - p);
+      const double round = roundness(was.length(), p, px, py);
+      before = std::min(before, round);
+      if (x == other || y == other) {
+        if (own < other) star_.push_back(t);
+        return;
+      }
+      star_.push_back(t);
+      triangles_.push_back(t);
+      edges_.push_back({x, y});
+      const Vec3d is = (px - point).cross(py - point);
+      after = std::min(after, roundness(is.length(), point, px, py));
+      upright &= isWithin(was, is, kLeastTurn) ||
+                 ((round < kNeedle || !isWithin(facing, was, kLeastFacing)) &&
+                  isWithin(facing, is, kLeastFacing));
+    });
+  };
+  take(a, b);
+  take(b, a);
+  if (!upright || after < std::min(kRound, kWorse * before)) return false;
+  for (const auto& [x, y] : edges_) shapes_.emplace_back(point, mesh.point(x), mesh.point(y));
+  return true;
+}
+
+bool Ring::staysUnfolded(const EdgeMesh& mesh) const {
+  double after = 1;
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const auto [x, y] = edges_[i];
+    const Vec3d& own = shapes_[i].normal();
+    for (std::size_t j = 0; j < i; ++j) {
+      if (edges_[j][0] == y || edges_[j][1] == x)
+        after = std::min(after, own.dot(shapes_[j].normal()));
+    }
+    after = std::min(after, own.dot(normalAcross(mesh, x, y, own)));
+  }
+  return after > kFold || after >= sharpest(mesh);
+}
+
+// The least cosine between the normals of two triangles at an edge, as the triangles are.
+double Ring::sharpest(const EdgeMesh& mesh) const {
+  double least = 1;
+  for (const std::uint32_t t : star_) {
+    const VertexIndex v[3] = {mesh.corner(t), mesh.corner(t + 1), mesh.corner(t + 2)};
+    const base::FlatTriangle shape(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]));
+    for (int i = 0; i < 3; ++i) {
+      const Vec3d across = normalAcross(mesh, v[i], v[(i + 1) % 3], shape.normal());
+      least = std::min(least, shape.normal().dot(across));
+    }
+  }
+  return least;
+}
+
+// The normal of the triangle across the edge from x to y of another one; `own` if it has none.
+Vec3d Ring::normalAcross(const EdgeMesh& mesh, VertexIndex x, VertexIndex y, const Vec3d& own) {
+  Vec3d normal = own;
+  mesh.forTriangles(y, [&](std::uint32_t, VertexIndex next, VertexIndex last) {
+    if (next != x) return;
+    Vec3d found = (mesh.point(x) - mesh.point(y)).cross(mesh.point(last) - mesh.point(y));
+    if (found.normalize()) normal = found;
+  });
+  return normal;
+}
+
+std::pair<std::size_t, double> Ring::nearest(const Vec3d& point) const {
+  std::pair<std::size_t, double> best{0, std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    double squared = 0;
+    if (shapes_[i].isAbove(point, squared) && squared < best.second) best = {i, squared};
+  }
+  if (!std::isinf(best.second)) return best;
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const double squared = shapes_[i].squaredDistance(point);
+    if (squared < best.second) best = {i, squared};
+  }
+  return best;
+}
+
+}  // namespace tufa::simplify

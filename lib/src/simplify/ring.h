@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "base/flat_triangle.h"
+#include "simplify/edge_mesh.h"
+
+namespace tufa::simplify {
+
+/// The triangles around an edge, and what becomes of them if it is collapsed.
+class Ring {
+ public:
+  /// Those around the edge from `a` to `b`, which would become `point`, where the surface faces
+  /// `facing`, of any length. False if one would turn over or become a needle.
+  [[nodiscard]] bool collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b,
+                             const openvdb::Vec3d& point, const openvdb::Vec3d& facing);
+  /// No triangle is folded back over a neighbour, in the ring or outside, or none further than one
+  /// is now.
+  [[nodiscard]] bool staysUnfolded(const EdgeMesh& mesh) const;
+  /// The number of the triangle that is nearest to the point, and its squared distance.
+  [[nodiscard]] std::pair<std::size_t, double> nearest(const openvdb::Vec3d& point) const;
+
+  /// All triangles around the edge as it is.
+  [[nodiscard]] const std::vector<std::uint32_t>& star() const { return star_; }
+  /// Those that stay, and what they become: their first corner is the new vertex.
+  [[nodiscard]] const std::vector<std::uint32_t>& triangles() const { return triangles_; }
+  [[nodiscard]] const std::vector<base::FlatTriangle>& shapes() const { return shapes_; }
+
+ private:
+  [[nodiscard]] double sharpest(const EdgeMesh& mesh) const;
+  [[nodiscard]] static openvdb::Vec3d normalAcross(const EdgeMesh& mesh, VertexIndex x,
+                                                   VertexIndex y, const openvdb::Vec3d& own);
+
+  std::vector<std::uint32_t> star_, triangles_;
+  std::vector<std::array<VertexIndex, 2>> edges_;  ///< opposite to the new vertex
+  std::vector<base::FlatTriangle> shapes_;
+};
+
+}  // namespace tufa::simplify
