@@ -75,7 +75,7 @@ TEST_P(LodChains, KeepTheirBudgets) {
   LodOptions options;
   options.triangles = {all / 4, all / 16, all / 48};
   // The gyroid's handles need a sixth of them.
-  if (GetParam().shape == Shape::Gyroid) options.triangles = {all / 2, all / 3, all / 5};
+  if (GetParam().shape == Shape::Gyroid) options.triangles = {all / 2, all / 3, all / 4};
   const LodChain chain = buildLods(*grid, options);
   ASSERT_EQ(chain.levels.size(), 3u) << chain.stopped;
   EXPECT_EQ(chain.stopped, "");
