@@ -11,6 +11,7 @@
 #include "console.h"
 #include "progress_bar.h"
 #include "report.h"
+#include "volume.h"
 
 namespace tufa::tools {
 namespace {
@@ -49,7 +50,7 @@ int runCheck(const CheckArguments& arguments) {
   // Both files are read before the work begins: a wrong name should not show minutes later.
   const Mesh mesh = readMesh(arguments.input);
   openvdb::GridBase::Ptr grid;
-  if (arguments.against) grid = readGrid(*arguments.against, arguments.grid);
+  if (arguments.against) grid = readVolume(*arguments.against, arguments.grid);
 
   const CheckReport report = checkMesh(mesh, arguments);
   std::optional<DistanceReport> distance;

@@ -6,7 +6,8 @@
 
 namespace tufa::tools {
 
-/// Turns Ctrl-C and SIGTERM into a flag, and a broken pipe into an error of the write.
+/// Turns Ctrl-C and SIGTERM into a flag, and a broken pipe or a file over the limit of its size
+/// into an error of the write.
 void installSignalHandlers();
 
 /// Whether the user asked to stop.

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "crash_guard.h"
 
 namespace tufa::tools {
 namespace {
@@ -71,7 +72,11 @@ std::string describe(const GridInfo& info) {
 }
 
 int runInfo(const InfoArguments& arguments) {
-  const std::vector<GridInfo> grids = describeGrids(arguments.input);
+  std::vector<GridInfo> grids;
+  {
+    const CrashGuard guard(arguments.input);
+    grids = describeGrids(arguments.input);
+  }
   if (arguments.json) {
     Json json;
     json["file"] = arguments.input;

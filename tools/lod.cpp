@@ -90,7 +90,7 @@ LodRun runStages(const LodArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   LodRun run;
   openvdb::GridBase::Ptr grid;
-  run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
+  run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   run.gridName = grid->getName();
   requireVoxels(*grid, arguments.input);
   const LodOptions options = chainOptions(arguments, *grid, bar);

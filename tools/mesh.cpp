@@ -46,7 +46,7 @@ struct MeshRun {
 };
 
 openvdb::FloatGrid::ConstPtr readToleranceGrid(const std::string& file, const std::string& name) {
-  const openvdb::GridBase::Ptr grid = readGrid(file, name);
+  const openvdb::GridBase::Ptr grid = readVolume(file, name);
   if (!grid->isType<openvdb::FloatGrid>()) {
     throw Error(ErrorCode::UnsupportedGrid, "the tolerance grid \"" + name + "\" in " + file +
                                                 " holds " + grid->valueType() +
@@ -59,7 +59,7 @@ MeshRun runStages(const MeshArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   MeshRun run;
   openvdb::GridBase::Ptr grid;
-  run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
+  run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   run.gridName = grid->getName();
   requireVoxels(*grid, arguments.input);
 

@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "crash_guard.h"
 
 namespace tufa::tools {
 namespace {
@@ -45,6 +46,11 @@ void addChoice(CLI::App& app, const std::string& name, Enum& value,
 }
 
 }  // namespace
+
+openvdb::GridBase::Ptr readVolume(const std::string& file, const std::optional<std::string>& name) {
+  const CrashGuard guard(file);
+  return readGrid(file, name);
+}
 
 void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
   if (!grid.empty()) return;

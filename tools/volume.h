@@ -5,6 +5,7 @@
 #include <tufa/check.h>
 #include <tufa/contour.h>
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace CLI {
@@ -21,6 +22,10 @@ void addContourOptions(CLI::App& app, ContourOptions& options);
 /// "0.1" is in voxels, "0.1w" in world units; gives voxels. `option` is for the message.
 [[nodiscard]] double readTolerance(const std::string& option, const std::string& text,
                                    const openvdb::GridBase& grid);
+
+/// readGrid(), under a CrashGuard.
+[[nodiscard]] openvdb::GridBase::Ptr readVolume(const std::string& file,
+                                                const std::optional<std::string>& name);
 
 /// Throws Error(UnsupportedGrid) if the grid has no active voxels.
 void requireVoxels(const openvdb::GridBase& grid, const std::string& file);

@@ -22,9 +22,6 @@ constexpr double kSampleSpacing = 2;
 // Most voxels to search around a sample beyond the nearest cells. What is farther is measured to
 // the base quad that the polygon comes from.
 constexpr double kLongestReach = 16;
-// A point above a triangle and nearer than this share of the tolerance need not look for a nearer
-// one.
-constexpr double kNearShare = 0.25;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 

@@ -16,7 +16,7 @@ namespace {
 /// full disk.
 class VdbWriter : private openvdb::io::Archive {
  public:
-  void write(std::ostream& stream, const openvdb::GridCPtrVec& grids, bool seekable) const {
+  void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids, bool seekable) const {
     Archive::write(stream, grids, seekable);
   }
 };
@@ -75,7 +75,7 @@ void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
   try {
-    VdbWriter().write(stream, grids, file.seekable());
+    VdbWriter().writeTo(stream, grids, file.seekable());
   } catch (const Error&) {
     throw;
   } catch (const openvdb::Exception& error) {

@@ -1,5 +1,7 @@
 #include "io/vdb_reader.h"
 
+#include <openvdb/io/DelayedLoadMetadata.h>
+
 #include <tufa/error.h>
 #include <algorithm>
 #include <array>
@@ -82,12 +84,15 @@ void VdbReader::readHead() {
   setFormatVersion(stream_);
   setLibraryVersion(stream_);
   setDataCompression(stream_);
+  requireSoundMetadata();
   openvdb::MetaMap fileMetadata;
   fileMetadata.readMeta(stream_);
 
   const std::int32_t count = readGridCount(stream_);
+  if (count < 0) fail("it claims to hold " + std::to_string(count) + " grids");
   for (std::int32_t n = 0; n < count; ++n) {
     Entry& entry = entries_.emplace_back();
+    requireSoundDescriptor();
     entry.whole = entry.descriptor.read(stream_);
     if (inputHasGridOffsets()) {
       entry.whole.reset();
@@ -101,6 +106,7 @@ void VdbReader::readHead() {
 
 void VdbReader::readSequentially(std::size_t index) {
   Entry& entry = entries_[index];
+  requireSoundGridHead();
   Archive::readGrid(entry.whole, entry.descriptor, stream_);
   if (!entry.descriptor.isInstance()) return;
   const auto parent = std::find_if(entries_.begin(), entries_.end() - 1, [&](const Entry& other) {
@@ -118,6 +124,70 @@ void VdbReader::requireInside(const GridDescriptor& descriptor) const {
     fail("the file has " + std::to_string(fileBytes_) + " bytes, grid \"" + descriptor.gridName() +
          "\" reaches to byte " + std::to_string(descriptor.getEndPos()) + ": truncated or damaged");
   }
+}
+
+std::uint64_t VdbReader::bytesLeft() {
+  return fileBytes_ - std::min(fileBytes_, static_cast<std::uint64_t>(stream_.tellg()));
+}
+
+std::uint32_t VdbReader::takeNumber() {
+  std::uint32_t number = 0;
+  stream_.read(reinterpret_cast<char*>(&number), sizeof number);
+  return number;
+}
+
+std::string VdbReader::takeText() {
+  const std::uint32_t length = takeNumber();
+  if (length > bytesLeft()) {
+    fail("it claims a text of " + std::to_string(length) + " bytes where " +
+         std::to_string(bytesLeft()) + " are left: truncated or damaged");
+  }
+  std::string text(length, '\0');
+  stream_.read(text.data(), length);
+  return text;
+}
+
+void VdbReader::takeMetadata() {
+  const std::uint32_t count = takeNumber();
+  for (std::uint32_t n = 0; n < count; ++n) {
+    takeText();  // the name
+    const std::string type = takeText();
+    const std::string value = takeText();
+    if (type != openvdb::io::DelayedLoadMetadata::staticTypeName() || value.size() < 4) continue;
+    // One number for each leaf, packed: their count says how much room OpenVDB will make.
+    std::uint32_t leaves = 0;
+    std::memcpy(&leaves, value.data(), sizeof leaves);
+    if (leaves > fileBytes_) fail("it claims " + std::to_string(leaves) + " leaves: damaged");
+  }
+}
+
+void VdbReader::requireSoundMetadata() {
+  const auto start = stream_.tellg();
+  takeMetadata();
+  stream_.seekg(start);
+}
+
+void VdbReader::requireSoundDescriptor() {
+  const auto start = stream_.tellg();
+  takeText();  // the grid's name
+  takeText();  // its type
+  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) takeText();  // its parent
+  stream_.seekg(start);
+}
+
+void VdbReader::requireSoundGridHead() {
+  const auto start = stream_.tellg();
+  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION) takeNumber();
+  takeMetadata();
+  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) {
+    const std::string map = takeText();
+    if (map == openvdb::math::NonlinearFrustumMap::mapType()) {
+      constexpr std::streamoff kBoxTaperDepth = 8 * sizeof(double);
+      stream_.seekg(kBoxTaperDepth, std::ios_base::cur);
+      takeText();  // the kind of its second map
+    }
+  }
+  stream_.seekg(start);
 }
 
 std::string VdbReader::gridName(std::size_t index) const {
@@ -140,6 +210,7 @@ GridBase::Ptr VdbReader::readOutline(std::size_t index) {
   guarded("grid \"" + gridName(index) + "\"", [&] {
     grid = createGrid(entry.descriptor);
     entry.descriptor.seekToGrid(stream_);
+    requireSoundGridHead();
     readGridCompression(stream_);
     grid->readMeta(stream_);
     if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) {
@@ -153,6 +224,7 @@ GridBase::Ptr VdbReader::readOutline(std::size_t index) {
 GridBase::Ptr VdbReader::readTree(const GridDescriptor& descriptor) {
   GridBase::Ptr grid = createGrid(descriptor);
   descriptor.seekToGrid(stream_);
+  requireSoundGridHead();
   Archive::readGrid(grid, descriptor, stream_);
   return grid;
 }

@@ -42,6 +42,17 @@ class VdbReader : private openvdb::io::Archive {
   void readHead();
   void readSequentially(std::size_t index);
   void requireInside(const openvdb::io::GridDescriptor& descriptor) const;
+
+  // OpenVDB makes room for whatever length or count a file claims, up to 4 GiB at a time. These
+  // look ahead, fail where that is more than the file can hold, and leave the stream where it was.
+  void requireSoundMetadata();
+  void requireSoundDescriptor();
+  void requireSoundGridHead();
+
+  [[nodiscard]] std::uint64_t bytesLeft();
+  std::uint32_t takeNumber();
+  std::string takeText();
+  void takeMetadata();
   openvdb::GridBase::Ptr readTree(const openvdb::io::GridDescriptor& descriptor);
   void guarded(const std::string& what, const std::function<void()>& work) const;
   [[noreturn]] void fail(const std::string& cause) const;
