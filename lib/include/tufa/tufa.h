@@ -1,6 +1,7 @@
 #pragma once
 
 // The whole of Tufa::tufa. The checker, <tufa/check.h>, is apart: it links CGAL under the GPL.
+#include <tufa/chunks.h>
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/io.h>

@@ -1,0 +1,165 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/contour.h>
+#include <tufa/lod.h>
+#include <tufa/mesh.h>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace tufa {
+
+/// The faces of a chunk: -x, +x, -y, +y, -z, +z of index space have the numbers 0 to 5.
+inline constexpr int kChunkFaces = 6;
+
+/// Options of buildChunks().
+struct ChunkOptions {
+  /// How the surface is read. `tolerance` is that of level 0. Not looked at: `uniform`, `simplify`,
+  /// `normals` (always of the gradient), `keepLeaves`; no cell is larger than a chunk.
+  ContourOptions contour;
+  int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
+  int levels = 4;      ///< of each chunk, 1 to 16
+  double factor = 4;   ///< each level's tolerance over that of the level before; above 1
+  /// The chunks to make; empty: all. A chunk is the same bytes whichever are made with it.
+  std::vector<openvdb::Coord> only;
+};
+
+/// A curve in which the surface passes a face of a chunk, as one level of the chunk has it. The
+/// uniform mesh divides it into short arcs, the same on both sides of the face and at every level.
+struct ChunkSeam {
+  static constexpr VertexIndex kNone = std::numeric_limits<VertexIndex>::max();
+
+  /// For each arc the vertex inside the chunk that stands for it. From arc to arc the chunk's
+  /// surface lies to the left of the face, seen from outside.
+  std::vector<VertexIndex> tiles;
+  std::vector<VertexIndex> line;  ///< for each arc the vertex on the face that stands for it
+  VertexIndex begin = kNone;      ///< vertex on a chunk edge before the first arc, if any
+  VertexIndex end = kNone;        ///< vertex on a chunk edge behind the last arc, if any
+  bool closed = false;            ///< the last arc is followed by the first
+};
+
+/// A chunk at one level: an interior, and for each face two strips of which one is drawn. All
+/// triangles name the same vertices.
+struct ChunkLevel {
+  std::vector<Position> positions;  ///< world space
+  std::vector<Normal> normals;      ///< one for each position
+  std::vector<Triangle> interior;   ///< always drawn
+  /// Towards a neighbour of the same level or a finer one.
+  std::array<std::vector<Triangle>, kChunkFaces> regular;
+  /// Towards a neighbour that is coarser by one level; none at the last level.
+  std::array<std::vector<Triangle>, kChunkFaces> transition;
+  /// What the strips were made of: for strips to neighbours that are coarser by more.
+  std::array<std::vector<ChunkSeam>, kChunkFaces> seams;
+  double maxErrorVoxels = 0;         ///< certified, with the regular strips
+  double transitionErrorVoxels = 0;  ///< certified, with the transition strips
+};
+
+/// A cube of chunkSize voxels along each edge, from index * chunkSize on, that the surface passes.
+struct Chunk {
+  openvdb::Coord index;            ///< in chunks
+  std::vector<ChunkLevel> levels;  ///< the finest first
+};
+
+/// What is known of one level of a chunk without its mesh.
+struct ChunkLevelEntry {
+  std::string file;                     ///< relative to the folder; empty if not written
+  std::size_t vertices = 0;             ///< with those of both kinds of strips
+  std::size_t interiorTriangles = 0;    ///< of ChunkLevel::interior
+  std::size_t regularTriangles = 0;     ///< of all six regular strips
+  std::size_t transitionTriangles = 0;  ///< of all six transition strips
+  Position least;                       ///< corner of the bounding box, world space
+  Position greatest;                    ///< corner of the bounding box, world space
+  double maxErrorVoxels = 0;            ///< as ChunkLevel has it
+  double transitionErrorVoxels = 0;     ///< as ChunkLevel has it
+  std::size_t intersectionsLeft = 0;    ///< pairs of its triangles that meet
+};
+
+/// What is known of a chunk without its meshes.
+struct ChunkEntry {
+  openvdb::Coord index;                 ///< in chunks
+  std::vector<ChunkLevelEntry> levels;  ///< the finest first
+};
+
+/// All chunks of a volume.
+struct ChunkIndex {
+  std::string grid;                ///< name of the grid
+  int chunkSize = 64;              ///< voxels
+  std::vector<double> tolerances;  ///< of each level, voxels
+  double voxelSize = 1;            ///< world units: the cube root of a voxel's volume
+  /// From index to world space: rows of a matrix that a row vector (x, y, z, 1) is multiplied with.
+  std::array<std::array<double, 4>, 4> transform{};
+  /// World point, the same for all chunks, that files of single precision count positions from.
+  Position origin{0, 0, 0};
+  std::vector<ChunkEntry> chunks;  ///< sorted by index
+
+  /// The place of a chunk in `chunks`, or -1.
+  [[nodiscard]] std::ptrdiff_t find(const openvdb::Coord& index) const;
+  /// The place of the chunk beyond a face of a chunk, or -1.
+  [[nodiscard]] std::ptrdiff_t neighbour(std::size_t chunk, int face) const;
+};
+
+/// Takes the chunks, one at a time, from the calling thread, in the order they are made. The index
+/// has everything but its `chunks`.
+using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
+
+/// Divides the surface of `grid` into chunks, each at several levels of detail. Whatever level each
+/// chunk is drawn at, the surface is closed where neighbours differ by at most one level and the
+/// strips are chosen by transitionMask(): vertices on common faces are the same bits, positions and
+/// normals. See contour() for what is kept and for the errors thrown; throws Error(InvalidArgument)
+/// for options out of their range, too.
+///
+/// Memory holds the grid and a few chunks.
+ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
+                       const ChunkSink& sink, ContourReport* report = nullptr);
+
+/// The triangles of a chunk to draw: its interior, and for each face the transition strip if the
+/// face's bit in `mask` is set, else the regular one. Only the vertices that they use.
+[[nodiscard]] Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask);
+
+/// A bit for each face of a chunk whose neighbour is drawn at a coarser level. `lods` has a level
+/// for each of the index's chunks.
+[[nodiscard]] unsigned transitionMask(const ChunkIndex& index, std::size_t chunk,
+                                      const std::vector<std::size_t>& lods);
+
+/// Lowers levels (to finer ones) until neighbours differ by at most one.
+void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods);
+
+/// For each chunk the coarsest level whose certified error is seen under at most `pixelError`
+/// pixels, made finer where neighbours would differ by more than one level.
+[[nodiscard]] std::vector<std::size_t> selectLods(const ChunkIndex& index, const Camera& camera,
+                                                  double pixelError = 1);
+
+/// One mesh of all chunks, each at its own level; vertices at equal positions become one. Levels of
+/// neighbours may differ by more than one if the chunks have their seams. Chunks that are not there
+/// leave their neighbours open. Throws Error(InvalidArgument) if `lods` does not fit, or where
+/// seams are needed and missing.
+[[nodiscard]] Mesh assembleChunks(const std::vector<Chunk>& chunks,
+                                  const std::vector<std::size_t>& lods);
+
+/// How chunks are stored.
+enum class ChunkFormat {
+  Glb,  ///< a primitive for the interior and for each strip, one vertex buffer
+  Ply,  ///< a face property `part`: 0 the interior, 1 to 6 regular strips, 7 to 12 transition ones
+};
+
+/// Writes the meshes of a chunk into a folder, one file a level, and gives their names, relative to
+/// it. Each file appears whole or not at all. Throws Error(UnwritableFile).
+std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
+                                    const std::string& folder, ChunkFormat format);
+
+/// Writes chunks.json. Throws Error(UnwritableFile).
+void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
+
+/// Reads chunks.json. Throws Error(UnreadableFile).
+[[nodiscard]] ChunkIndex readChunkIndex(const std::string& folder);
+
+/// Reads the meshes of a chunk back, without seams. Throws Error(UnreadableFile).
+[[nodiscard]] Chunk readChunk(const ChunkIndex& index, std::size_t chunk,
+                              const std::string& folder);
+
+}  // namespace tufa
