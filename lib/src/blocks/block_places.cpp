@@ -66,6 +66,23 @@ void BlockPlaces<TreeT>::build(const TreeT& tree, const IsoChoice& iso, base::Jo
 }
 
 template <class TreeT>
+void BlockPlaces<TreeT>::buildBox(const openvdb::CoordBBox& box,
+                                  const std::function<BlockRef(const Coord&)>& find) {
+  box_ = box;
+  const openvdb::Coord dim = box.dim();
+  places_.resize(static_cast<std::size_t>(dim[0] / kBlockSize) *
+                 static_cast<std::size_t>(dim[1] / kBlockSize) *
+                 static_cast<std::size_t>(dim[2] / kBlockSize));
+  for (int x = box.min()[0]; x <= box.max()[0]; x += kBlockSize) {
+    for (int y = box.min()[1]; y <= box.max()[1]; y += kBlockSize) {
+      for (int z = box.min()[2]; z <= box.max()[2]; z += kBlockSize) {
+        places_[boxIndex({x, y, z})] = find({x, y, z});
+      }
+    }
+  }
+}
+
+template <class TreeT>
 void BlockPlaces<TreeT>::addTileBlocks(const std::vector<Coord>& origins, BlockRef first) {
   std::vector<Coord> loose;
   for (std::size_t i = 0; i < origins.size(); ++i) {

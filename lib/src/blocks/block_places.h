@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/job.h"
@@ -44,12 +45,17 @@ class BlockPlaces {
 
   /// Leaves are numbered in the order of the tree.
   void build(const TreeT& tree, const IsoChoice& iso, base::Job& job);
+  /// Blocks in a box alone, each at its place; `find` gives the blocks' numbers, or the sides of
+  /// tiles. All else is kUnknown.
+  void buildBox(const openvdb::CoordBBox& box,
+                const std::function<BlockRef(const openvdb::Coord&)>& find);
   /// Puts blocks, numbered from `first` on, where there are tiles.
   void addTileBlocks(const std::vector<openvdb::Coord>& origins, BlockRef first);
 
   /// The block at these coordinates or the side of the tile; kUnknown where a whole region or more
   /// is one tile.
   [[nodiscard]] BlockRef find(const openvdb::Coord& origin) const {
+    if (!box_.empty()) return box_.isInside(origin) ? places_[boxIndex(origin)] : kUnknown;
     const BlockRef* region = regionAt(origin);
     if (region != nullptr) return region[Region::coordToOffset(origin)];
     const std::int32_t loose = looseTable_.find(origin);
@@ -60,6 +66,7 @@ class BlockPlaces {
   /// (dx + 1) * 9 + (dy + 1) * 3 + dz + 1, if all of them lie in one region; else returns false.
   template <class Take>
   bool forNear(const openvdb::Coord& origin, const Take& take) const {
+    if (!box_.empty()) return false;
     constexpr int kLast = (1 << Region::LOG2DIM) - 1;
     for (int axis = 0; axis < 3; ++axis) {
       const int local = (origin[axis] / kBlockSize) & kLast;
@@ -87,6 +94,13 @@ class BlockPlaces {
                : &places_[static_cast<std::size_t>(region) * Region::NUM_VALUES];
   }
 
+  [[nodiscard]] std::size_t boxIndex(const openvdb::Coord& origin) const {
+    const openvdb::Coord dim = box_.dim(), at = origin - box_.min();
+    const auto size = [](int voxels) { return static_cast<std::size_t>(voxels / kBlockSize); };
+    return (size(at[0]) * size(dim[1]) + size(at[1])) * size(dim[2]) + size(at[2]);
+  }
+
+  openvdb::CoordBBox box_;  // if not empty, places_ holds all places in it
   OriginTable regionTable_;
   std::vector<BlockRef> places_;  // Region::NUM_VALUES for each region
   OriginTable looseTable_;        // of the blocks in no region

@@ -83,6 +83,21 @@ Blocks<TreeT>::Blocks(const TreeT& tree, const IsoChoice& iso, NonFinite nonFini
 }
 
 template <class TreeT>
+Blocks<TreeT>::Blocks(const Blocks& whole, const openvdb::CoordBBox& box)
+    : tree_(whole.tree_), iso_(whole.iso_), nonFiniteValues_(whole.nonFiniteValues_) {
+  Accessor accessor(*tree_);
+  places_.buildBox(box, [&](const Coord& origin) {
+    const BlockRef block = whole.find(origin, accessor);
+    if (block < 0) return block;
+    origins_.push_back(origin);
+    values_.push_back(whole.values_[block]);
+    masks_.push_back(whole.masks_[block]);
+    inside_.push_back(whole.inside_[block]);
+    return static_cast<BlockRef>(origins_.size() - 1);
+  });
+}
+
+template <class TreeT>
 std::uint64_t Blocks<TreeT>::active(BlockRef block, int x) const {
   if (masks_[block] != nullptr) return masks_[block]->template getWord<std::uint64_t>(x);
   return tree_->isValueOn(origins_[block]) ? ~std::uint64_t{0} : 0;

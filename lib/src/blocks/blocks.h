@@ -34,6 +34,11 @@ class Blocks {
   /// `nonFinite` is Outside.
   Blocks(const TreeT& tree, const IsoChoice& iso, NonFinite nonFinite, base::Job& job);
 
+  /// The blocks of `whole` in a box of whole blocks. What lies outside of it is known by the first
+  /// sample of each block alone, so that the outermost layer of cells may not be as it is in
+  /// `whole`.
+  Blocks(const Blocks& whole, const openvdb::CoordBBox& box);
+
   [[nodiscard]] std::size_t count() const { return origins_.size(); }
   [[nodiscard]] const openvdb::Coord& origin(BlockRef block) const { return origins_[block]; }
   [[nodiscard]] const BlockBits& inside(BlockRef block) const { return inside_[block]; }

@@ -58,6 +58,18 @@ class Merger {
            openvdb::Vec3d(x + 0.5, y + 0.5, z + 0.5) * size;
   }
 
+  // Whether two cells of a level are in chunks of their own, between which there is no balance.
+  [[nodiscard]] bool areApart(const openvdb::Coord& a, const openvdb::Coord& b, int level) const {
+    const int shift = rule_.chunkLevel - level;
+    if (shift >= 31) return false;
+    return (a[0] >> shift) != (b[0] >> shift) || (a[1] >> shift) != (b[1] >> shift) ||
+           (a[2] >> shift) != (b[2] >> shift);
+  }
+
+  [[nodiscard]] bool areBlocksApart(std::size_t a, std::size_t b) const {
+    return areApart(forest_.levels[0].cells[a], forest_.levels[0].cells[b], 3);
+  }
+
   void mergeLevel1() {
     forBlocks([&](std::size_t i) {
       const BlockForest& block = forest_.blocks[i];
@@ -94,7 +106,7 @@ class Merger {
     for (int i = 0; i < 27; ++i) {
       const SurfaceBlockIndex near =
           topology_.neighbour(topology_.blocks[block], i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
-      if (near == components::kNoSurfaceBlock) continue;
+      if (near == components::kNoSurfaceBlock || areBlocksApart(block, near)) continue;
       unmerged[i] = forest_.blocks[near].surface1 & ~merged_.level1[near];
       any |= unmerged[i];
     }
@@ -125,7 +137,7 @@ class Merger {
       for (int n = 0; merged && n < 27; ++n) {
         const int dx = n / 9 - 1, dy = n / 3 % 3 - 1, dz = n % 3 - 1;
         const SurfaceBlockIndex near = topology_.neighbour(topology_.blocks[i], dx, dy, dz);
-        if (near == components::kNoSurfaceBlock) continue;
+        if (near == components::kNoSurfaceBlock || areBlocksApart(i, near)) continue;
         const unsigned unmerged = forest_.blocks[near].surface2 & ~unsigned{merged_.level2[near]};
         merged = (unmerged & touching(dx, dy, dz)) == 0;
       }
@@ -157,9 +169,10 @@ class Merger {
           merged = keepsRule(level.clusters[c], level.level, middle);
         }
         for (int n = 0; merged && n < 64; ++n) {
-          const std::uint32_t near = below.find(openvdb::Coord(2 * cell[0] + (n >> 4) - 1,
-                                                               2 * cell[1] + ((n >> 2) & 3) - 1,
-                                                               2 * cell[2] + (n & 3) - 1));
+          const openvdb::Coord beside(2 * cell[0] + (n >> 4) - 1, 2 * cell[1] + ((n >> 2) & 3) - 1,
+                                      2 * cell[2] + (n & 3) - 1);
+          if (areApart(cell * 2, beside, level.level - 1)) continue;
+          const std::uint32_t near = below.find(beside);
           merged = near == forest::kNone || mergedBelow[near] != 0;
         }
         merged_.levels[index][i] = merged ? 1 : 0;

@@ -71,6 +71,23 @@ Level0<TreeT>::Level0(const openvdb::Grid<TreeT>& grid, const ContourOptions& op
       scale_(blocks::readFieldScale(grid, iso_)),
       topology_(checkedTopology(blocks_, scale_, options, ends, job)),
       affine_(grid.transform(), lowestOrigin(blocks_)) {
+  makeMesh(options, ends, job);
+}
+
+template <class TreeT>
+Level0<TreeT>::Level0(const openvdb::math::Transform& transform, const blocks::Blocks<TreeT>& whole,
+                      const openvdb::CoordBBox& box, const blocks::FieldScale& scale,
+                      const ContourOptions& options, const StageEnds& ends, base::Job& job)
+    : iso_(whole.iso()),
+      blocks_(whole, box),
+      scale_(scale),
+      topology_(checkedTopology(blocks_, scale_, options, ends, job)),
+      affine_(transform, lowestOrigin(blocks_)) {
+  makeMesh(options, ends, job);
+}
+
+template <class TreeT>
+void Level0<TreeT>::makeMesh(const ContourOptions& options, const StageEnds& ends, base::Job& job) {
   job.beginStage("vertices", ends.vertices);
   const bool normals = options.normals == Normals::Gradient || scale_.distance || !options.uniform;
   sides_ = vertices::placeVertices(blocks_, scale_, topology_, affine_, normals, mesh_, job);

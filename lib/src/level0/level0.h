@@ -35,6 +35,11 @@ class Level0 {
   /// Runs the stages. Throws Error as contour() does.
   Level0(const openvdb::Grid<TreeT>& grid, const ContourOptions& options, const StageEnds& ends,
          base::Job& job);
+  /// The same for the blocks of a box alone, see blocks::Blocks; all that is read from the whole
+  /// grid is given.
+  Level0(const openvdb::math::Transform& transform, const blocks::Blocks<TreeT>& whole,
+         const openvdb::CoordBBox& box, const blocks::FieldScale& scale,
+         const ContourOptions& options, const StageEnds& ends, base::Job& job);
   Level0(const Level0&) = delete;
   Level0& operator=(const Level0&) = delete;
 
@@ -58,6 +63,7 @@ class Level0 {
   [[nodiscard]] Mesh takeMesh() { return std::move(mesh_); }
 
  private:
+  void makeMesh(const ContourOptions& options, const StageEnds& ends, base::Job& job);
   void repair(base::Job& job);
 
   blocks::IsoChoice iso_;

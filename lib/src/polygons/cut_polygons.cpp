@@ -108,15 +108,20 @@ struct Counts {
 
 CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base, const base::Affine& affine,
                 base::Job& job) {
+  return meshCut(forest, cut, base, base.quads, affine, job);
+}
+
+CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base,
+                const std::vector<Quad>& quads, const base::Affine& affine, base::Job& job) {
   CutMesh result;
   Mesh& mesh = result.mesh;
   placeVertices(forest, cut, base, affine, mesh, job);
-  const std::size_t chunks = (base.quads.size() + kChunk - 1) / kChunk;
+  const std::size_t chunks = (quads.size() + kChunk - 1) / kChunk;
   std::vector<Counts> before(chunks + 1);
   const auto forChunk = [&](std::size_t chunk, const auto& body) {
-    const std::size_t end = std::min((chunk + 1) * kChunk, base.quads.size());
+    const std::size_t end = std::min((chunk + 1) * kChunk, quads.size());
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      const Polygon polygon = polygonOf(cut, base.quads[i]);
+      const Polygon polygon = polygonOf(cut, quads[i]);
       if (polygon.count >= 3) body(i, polygon);
     }
   };
@@ -152,7 +157,7 @@ CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base, const ba
           return cut.clusters[vertex].level == 0;
         });
         if (!unchanged) {
-          startAtBetterDiagonal(mesh, base, base.quads[source], affine.voxelSize(), quad);
+          startAtBetterDiagonal(mesh, base, quads[source], affine.voxelSize(), quad);
         }
       });
     }

@@ -20,5 +20,9 @@ struct CutMesh {
 /// a quad, three a triangle, fewer nothing. Quads start where their better diagonal does.
 [[nodiscard]] CutMesh meshCut(const forest::Forest& forest, const cut::Cut& cut, const Mesh& base,
                               const base::Affine& affine, base::Job& job);
+/// The same of other quads than those of the base mesh, between its vertices.
+[[nodiscard]] CutMesh meshCut(const forest::Forest& forest, const cut::Cut& cut, const Mesh& base,
+                              const std::vector<Quad>& quads, const base::Affine& affine,
+                              base::Job& job);
 
 }  // namespace tufa::polygons
