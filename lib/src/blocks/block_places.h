@@ -17,6 +17,8 @@ namespace tufa::blocks {
 using BlockRef = std::int32_t;
 inline constexpr BlockRef kOutsideTile = -1;
 inline constexpr BlockRef kInsideTile = -2;
+/// A block that was left out, where Blocks holds only a part of a grid.
+inline constexpr BlockRef kMissingBlock = -4;
 
 /// From the origin of a block or region to its number.
 class OriginTable {

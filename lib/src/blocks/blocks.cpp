@@ -84,11 +84,14 @@ Blocks<TreeT>::Blocks(const TreeT& tree, const IsoChoice& iso, NonFinite nonFini
 
 template <class TreeT>
 Blocks<TreeT>::Blocks(const Blocks& whole, const openvdb::CoordBBox& box)
-    : tree_(whole.tree_), iso_(whole.iso_), nonFiniteValues_(whole.nonFiniteValues_) {
+    : tree_(whole.tree_), iso_(whole.iso_), part_(true), nonFiniteValues_(whole.nonFiniteValues_) {
   Accessor accessor(*tree_);
-  places_.buildBox(box, [&](const Coord& origin) {
+  openvdb::CoordBBox around = box;
+  around.expand(kBlockSize);
+  places_.buildBox(around, [&](const Coord& origin) {
     const BlockRef block = whole.find(origin, accessor);
     if (block < 0) return block;
+    if (!box.isInside(origin)) return kMissingBlock;
     origins_.push_back(origin);
     values_.push_back(whole.values_[block]);
     masks_.push_back(whole.masks_[block]);
@@ -197,13 +200,22 @@ Neighbours Blocks<TreeT>::upperNeighbours(BlockRef block, Accessor& accessor) co
   return upper;
 }
 
+// A missing block goes on as the one before it ends: there is no surface to be found.
+template <class TreeT>
+std::uint64_t Blocks<TreeT>::sides(const Neighbours& neighbours, int dx, int dy, int dz,
+                                   int x) const {
+  constexpr std::uint64_t kFirstZ = 0x0101010101010101u;
+  const BlockRef block = neighbours[neighbourIndex(dx, dy, dz)];
+  if (block >= 0) return inside_[block].slabs[x];
+  if (block != kMissingBlock) return block == kInsideTile ? ~std::uint64_t{0} : 0;
+  if (dx != 0) return sides(neighbours, 0, dy, dz, kBlockSize - 1);
+  if (dy != 0) return sides(neighbours, 0, 0, dz, x) >> 56;
+  return (sides(neighbours, 0, 0, 0, x) >> 7) & kFirstZ;
+}
+
 template <class TreeT>
 CornerWords Blocks<TreeT>::cornerWords(const Neighbours& neighbours) const {
-  const auto slab = [&](int dx, int dy, int dz, int x) -> std::uint64_t {
-    const BlockRef block = neighbours[neighbourIndex(dx, dy, dz)];
-    if (block < 0) return block == kInsideTile ? ~std::uint64_t{0} : 0;
-    return inside_[block].slabs[x];
-  };
+  const auto slab = [&](int dx, int dy, int dz, int x) { return sides(neighbours, dx, dy, dz, x); };
   CornerWords corners;
   for (int x = 0; x <= kBlockSize; ++x) {
     const int dx = x == kBlockSize ? 1 : 0;

@@ -34,9 +34,8 @@ class Blocks {
   /// `nonFinite` is Outside.
   Blocks(const TreeT& tree, const IsoChoice& iso, NonFinite nonFinite, base::Job& job);
 
-  /// The blocks of `whole` in a box of whole blocks. What lies outside of it is known by the first
-  /// sample of each block alone, so that the outermost layer of cells may not be as it is in
-  /// `whole`.
+  /// The blocks of `whole` in a box of whole blocks. The surface ends where others would follow:
+  /// the outermost layer of cells is not as it is in `whole`.
   Blocks(const Blocks& whole, const openvdb::CoordBBox& box);
 
   [[nodiscard]] std::size_t count() const { return origins_.size(); }
@@ -55,6 +54,8 @@ class Blocks {
   [[nodiscard]] CornerWords cornerWords(const Neighbours& neighbours) const;
   [[nodiscard]] const TreeT& tree() const { return *tree_; }
   [[nodiscard]] const IsoChoice& iso() const { return iso_; }
+  /// Whether blocks may be missing.
+  [[nodiscard]] bool isPart() const { return part_; }
   [[nodiscard]] std::size_t nonFiniteValues() const { return nonFiniteValues_; }
   /// Active voxels of the grid, those of tiles included.
   [[nodiscard]] std::size_t activeVoxels() const { return activeVoxels_; }
@@ -62,6 +63,8 @@ class Blocks {
  private:
   using Leaf = typename TreeT::LeafNodeType;
 
+  [[nodiscard]] std::uint64_t sides(const Neighbours& neighbours, int dx, int dy, int dz,
+                                    int x) const;
   void readSigns(base::Job& job);
   void readTiles();
   [[noreturn]] void refuseNonFinite() const;
@@ -70,6 +73,7 @@ class Blocks {
 
   const TreeT* tree_;
   IsoChoice iso_;
+  bool part_ = false;
   std::size_t nonFiniteValues_ = 0;
   std::size_t activeVoxels_ = 0;
   openvdb::Coord firstNonFinite_;

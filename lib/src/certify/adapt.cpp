@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "certify/simplify_cut.h"
+#include "certify/split_cells.h"
 
 namespace tufa::certify {
 namespace {
@@ -18,22 +19,6 @@ constexpr int kMostSteps = 12;
 constexpr double kFirstTolerance = 0.1;
 constexpr double kFirstShare = 0.25;
 constexpr double kLeastTolerance = 0.01;
-
-// Forbids the cells of these vertices. Returns whether any could be split.
-bool splitCells(const std::vector<VertexIndex>& vertices, const cut::Cut& cut, int minLevel,
-                cut::CellFlags& forbidden) {
-  bool any = false;
-  for (const VertexIndex vertex : vertices) {
-    const cut::ClusterRef& ref = cut.clusters[vertex];
-    if (ref.level <= minLevel) continue;
-    any = true;
-    if (ref.level == 1) forbidden.level1[ref.parentCell] |= std::uint64_t{1} << ref.cell;
-    if (ref.level == 2)
-      forbidden.level2[ref.parentCell] |= static_cast<std::uint8_t>(1 << ref.cell);
-    if (ref.level >= 3) forbidden.levels[ref.level - 3][ref.parentCell] = 1;
-  }
-  return any;
-}
 
 std::vector<VertexIndex> baseVerticesOf(const cut::Cut& cut) {
   std::vector<VertexIndex> vertices;
@@ -62,24 +47,6 @@ std::int64_t eulerCharacteristic(const Mesh& mesh) {
          static_cast<std::int64_t>(mesh.triangles.size() + mesh.quads.size());
 }
 
-// The vertices whose cells must be split for the tolerance: those of the polygons that are too far,
-// and those that stand for base points that are.
-template <class TreeT>
-std::vector<VertexIndex> tooCoarse(const forest::Base<TreeT>& base, const Measured& mesh) {
-  std::vector<VertexIndex> vertices = mesh.deviation.coarse;
-  const std::size_t points = base.mesh.positions.size();
-  for (const std::uint64_t point : mesh.deviation.farPoints) {
-    if (point < points) {
-      vertices.push_back(mesh.cut.vertexOf[point]);
-      continue;
-    }
-    for (const VertexIndex corner : base.mesh.quads[point - points].vertices) {
-      vertices.push_back(mesh.cut.vertexOf[corner]);
-    }
-  }
-  return vertices;
-}
-
 // The coarsest cut found that keeps the rule.
 template <class TreeT>
 Measured cutAndMeasure(const forest::Base<TreeT>& base, const forest::Forest& forest,
@@ -93,9 +60,12 @@ Measured cutAndMeasure(const forest::Base<TreeT>& base, const forest::Forest& fo
     mesh.made = polygons::meshCut(forest, mesh.cut, base.mesh, base.affine, job);
     // Mending comes once the tolerance holds: there is less to mend then.
     mesh.deviation = certifier.measure(mesh.cut, mesh.made);
-    if (splitCells(tooCoarse(base, mesh), mesh.cut, rule.minLevel, forbidden)) continue;
+    if (splitCells(tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
+                   forbidden))
+      continue;
     mendAndMeasure(certifier, repair, mesh, job);
-    bool split = splitCells(tooCoarse(base, mesh), mesh.cut, rule.minLevel, forbidden);
+    bool split = splitCells(tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
+                            forbidden);
     split |= splitCells(mesh.meeting, mesh.cut, rule.minLevel, forbidden);
     if (split) continue;
     adaptive.leaves = cut::collectLeaves(forest, base.topology, merged);

@@ -53,6 +53,8 @@ Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& mad
   altered_.assign(cut.clusters.size(), 0);
   for (const VertexIndex vertex : altered) altered_[vertex] = 1;
   collectPieces();
+  pieceErrors_.assign(pieces_.size(), 0);
+  cornerErrors_.assign(cut.clusters.size(), 0);
   findChanges();
   Deviation total;
   double sum = 0, unused = 0;
@@ -82,6 +84,24 @@ Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& mad
   vertexOf_ = cut.vertexOf;
   alteredKept_ = altered_;
   return total;
+}
+
+template <class TreeT>
+std::vector<float> Certifier<TreeT>::errorsAtVertices() const {
+  std::vector<float> errors = cornerErrors_;
+  const auto raise = [&](VertexIndex vertex, float error) {
+    errors[vertex] = std::max(errors[vertex], error);
+  };
+  for (std::size_t i = 0; i < vertexErrors_.size(); ++i) raise(cut_->vertexOf[i], vertexErrors_[i]);
+  for (std::size_t i = 0; i < quadErrors_.size(); ++i) {
+    for (const VertexIndex corner : base_.mesh.quads[i].vertices) {
+      raise(cut_->vertexOf[corner], quadErrors_[i]);
+    }
+  }
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    for (const VertexIndex corner : pieces_[i].corners) raise(corner, pieceErrors_[i]);
+  }
+  return errors;
 }
 
 template <class TreeT>
@@ -224,6 +244,7 @@ void Certifier<TreeT>::measureQuad(std::size_t index, Part& part) {
     fine &= isFine(around[i]);
     touched |= touched_[around[i]] != 0;
   }
+  if (!ignored_.empty() && ignored_[index] != 0) return;
   float& error = quadErrors_[index];
   std::uint8_t& wandered = wandered_[base_.mesh.positions.size() + index];
   const Vec3d middle =
@@ -239,7 +260,7 @@ void Certifier<TreeT>::measureQuad(std::size_t index, Part& part) {
 }
 
 template <class TreeT>
-void Certifier<TreeT>::measureCorner(VertexIndex vertex, Part& part) const {
+void Certifier<TreeT>::measureCorner(VertexIndex vertex, Part& part) {
   if (changed_[vertex] == 0 || isFine(vertex)) return;
   if (firstAround_[vertex] == firstAround_[vertex + 1]) return;
   const Vec3d point = vectorOf(made_->mesh.positions[vertex]);
@@ -247,11 +268,12 @@ void Certifier<TreeT>::measureCorner(VertexIndex vertex, Part& part) const {
   const double distance = std::min(distanceToBase(point, facing(&vertex, 1)),
                                    surface_.distanceToQuad(point, piece.source));
   const double voxels = distance / base_.affine.voxelSize();
+  cornerErrors_[vertex] = static_cast<float>(voxels);
   note(point, voxels, &vertex, 1, part);
 }
 
 template <class TreeT>
-void Certifier<TreeT>::measurePiece(std::size_t index, Part& part) const {
+void Certifier<TreeT>::measurePiece(std::size_t index, Part& part) {
   const Piece& piece = pieces_[index];
   const auto& v = piece.corners;
   if (std::none_of(v.begin(), v.end(), [&](VertexIndex i) { return changed_[i] != 0; })) return;
@@ -271,6 +293,7 @@ void Certifier<TreeT>::measurePiece(std::size_t index, Part& part) const {
       const double distance =
           std::min(distanceToBase(point, outward), surface_.distanceToQuad(point, piece.source));
       note(point, distance / voxel, v.data(), 4, part);
+      pieceErrors_[index] = std::max(pieceErrors_[index], static_cast<float>(distance / voxel));
     }
   }
 }

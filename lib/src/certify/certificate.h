@@ -43,6 +43,9 @@ class Certifier {
   /// From now on. Rules differ in their tolerance only.
   void setRule(const cut::CutRule& rule) { rule_ = rule; }
 
+  /// From now on. A flag for each base quad whose middle the meshes do not reach; empty: none.
+  void setIgnored(std::vector<std::uint8_t> quads) { ignored_ = std::move(quads); }
+
   /// World distance from a point of a mesh whose normal there is `facing` to the base mesh;
   /// infinite if that is nowhere near. No nearer place is looked for than one nearer than `enough`.
   [[nodiscard]] double distanceToBase(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
@@ -55,6 +58,9 @@ class Certifier {
   /// before, too.
   [[nodiscard]] Deviation measure(const cut::Cut& cut, const polygons::CutMesh& made,
                                   const std::vector<VertexIndex>& altered = {});
+  /// Of the mesh measured last, if it was the first: for each vertex the largest distance found on
+  /// its polygons or of a base point that it or one of them stands for, voxels.
+  [[nodiscard]] std::vector<float> errorsAtVertices() const;
 
  private:
   // A triangle of the mesh that the base mesh does not have.
@@ -80,8 +86,8 @@ class Certifier {
   void findChanges();
   void measureVertex(std::size_t index, Part& part);
   void measureQuad(std::size_t index, Part& part);
-  void measurePiece(std::size_t index, Part& part) const;
-  void measureCorner(VertexIndex vertex, Part& part) const;
+  void measurePiece(std::size_t index, Part& part);
+  void measureCorner(VertexIndex vertex, Part& part);
   [[nodiscard]] bool findAround(VertexIndex vertex, const openvdb::Vec3d& point, double enough,
                                 double& squared, std::uint32_t& nearest) const;
   void walkNearer(const openvdb::Vec3d& point, double enough, double& squared,
@@ -105,6 +111,7 @@ class Certifier {
   const forest::Base<TreeT>& base_;
   BaseSurface<TreeT> surface_;
   cut::CutRule rule_;
+  std::vector<std::uint8_t> ignored_;
   base::Job& job_;
   const cut::Cut* cut_ = nullptr;
   const polygons::CutMesh* made_ = nullptr;
@@ -120,6 +127,8 @@ class Certifier {
   std::vector<float> quadErrors_;  ///< of the base quads, voxels
   double largestKept_ = 0;         ///< of the samples of polygons, over all cuts
   std::vector<Piece> pieces_;
+  std::vector<float> pieceErrors_;          ///< of those measured last, voxels
+  std::vector<float> cornerErrors_;         ///< of the vertices measured last, voxels
   std::vector<std::uint32_t> firstAround_;  ///< of each vertex, its pieces in around_
   std::vector<std::uint32_t> around_;
 };

@@ -127,7 +127,7 @@ class TopologyBuilder {
 
   Topology build(Ambiguity rule, bool cap) {
     findSurfaceBlocks();
-    chooseSpecialBlocks(scale_.narrowBand && !cap);
+    chooseSpecialBlocks(scale_.narrowBand && !cap, blocks_.isPart());
     joinFaces(rule);
     flipFaces();
     countVertices();
@@ -181,7 +181,8 @@ class TopologyBuilder {
   }
 
   // A block is special if a cell of it may have several components or touches a cut edge.
-  void chooseSpecialBlocks(bool cut) {
+  void chooseSpecialBlocks(bool dataEnds, bool blocksEnd) {
+    const bool cut = dataEnds || blocksEnd;
     const std::size_t count = topology_.blocks.size();
     std::vector<std::array<BlockBits, 3>> cuts(cut ? count : 0);
     std::vector<std::uint8_t> special(count, 0);
@@ -190,7 +191,8 @@ class TopologyBuilder {
       const CornerWords corners = blocks_.cornerWords(block.neighbours);
       block.quadCount = countCrossedEdges(corners);
       special[i] = mayHaveSeveralComponents(corners) ? 1 : 0;
-      if (cut) hasCut[i] = findCutEdges(block, corners, accessor, cuts[i]) ? 1 : 0;
+      if (dataEnds && findCutEdges(block, corners, accessor, cuts[i])) hasCut[i] = 1;
+      if (blocksEnd && cutAtMissing(block, corners, cuts[i])) hasCut[i] = 1;
     });
     for (std::size_t i = 0; i < count; ++i) {
       SurfaceBlock& block = topology_.blocks[i];
@@ -253,6 +255,30 @@ class TopologyBuilder {
       found |= oppositeCornersAlone(w, n);
     }
     return found != 0;
+  }
+
+  // Crossed edges with a cell in a missing block.
+  static bool cutAtMissing(const SurfaceBlock& block, const CornerWords& corners,
+                           std::array<BlockBits, 3>& cuts) {
+    constexpr std::uint64_t kFirstY = 0xff, kFirstZ = 0x0101010101010101u;
+    bool any = false;
+    for (int corner = 1; corner < kCorners; ++corner) {
+      const int dx = corner >> 2, dy = (corner >> 1) & 1, dz = corner & 1;
+      if (block.neighbours[blocks::neighbourIndex(-dx, -dy, -dz)] != blocks::kMissingBlock)
+        continue;
+      const std::uint64_t layer =
+          (dy != 0 ? kFirstY : ~std::uint64_t{0}) & (dz != 0 ? kFirstZ : ~std::uint64_t{0});
+      for (int x = 0; x < (dx != 0 ? 1 : kBlockSize); ++x) {
+        const auto crossed = crossedEdges(corners, x);
+        for (int axis = 0; axis < 3; ++axis) {
+          // The cells around an edge lie beside it on the other axes.
+          if ((axis == 0 ? dx : axis == 1 ? dy : dz) != 0) continue;
+          cuts[axis].slabs[x] |= crossed[axis] & layer;
+          any |= (crossed[axis] & layer) != 0;
+        }
+      }
+    }
+    return any;
   }
 
   // Sign changes between an active and an inactive sample that a distance cannot make in one step.

@@ -171,7 +171,7 @@ class Merger {
         for (int n = 0; merged && n < 64; ++n) {
           const openvdb::Coord beside(2 * cell[0] + (n >> 4) - 1, 2 * cell[1] + ((n >> 2) & 3) - 1,
                                       2 * cell[2] + (n & 3) - 1);
-          if (areApart(cell * 2, beside, level.level - 1)) continue;
+          if (areApart(cell << 1, beside, level.level - 1)) continue;
           const std::uint32_t near = below.find(beside);
           merged = near == forest::kNone || mergedBelow[near] != 0;
         }

@@ -82,7 +82,7 @@ Level0<TreeT>::Level0(const openvdb::math::Transform& transform, const blocks::B
       blocks_(whole, box),
       scale_(scale),
       topology_(checkedTopology(blocks_, scale_, options, ends, job)),
-      affine_(transform, lowestOrigin(blocks_)) {
+      affine_(transform, lowestOrigin(whole)) {
   makeMesh(options, ends, job);
 }
 
@@ -107,6 +107,10 @@ void Level0<TreeT>::makeMesh(const ContourOptions& options, const StageEnds& end
   report_.creaseCells = sides_.sharpCount();
   report_.faceFlips = topology_.faceFlips;
   report_.cutEdges = topology_.cutEdges;
+  if (blocks_.isPart()) {
+    before_.positions = mesh_.positions;
+    before_.quads = mesh_.quads;
+  }
   job.beginStage("repair", ends.repair);
   if (options.repair) repair(job);
 }

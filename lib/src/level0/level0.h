@@ -36,7 +36,7 @@ class Level0 {
   Level0(const openvdb::Grid<TreeT>& grid, const ContourOptions& options, const StageEnds& ends,
          base::Job& job);
   /// The same for the blocks of a box alone, see blocks::Blocks; all that is read from the whole
-  /// grid is given.
+  /// grid is given. Positions are counted from the same point for every box.
   Level0(const openvdb::math::Transform& transform, const blocks::Blocks<TreeT>& whole,
          const openvdb::CoordBBox& box, const blocks::FieldScale& scale,
          const ContourOptions& options, const StageEnds& ends, base::Job& job);
@@ -44,6 +44,9 @@ class Level0 {
   Level0& operator=(const Level0&) = delete;
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  /// The mesh before the repair, which may reach far, without normals; of a part only. Its vertices
+  /// depend on what is near them alone.
+  [[nodiscard]] const Mesh& meshBeforeRepair() const { return before_; }
   [[nodiscard]] const base::Affine& affine() const { return affine_; }
   [[nodiscard]] const components::Topology& topology() const { return topology_; }
   [[nodiscard]] polygons::QuadContext<TreeT> quads() const {
@@ -72,6 +75,7 @@ class Level0 {
   components::Topology topology_;
   base::Affine affine_;
   Mesh mesh_;
+  Mesh before_;
   creases::VertexSides sides_;
   std::vector<std::uint32_t> suspects_;
   ContourReport report_;

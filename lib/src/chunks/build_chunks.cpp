@@ -1,0 +1,236 @@
+#include <tufa/chunks.h>
+#include <tufa/error.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "base/job.h"
+#include "blocks/blocks.h"
+#include "blocks/field.h"
+#include "chunks/chunk_cells.h"
+#include "chunks/region.h"
+#include "cut/cut_rule.h"
+#include "level0/level0.h"
+#include "level0/with_grid.h"
+
+namespace tufa {
+namespace {
+
+using chunks::ChunkCells;
+using openvdb::Coord;
+
+// Chunks are made together in regions of at least this many voxels, aligned to their size, so that
+// less is made twice at their borders. Which region a chunk is in depends on its index alone.
+constexpr int kLeastRegion = 128;
+// Around a region one block more is read: an ambiguous face depends on no cell more than six away.
+constexpr int kMargin = blocks::kBlockSize;
+constexpr double kIndexEnd = 0.02;
+
+void requireOptions(const ChunkOptions& options) {
+  const auto refuse = [](const std::string& message) {
+    throw Error(ErrorCode::InvalidArgument, message);
+  };
+  if (options.chunkSize < 8 || options.chunkSize > 1024 ||
+      !std::has_single_bit(static_cast<unsigned>(options.chunkSize))) {
+    refuse("the chunk size must be a power of two from 8 to 1024, not " +
+           std::to_string(options.chunkSize));
+  }
+  if (options.levels < 1 || options.levels > 16) {
+    refuse("chunks have 1 to 16 levels, not " + std::to_string(options.levels));
+  }
+  if (!(options.factor > 1 && std::isfinite(options.factor))) {
+    refuse("the factor between the tolerances of two levels must be above 1");
+  }
+}
+
+// Regions that hold blocks, and of these the ones with chunks that are asked for.
+template <class TreeT>
+std::set<Coord> findRegions(const blocks::Blocks<TreeT>& blocks, const ChunkOptions& options,
+                            int regionLevel) {
+  const auto regionOf = [&](const Coord& voxel) {
+    return Coord(voxel[0] >> regionLevel, voxel[1] >> regionLevel, voxel[2] >> regionLevel);
+  };
+  std::set<Coord> regions;
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    regions.insert(regionOf(blocks.origin(static_cast<blocks::BlockRef>(i))));
+  }
+  if (options.only.empty()) return regions;
+  std::set<Coord> asked;
+  const auto chunkLevel =
+      static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(options.chunkSize)));
+  for (const Coord& chunk : options.only) asked.insert(regionOf(chunk << chunkLevel));
+  std::erase_if(regions, [&](const Coord& region) { return !asked.contains(region); });
+  return regions;
+}
+
+// Whether all positions of the grid may be rounded to floats; the same for every region.
+template <class TreeT>
+bool fitsSinglePrecision(const blocks::Blocks<TreeT>& blocks,
+                         const openvdb::math::Transform& transform) {
+  double largest = 0;
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    const openvdb::Vec3d corner = blocks.origin(static_cast<blocks::BlockRef>(i)).asVec3d();
+    for (int c = 0; c < 8; ++c) {
+      const openvdb::Vec3d step((c & 4) * 2.0, (c & 2) * 4.0, (c & 1) * 8.0);
+      const openvdb::Vec3d world = transform.indexToWorld(corner + step);
+      largest = std::max({largest, std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
+    }
+  }
+  const double rounding = 0.5 * std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * largest;
+  return rounding <= level0::kMostRounding * base::Affine(transform).leastHeight();
+}
+
+// The middle of all blocks, in world space and in whole floats, if positions need one.
+template <class TreeT>
+Position middleOf(const blocks::Blocks<TreeT>& blocks, const openvdb::math::Transform& transform) {
+  openvdb::CoordBBox box;
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    box.expand(blocks.origin(static_cast<blocks::BlockRef>(i)));
+  }
+  const openvdb::Vec3d world = transform.indexToWorld(box.getCenter());
+  return {std::round(world[0]), std::round(world[1]), std::round(world[2])};
+}
+
+ChunkIndex describe(const openvdb::GridBase& grid, const ChunkOptions& options) {
+  ChunkIndex index;
+  index.grid = grid.getName();
+  index.chunkSize = options.chunkSize;
+  double tolerance = options.contour.tolerance;
+  for (int i = 0; i < options.levels; ++i, tolerance *= options.factor) {
+    index.tolerances.push_back(tolerance);
+  }
+  index.voxelSize = base::Affine(grid.transform()).voxelSize();
+  const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) index.transform[row][column] = matrix[row][column];
+  }
+  return index;
+}
+
+ChunkEntry entryOf(const chunks::MadeChunk& made) {
+  ChunkEntry entry;
+  entry.index = made.chunk.index;
+  for (std::size_t i = 0; i < made.chunk.levels.size(); ++i) {
+    const ChunkLevel& level = made.chunk.levels[i];
+    ChunkLevelEntry& out = entry.levels.emplace_back();
+    out.vertices = level.positions.size();
+    out.interiorTriangles = level.interior.size();
+    for (const auto& strip : level.regular) out.regularTriangles += strip.size();
+    for (const auto& strip : level.transition) out.transitionTriangles += strip.size();
+    openvdb::BBoxd box;
+    for (const Position& p : level.positions) box.expand(openvdb::Vec3d(p.x, p.y, p.z));
+    if (box.empty()) box = openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(0));
+    out.least = {box.min()[0], box.min()[1], box.min()[2]};
+    out.greatest = {box.max()[0], box.max()[1], box.max()[2]};
+    out.maxErrorVoxels = level.maxErrorVoxels;
+    out.transitionErrorVoxels = level.transitionErrorVoxels;
+    out.intersectionsLeft = made.pairsLeft[i];
+  }
+  return entry;
+}
+
+template <class TreeT>
+class ChunkBuilder {
+ public:
+  ChunkBuilder(const openvdb::Grid<TreeT>& grid, const ChunkOptions& options, const ChunkSink& sink,
+               ContourReport& report, base::Job& job)
+      : grid_(grid), options_(options), sink_(sink), report_(report), job_(job) {}
+
+  ChunkIndex build() {
+    ContourOptions contour = options_.contour;
+    contour.uniform = false;
+    contour.normals = Normals::Gradient;
+    cells_.level = std::countr_zero(static_cast<unsigned>(options_.chunkSize));
+    region_.rule = cut::readRule(contour, grid_.transform());
+    region_.rule.maxLevel = std::min(region_.rule.maxLevel, cells_.level);
+    region_.rule.chunkLevel = cells_.level;
+    region_.repair = contour.repair;
+    job_.beginStage("index", kIndexEnd);
+    const blocks::IsoChoice iso = blocks::chooseIsovalue(grid_, contour.isovalue, contour.inside);
+    const blocks::Blocks<TreeT> blocks(grid_.tree(), iso, contour.nonFinite, job_);
+    const blocks::FieldScale scale = blocks::readFieldScale(grid_, iso);
+    ChunkIndex index = describe(grid_, options_);
+    region_.tolerances = index.tolerances;
+    region_.singlePrecision = fitsSinglePrecision(blocks, grid_.transform());
+    if (!region_.singlePrecision) index.origin = middleOf(blocks, grid_.transform());
+    report_.isovalue = iso.isovalue;
+    report_.insideIsBelow = iso.insideIsBelow;
+    report_.distanceField = scale.distance;
+    report_.activeVoxels = blocks.activeVoxels();
+    report_.nonFiniteValues = blocks.nonFiniteValues();
+
+    const int regionLevel =
+        std::max(cells_.level, std::countr_zero(static_cast<unsigned>(kLeastRegion)));
+    const std::set<Coord> regions = findRegions(blocks, options_, regionLevel);
+    double begin = kIndexEnd;
+    const double step =
+        (1 - kIndexEnd) / static_cast<double>(std::max<std::size_t>(1, regions.size()));
+    for (const Coord& region : regions) {
+      makeChunks(blocks, scale, contour, region, regionLevel, begin, begin + step, index);
+      begin += step;
+    }
+    index.chunks = std::move(entries_);
+    std::sort(index.chunks.begin(), index.chunks.end(),
+              [](const ChunkEntry& a, const ChunkEntry& b) { return a.index < b.index; });
+    return index;
+  }
+
+ private:
+  void makeChunks(const blocks::Blocks<TreeT>& blocks, const blocks::FieldScale& scale,
+                  const ContourOptions& contour, const Coord& region, int regionLevel, double begin,
+                  double end, const ChunkIndex& index) {
+    const auto size = static_cast<std::int32_t>(1) << regionLevel;
+    const Coord corner(region[0] * size, region[1] * size, region[2] * size);
+    cells_.own = {cells_.chunkOf(corner), cells_.chunkOf(corner.offsetBy(size - 1))};
+    const openvdb::CoordBBox box(corner.offsetBy(-kMargin), corner.offsetBy(size + kMargin - 1));
+    const auto at = [&](double share) { return begin + share * (end - begin); };
+    const level0::StageEnds ends = {at(0.1), at(0.15), at(0.3), at(0.35), at(0.4), at(0.45)};
+    const level0::Level0<TreeT> level0(grid_.transform(), blocks, box, scale, contour, ends, job_);
+    report_.surfaceCells += level0.topology().cellCount;
+    report_.cutEdges += level0.topology().cutEdges;
+    job_.beginStage("levels", end);
+    for (chunks::MadeChunk& made :
+         chunks::makeRegion(level0, grid_.transform(), cells_, region_, job_)) {
+      if (!isAskedFor(made.chunk.index)) continue;
+      ChunkEntry entry = entryOf(made);
+      for (const ChunkLevelEntry& level : entry.levels) {
+        report_.intersectionsLeft += level.intersectionsLeft;
+      }
+      sink_(index, std::move(made.chunk));
+      entries_.push_back(std::move(entry));
+    }
+  }
+
+  [[nodiscard]] bool isAskedFor(const Coord& chunk) const {
+    return options_.only.empty() ||
+           std::find(options_.only.begin(), options_.only.end(), chunk) != options_.only.end();
+  }
+
+  const openvdb::Grid<TreeT>& grid_;
+  const ChunkOptions& options_;
+  const ChunkSink& sink_;
+  ContourReport& report_;
+  base::Job& job_;
+  ChunkCells cells_;
+  chunks::RegionOptions region_;
+  std::vector<ChunkEntry> entries_;
+};
+
+}  // namespace
+
+ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
+                       const ChunkSink& sink, ContourReport* report) {
+  requireOptions(options);
+  return level0::withGrid<ChunkIndex>(
+      grid, options.contour, report, [&](const auto& own, ContourReport& out, base::Job& job) {
+        using TreeT = typename std::decay_t<decltype(own)>::TreeType;
+        return ChunkBuilder<TreeT>(own, options, sink, out, job).build();
+      });
+}
+
+}  // namespace tufa

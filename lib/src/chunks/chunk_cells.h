@@ -1,0 +1,47 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tufa::chunks {
+
+/// Which chunk a cell lies in, and which chunks are to be made: a box of them.
+struct ChunkCells {
+  int level = 6;           ///< log2 of a chunk's size
+  openvdb::CoordBBox own;  ///< chunks, both corners included
+
+  static constexpr std::int32_t kNotOwn = -1;
+
+  [[nodiscard]] openvdb::Coord chunkOf(const openvdb::Coord& cell) const {
+    return {cell[0] >> level, cell[1] >> level, cell[2] >> level};
+  }
+  /// A number for each chunk to be made, kNotOwn for the others. In the order of their indices.
+  [[nodiscard]] std::int32_t numberOf(const openvdb::Coord& chunk) const {
+    if (!own.isInside(chunk)) return kNotOwn;
+    const openvdb::Coord dim = own.dim(), at = chunk - own.min();
+    return (at[0] * dim[1] + at[1]) * dim[2] + at[2];
+  }
+  [[nodiscard]] openvdb::Coord chunkAt(std::int32_t number) const {
+    const openvdb::Coord dim = own.dim();
+    return own.min() +
+           openvdb::Coord(number / (dim[1] * dim[2]), number / dim[2] % dim[1], number % dim[2]);
+  }
+  /// Lattice coordinates, counted from `from`, moved into the chunk of `cell` by what it takes to
+  /// stand off its faces.
+  [[nodiscard]] openvdb::Vec3d keepInside(openvdb::Vec3d at, const openvdb::Coord& from,
+                                          const openvdb::Coord& cell) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lower = ((cell[axis] >> level) << level) - from[axis];
+      at[axis] = std::clamp(at[axis], lower + kOffFace, lower + (1 << level) - kOffFace);
+    }
+    return at;
+  }
+  /// Least distance of a chunk's own vertices from its faces, in voxels.
+  static constexpr double kOffFace = 2e-3;
+
+  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(own.volume()); }
+};
+
+}  // namespace tufa::chunks

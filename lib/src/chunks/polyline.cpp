@@ -1,0 +1,375 @@
+#include "chunks/polyline.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "components/case_table.h"
+
+namespace tufa::chunks {
+namespace {
+
+using openvdb::Coord;
+using openvdb::Vec3d;
+
+constexpr std::size_t kLeastOfLoop = 3;
+// A segment may be so many times longer than the limit, in arcs.
+constexpr double kLongest = 1.5;
+// What an arc more adds to the length that a segment may have.
+constexpr double kGrowth = 0.5;
+
+// One curve on its way to a polyline. Nodes are its points in order: the one on the chunk edge at
+// its begin, if any, the arcs, the one at its end.
+class Line {
+ public:
+  Line(const Seams& seams, const SeamCurve& curve, const base::Affine& affine,
+       const std::function<double(const Vec3d&)>& allowed)
+      : seams_(seams), curve_(curve) {
+    const auto add = [&](SeamIndex index) {
+      const SeamVertex& vertex = seams.vertices[index];
+      // Counted from the chunk's corner: the same digits whatever is around.
+      const Vec3d at = (vertex.cell - seams.vertices[curve.arcs[0]].cell).asVec3d() + vertex.offset;
+      points_.push_back(affine.axis(0) * at[0] + affine.axis(1) * at[1] + affine.axis(2) * at[2]);
+      allowed_.push_back(allowed(vertex.cell.asVec3d() + vertex.offset));
+      indices_.push_back(index);
+    };
+    if (curve.begin != kNoSeam) add(curve.begin);
+    firstArc_ = points_.size();
+    for (const SeamIndex arc : curve.arcs) add(arc);
+    if (curve.end != kNoSeam) add(curve.end);
+    chosen_.assign(points_.size(), 0);
+    limitRuns();
+    chooseFirst();
+    refineAll();
+    if (!curve.closed && chosenArcs() == 0) choose(firstArc_ + curve.arcs.size() / 2);
+  }
+
+  [[nodiscard]] const SeamCurve& curve() const { return curve_; }
+  [[nodiscard]] std::size_t nodeCount() const { return points_.size(); }
+
+  // Calls body(from, to) for each segment, by nodes; `to` may lie behind the last, once around.
+  template <class Body>
+  void forSegments(const Body& body) const {
+    std::size_t first = points_.size(), last = points_.size();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (chosen_[i] == 0) continue;
+      if (last < points_.size()) body(last, i);
+      if (first == points_.size()) first = i;
+      last = i;
+    }
+    if (curve_.closed) body(last, first + points_.size());
+  }
+  [[nodiscard]] SeamIndex seamAt(std::size_t node) const { return indices_[node % points_.size()]; }
+
+  // Splits a segment at its farthest node. Returns whether there is one between its ends.
+  bool split(std::size_t from, std::size_t to) {
+    if (to - from < 2) return false;
+    choose(farthest(from, to).first);
+    return true;
+  }
+
+  // Names the vertex that stands for each arc.
+  void assign(SeamLines& lines) const {
+    const std::size_t count = points_.size();
+    std::vector<std::size_t> nodes;
+    for (std::size_t i = firstArc_; i < firstArc_ + curve_.arcs.size(); ++i) {
+      if (chosen_[i] != 0) nodes.push_back(i);
+    }
+    for (std::size_t i = firstArc_; i < nodes.front(); ++i) {
+      if (!curve_.closed) lines[indices_[i]] = indices_[nodes.front()];
+    }
+    const auto assignBetween = [&](std::size_t from, std::size_t to) {
+      lines[indices_[from]] = indices_[from];
+      const std::size_t end = runEnd(from, to);
+      for (std::size_t i = from + 1; i < to; ++i) {
+        lines[indices_[i % count]] = indices_[(i < end ? from : to) % count];
+      }
+    };
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) assignBetween(nodes[i], nodes[i + 1]);
+    lines[indices_[nodes.back()]] = indices_[nodes.back()];
+    if (curve_.closed) {
+      assignBetween(nodes.back(), nodes.front() + count);
+    } else {
+      for (std::size_t i = nodes.back(); i < firstArc_ + curve_.arcs.size(); ++i) {
+        lines[indices_[i]] = indices_[nodes.back()];
+      }
+    }
+  }
+
+ private:
+  // Clusters are small where the surface is not flat, on the face or beside it. Segments are not
+  // much longer than clusters may be: long ones would make folded strips. Away from such places
+  // they grow with the distance.
+  void limitRuns() {
+    const std::size_t count = points_.size();
+    limits_.assign(count, std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < curve_.arcs.size(); ++i) {
+      const std::size_t node = firstArc_ + i;
+      const auto& flatness = seams_.arcs[curve_.arcs[i]].flatness;
+      for (std::size_t k = flatness.size(); k-- > 0;) {
+        if (static_cast<double>(flatness[k]) > allowed_[node]) {
+          limits_[node] = static_cast<double>(std::size_t{1} << k);
+        }
+      }
+    }
+    const std::size_t steps = curve_.closed ? 2 * count : count;
+    for (std::size_t i = 1; i < steps; ++i) {
+      double& limit = limits_[i % count];
+      limit = std::min(limit, limits_[(i - 1) % count] + kGrowth);
+    }
+    for (std::size_t i = steps; i-- > 1;) {
+      double& limit = limits_[(i - 1) % count];
+      limit = std::min(limit, limits_[i % count] + kGrowth);
+    }
+  }
+
+  // What must be there whatever the tolerance.
+  void chooseFirst() {
+    if (curve_.begin != kNoSeam) choose(0);
+    if (curve_.end != kNoSeam) choose(points_.size() - 1);
+    for (std::size_t i = 0; i < curve_.arcs.size(); ++i) {
+      if (!seams_.arcs[curve_.arcs[i]].single) choose(firstArc_ + i);
+    }
+    if (curve_.closed) {
+      chooseInQuadrants();
+      while (chosenArcs() < std::min(kLeastOfLoop, curve_.arcs.size())) choose(mostRemote());
+      return;
+    }
+    // Where the data ends the curve does.
+    if (curve_.begin == kNoSeam) choose(firstArc_);
+    if (curve_.end == kNoSeam) choose(firstArc_ + curve_.arcs.size() - 1);
+  }
+
+  // A cluster's cell lies in one quadrant of the least square of the octree that holds the loop.
+  // Runs that do the same have no more than one stretch in common with it.
+  void chooseInQuadrants() {
+    const std::size_t count = points_.size();
+    const auto [u, v] = components::otherAxes(curve_.axis);
+    unsigned differs = 0;
+    const auto cell = [&](std::size_t node) -> const Coord& {
+      return seams_.vertices[indices_[node]].cell;
+    };
+    for (std::size_t i = 1; i < count; ++i) {
+      differs |= static_cast<unsigned>(cell(i)[u] ^ cell(0)[u]) |
+                 static_cast<unsigned>(cell(i)[v] ^ cell(0)[v]);
+    }
+    if (differs == 0) return;
+    const int bit = std::bit_width(differs) - 1;
+    quadrants_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      quadrants_[i] =
+          static_cast<std::uint8_t>(((cell(i)[u] >> bit) & 1) * 2 + ((cell(i)[v] >> bit) & 1));
+    }
+    std::size_t start = 0;
+    while (start < count && quadrants_[start] == quadrants_[(start + count - 1) % count]) ++start;
+    for (std::size_t i = start; i < start + count;) {
+      std::size_t end = i + 1;
+      bool any = chosen_[i % count] != 0;
+      while (end < start + count && quadrants_[end % count] == quadrants_[i % count]) {
+        any |= chosen_[end++ % count] != 0;
+      }
+      if (!any) choose((i + (end - i) / 2) % count);
+      i = end;
+    }
+  }
+
+  // The node farthest from all that are chosen; the first of several.
+  [[nodiscard]] std::size_t mostRemote() const {
+    std::size_t best = 0;
+    double most = -1;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (chosen_[i] != 0) continue;
+      double nearest = std::numeric_limits<double>::max();
+      for (std::size_t j = 0; j < points_.size(); ++j) {
+        if (chosen_[j] != 0) nearest = std::min(nearest, (points_[i] - points_[j]).lengthSqr());
+      }
+      if (nearest <= most) continue;
+      most = nearest;
+      best = i;
+    }
+    return best;
+  }
+
+  void refineAll() {
+    std::vector<std::pair<std::size_t, std::size_t>> open;
+    forSegments([&](std::size_t from, std::size_t to) { open.emplace_back(from, to); });
+    while (!open.empty()) {
+      const auto [from, to] = open.back();
+      open.pop_back();
+      if (to - from < 2) continue;
+      auto [node, ratio] = farthest(from, to);
+      if (!(ratio > 1)) {
+        double limit = limits_[from % points_.size()];
+        for (std::size_t i = from; i <= to; ++i)
+          limit = std::min(limit, limits_[i % points_.size()]);
+        if (!(static_cast<double>(to - from) > kLongest * limit)) continue;
+        node = from + (to - from) / 2;
+      }
+      choose(node);
+      open.emplace_back(from, node);
+      open.emplace_back(node, to);
+    }
+  }
+
+  // The node between two whose distance to their segment is most beyond what is allowed there.
+  [[nodiscard]] std::pair<std::size_t, double> farthest(std::size_t from, std::size_t to) const {
+    const std::size_t count = points_.size();
+    const Vec3d& a = points_[from % count];
+    const Vec3d way = points_[to % count] - a;
+    const double squared = way.lengthSqr();
+    std::pair<std::size_t, double> best{from + (to - from) / 2, -1};
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const Vec3d off = points_[i % count] - a;
+      const double along = squared > 0 ? std::clamp(off.dot(way) / squared, 0.0, 1.0) : 0;
+      const double distance = (off - way * along).length();
+      const double allowed = allowed_[i % count];
+      const double ratio = allowed > 0 ? distance / allowed
+                                       : (distance > 0 ? std::numeric_limits<double>::max() : 0);
+      if (ratio > best.second) best = {i, ratio};
+    }
+    return best;
+  }
+
+  // Of the nodes between two chosen ones, the first that the second stands for.
+  [[nodiscard]] std::size_t runEnd(std::size_t from, std::size_t to) const {
+    const std::size_t count = points_.size();
+    if (!quadrants_.empty()) {
+      for (std::size_t i = from + 1; i <= to; ++i) {
+        if (quadrants_[i % count] != quadrants_[(i - 1) % count]) return i;
+      }
+    }
+    return from + (to - from) / 2 + 1;
+  }
+
+  void choose(std::size_t node) { chosen_[node % points_.size()] = 1; }
+  [[nodiscard]] std::size_t chosenArcs() const {
+    const auto first = chosen_.begin() + static_cast<std::ptrdiff_t>(firstArc_);
+    return static_cast<std::size_t>(
+        std::count(first, first + static_cast<std::ptrdiff_t>(curve_.arcs.size()), 1));
+  }
+
+  const Seams& seams_;
+  const SeamCurve& curve_;
+  std::vector<Vec3d> points_;       // world lengths, from the curve's first arc
+  std::vector<double> allowed_;     // world units
+  std::vector<double> limits_;      // of the length of segments, in arcs
+  std::vector<SeamIndex> indices_;  // of the nodes
+  std::size_t firstArc_ = 0;        // node of the first arc
+  std::vector<std::uint8_t> chosen_;
+  std::vector<std::uint8_t> quadrants_;  // of the nodes of a loop
+};
+
+// The polylines of one face, made finer until none cross.
+class Face {
+ public:
+  explicit Face(const Seams& seams, std::vector<Line>& lines, std::size_t begin, std::size_t end)
+      : seams_(seams), lines_(lines), begin_(begin), end_(end) {}
+
+  void uncross() {
+    while (true) {
+      collect();
+      bool any = false;
+      for (const auto& [a, b] : crossingPairs()) {
+        any |= splitOnce(a);
+        any |= splitOnce(b);
+      }
+      if (!any) return;
+    }
+  }
+
+ private:
+  struct Segment {
+    std::size_t line, from, to;
+    std::array<double, 2> a, b;  // on the face
+    bool split = false;
+  };
+
+  void collect() {
+    segments_.clear();
+    const auto axes = components::otherAxes(lines_[begin_].curve().axis);
+    const Coord corner = seams_.vertices[lines_[begin_].seamAt(0)].cell;
+    const auto place = [&](SeamIndex index) -> std::array<double, 2> {
+      const SeamVertex& vertex = seams_.vertices[index];
+      const Vec3d at = (vertex.cell - corner).asVec3d() + vertex.offset;
+      return {at[axes[0]], at[axes[1]]};
+    };
+    for (std::size_t line = begin_; line < end_; ++line) {
+      lines_[line].forSegments([&](std::size_t from, std::size_t to) {
+        segments_.push_back(
+            {line, from, to, place(lines_[line].seamAt(from)), place(lines_[line].seamAt(to))});
+      });
+    }
+    std::sort(segments_.begin(), segments_.end(), [](const Segment& s, const Segment& t) {
+      return std::tuple(std::min(s.a[0], s.b[0]), s.line, s.from) <
+             std::tuple(std::min(t.a[0], t.b[0]), t.line, t.from);
+    });
+  }
+
+  // Segments of which one at least can be split further.
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> crossingPairs() const {
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      const Segment& s = segments_[i];
+      const double right = std::max(s.a[0], s.b[0]);
+      for (std::size_t j = i + 1; j < segments_.size(); ++j) {
+        const Segment& t = segments_[j];
+        if (std::min(t.a[0], t.b[0]) > right) break;
+        if (s.to - s.from < 2 && t.to - t.from < 2) continue;
+        if (cross(s, t)) pairs.emplace_back(i, j);
+      }
+    }
+    return pairs;
+  }
+
+  // Whether two segments meet elsewhere than in a common end.
+  static bool cross(const Segment& s, const Segment& t) {
+    if (s.a == t.a || s.a == t.b || s.b == t.a || s.b == t.b) return false;
+    const auto side = [](const auto& a, const auto& b, const auto& c) {
+      return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    };
+    const double sa = side(s.a, s.b, t.a), sb = side(s.a, s.b, t.b);
+    const double ta = side(t.a, t.b, s.a), tb = side(t.a, t.b, s.b);
+    return sa * sb <= 0 && ta * tb <= 0 && !(sa == 0 && sb == 0);
+  }
+
+  bool splitOnce(std::size_t index) {
+    Segment& segment = segments_[index];
+    if (segment.split) return false;
+    segment.split = true;
+    return lines_[segment.line].split(segment.from, segment.to);
+  }
+
+  const Seams& seams_;
+  std::vector<Line>& lines_;
+  std::size_t begin_, end_;
+  std::vector<Segment> segments_;
+};
+
+}  // namespace
+
+SeamLines simplifySeams(const Seams& seams, const base::Affine& affine,
+                        const std::function<double(const Vec3d&)>& allowed) {
+  SeamLines result(seams.vertices.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<SeamIndex>(i);
+  std::vector<Line> lines;
+  lines.reserve(seams.curves.size());
+  for (const SeamCurve& curve : seams.curves) lines.emplace_back(seams, curve, affine, allowed);
+  for (std::size_t begin = 0; begin < lines.size();) {
+    const SeamCurve& first = lines[begin].curve();
+    std::size_t end = begin;
+    while (end < lines.size() && lines[end].curve().axis == first.axis &&
+           lines[end].curve().chunk == first.chunk) {
+      ++end;
+    }
+    Face(seams, lines, begin, end).uncross();
+    begin = end;
+  }
+  for (const Line& line : lines) line.assign(result);
+  return result;
+}
+
+}  // namespace tufa::chunks

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/affine.h"
+#include "chunks/seams.h"
+
+namespace tufa::chunks {
+
+/// For each seam vertex the one that stands for it: what one level makes of the seams.
+using SeamLines = std::vector<SeamIndex>;
+
+/// Simplifies the curves of all seams, each to a polyline on its face through some of its arcs'
+/// vertices. No vertex that is left out is further from it than `allowed` says, in world units.
+///
+/// The arcs that one vertex stands for are contiguous. Between two chunk edges at least one vertex
+/// is left, of a closed curve three, and no run of arcs and no cluster of any level have more than
+/// one stretch in common; so whatever clusters the chunks on both sides have, the strip between
+/// clusters and polyline has no edge twice. Polylines on one face do not cross, unless their arcs
+/// do.
+///
+/// What becomes of a curve depends on what lies on its face alone, and not on the order of
+/// anything.
+[[nodiscard]] SeamLines simplifySeams(
+    const Seams& seams, const base::Affine& affine,
+    const std::function<double(const openvdb::Vec3d& latticePoint)>& allowed);
+
+}  // namespace tufa::chunks

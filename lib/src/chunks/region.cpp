@@ -1,0 +1,345 @@
+#include "chunks/region.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/bits.h"
+#include "base/single_precision.h"
+#include "certify/certificate.h"
+#include "certify/split_cells.h"
+#include "chunks/polyline.h"
+#include "chunks/seamed_cut.h"
+#include "chunks/seams.h"
+#include "chunks/split_chunks.h"
+#include "cut/leaves.h"
+#include "forest/forest.h"
+#include "mend/mend.h"
+#include "mend/surface.h"
+
+namespace tufa::chunks {
+namespace {
+
+using openvdb::Coord;
+
+// What of the tolerance a polyline may use up on its face.
+constexpr double kLineShare = 0.5;
+// How often the two meshes of a level are mended in turn.
+constexpr int kMostTurns = 3;
+
+// The cell of each base vertex.
+template <class TreeT>
+std::vector<Coord> cellsOf(const forest::Base<TreeT>& base, base::Job& job) {
+  std::vector<Coord> cells(base.topology.vertexCount);
+  job.forRanges(base.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const components::SurfaceBlock& block = base.topology.blocks[i];
+      const Coord& origin = base.origin(i);
+      std::uint64_t next = block.firstVertex;
+      const components::CellException *exception = nullptr, *last = nullptr;
+      if (block.special >= 0) {
+        const auto& exceptions = base.topology.specials[block.special].exceptions;
+        exception = exceptions.data();
+        last = exception + exceptions.size();
+      }
+      for (int x = 0; x < blocks::kBlockSize; ++x) {
+        base::forEachBit(block.cells.slabs[x], [&](int bit) {
+          int count = 1;
+          if (exception != last && exception->cell == x * 64 + bit) count = (exception++)->count;
+          for (; count > 0; --count) cells[next++] = origin.offsetBy(x, bit >> 3, bit & 7);
+        });
+      }
+    }
+  });
+  return cells;
+}
+
+// Vertices that stand for a crease that passes between cells may lie beyond the faces of their
+// chunk: they are brought back, and the crease is cut off there.
+void keepInChunks(std::vector<Position>& positions, const std::vector<Coord>& cells,
+                  const ChunkCells& chunks, const base::Affine& affine, base::Job& job) {
+  job.forRanges(positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const openvdb::Vec3d at = affine.latticePoint(positions[i], cells[i]);
+      const openvdb::Vec3d kept = chunks.keepInside(at, cells[i], cells[i]);
+      if (kept != at) positions[i] = affine.position(cells[i], kept[0], kept[1], kept[2]);
+    }
+  });
+}
+
+// Forbids every cell in chunks that are not to be made.
+cut::CellFlags forbidOthers(const forest::Forest& forest, const ChunkCells& chunks) {
+  cut::CellFlags forbidden(forest);
+  for (std::size_t l = 0; l < forest.levels.size(); ++l) {
+    const forest::Level& level = forest.levels[l];
+    for (std::size_t i = 0; i < level.cells.size(); ++i) {
+      const Coord& cell = level.cells[i];
+      const int shift = chunks.level - level.level;
+      const Coord chunk(cell[0] >> shift, cell[1] >> shift, cell[2] >> shift);
+      if (chunks.own.isInside(chunk)) continue;
+      forbidden.levels[l][i] = 1;
+      if (l > 0) continue;
+      forbidden.level1[i] = ~std::uint64_t{0};
+      forbidden.level2[i] = 0xff;
+    }
+  }
+  return forbidden;
+}
+
+template <class TreeT>
+class RegionMaker {
+ public:
+  RegionMaker(const level0::Level0<TreeT>& level0, const ChunkCells& chunks,
+              const RegionOptions& options, base::Job& job)
+      : level0_(level0),
+        chunks_(chunks),
+        options_(options),
+        job_(job),
+        cells_(cellsOf(level0.base(false), job)),
+        mesh_(inChunks(level0.mesh())),
+        base_(withMesh(mesh_)),
+        forest_(forest::buildForest(base_, options.rule.maxLevel, job)),
+        seams_(findSeams(level0.quads(), mesh_, inChunks(level0.meshBeforeRepair()), cells_, chunks,
+                         job)),
+        seamBase_(withMesh(seams_.mesh)),
+        forbidden_(forbidOthers(forest_, chunks)),
+        beyond_(findBeyond()) {
+    for (const double tolerance : options.tolerances) {
+      const cut::CutRule rule = ruleFor(tolerance);
+      lines_.push_back(simplifySeams(seams_, base_.affine, [&](const openvdb::Vec3d& point) {
+        return kLineShare * rule.toleranceAt(point) * base_.affine.voxelSize();
+      }));
+    }
+  }
+
+  [[nodiscard]] const std::vector<Coord>& cells() const { return cells_; }
+  [[nodiscard]] const Seams& seams() const { return seams_; }
+  [[nodiscard]] const SeamLines& lines(std::size_t level) const { return lines_[level]; }
+
+  LevelMeshes makeLevel(std::size_t level) {
+    const cut::CutRule rule = ruleFor(options_.tolerances[level]);
+    const bool last = level + 1 == options_.tolerances.size();
+    cut::CellFlags forbidden = forbidden_;
+    Certifier regular(seamBase_, forest_.levels[0], rule, job_);
+    regular.setIgnored(beyond_);
+    std::optional<Certifier> transition;
+    if (!last) {
+      transition.emplace(seamBase_, forest_.levels[0], ruleFor(options_.tolerances[level + 1]),
+                         job_);
+      transition->setIgnored(beyond_);
+    }
+    while (true) {
+      const cut::CellFlags merged = cut::mergeCells(forest_, base_.topology, rule, forbidden, job_);
+      const cut::Cut cut = cut::makeCut(forest_, base_.topology, merged, job_);
+      LevelMeshes meshes;
+      meshes.regular = mesh(cut, lines_[level]);
+      if (splitFar(meshes.regular, regular, forbidden)) continue;
+      if (!last) {
+        meshes.transition = mesh(cut, lines_[level + 1]);
+        if (splitFar(meshes.transition, *transition, forbidden)) continue;
+      }
+      if (options_.repair) {
+        if (mendBoth(meshes, last, forbidden)) continue;
+        bool split = splitFar(meshes.regular, regular, forbidden);
+        if (!last) split |= splitFar(meshes.transition, *transition, forbidden);
+        if (split) continue;
+      }
+      meshes.regularErrors = errorsOf(meshes.regular, rule);
+      if (!last) meshes.transitionErrors = errorsOf(meshes.transition, rule);
+      return meshes;
+    }
+  }
+
+ private:
+  using Certifier = certify::Certifier<TreeT>;
+
+  [[nodiscard]] Mesh inChunks(Mesh mesh) {
+    keepInChunks(mesh.positions, cells_, chunks_, level0_.affine(), job_);
+    return mesh;
+  }
+  [[nodiscard]] forest::Base<TreeT> withMesh(const Mesh& mesh) const {
+    const forest::Base<TreeT> base = level0_.base(options_.rule.maxAngle < 4);
+    return {base.blocks, base.topology, base.affine, mesh, base.sides, base.angles};
+  }
+
+  // Base quads with a vertex in a chunk that is not made, and their middle there.
+  [[nodiscard]] std::vector<std::uint8_t> findBeyond() const {
+    std::vector<std::uint8_t> beyond(mesh_.quads.size(), 0);
+    const auto isOwn = [&](const Coord& cell) {
+      return chunks_.own.isInside(chunks_.chunkOf(cell));
+    };
+    for (std::size_t i = 0; i < beyond.size(); ++i) {
+      const auto& v = mesh_.quads[i].vertices;
+      if (std::all_of(v.begin(), v.end(), [&](VertexIndex k) { return isOwn(cells_[k]); })) {
+        continue;
+      }
+      const Position &p = mesh_.positions[v[0]], &q = mesh_.positions[v[2]];
+      const Position middle(0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z));
+      const Coord& from = cells_[v[0]];
+      const openvdb::Vec3d at = base_.affine.latticePoint(middle, from);
+      beyond[i] = isOwn(from + Coord::floor(at)) ? 0 : 1;
+    }
+    return beyond;
+  }
+
+  [[nodiscard]] cut::CutRule ruleFor(double tolerance) const {
+    cut::CutRule rule = options_.rule;
+    rule.tolerance = tolerance;
+    return rule;
+  }
+
+  [[nodiscard]] SeamedCut mesh(const cut::Cut& cut, const SeamLines& lines) {
+    return meshWithSeams(forest_, cut, seams_, lines, cells_, chunks_, base_.affine, job_);
+  }
+
+  bool splitFar(const SeamedCut& mesh, Certifier& certifier, cut::CellFlags& forbidden) {
+    const certify::Deviation deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
+    return certify::splitCells(certify::tooCoarse(seams_.mesh, mesh.cut, deviation), mesh.cut,
+                               options_.rule.minLevel, forbidden);
+  }
+
+  // Polygons of which each pair that meets has one.
+  [[nodiscard]] std::vector<mend::PolygonIndex> suspectsOf(const SeamedCut& mesh) const {
+    std::vector<std::uint8_t> altered(mesh.cut.clusters.size(), 0);
+    for (const VertexIndex vertex : mesh.altered) altered[vertex] = 1;
+    std::vector<mend::PolygonIndex> suspects;
+    mend::PolygonIndex polygon = 0;
+    const auto look = [&](const auto& v, std::uint32_t source) {
+      const bool suspect =
+          std::any_of(
+              v.begin(), v.end(),
+              [&](VertexIndex i) { return altered[i] != 0 || mesh.cut.clusters[i].level != 0; }) ||
+          std::binary_search(level0_.suspects().begin(), level0_.suspects().end(), source);
+      if (suspect) suspects.push_back(polygon);
+      ++polygon;
+    };
+    const Mesh& own = mesh.made.mesh;
+    for (std::size_t i = 0; i < own.quads.size(); ++i) {
+      look(own.quads[i].vertices, mesh.made.quadSources[i]);
+    }
+    for (std::size_t i = 0; i < own.triangles.size(); ++i) {
+      look(own.triangles[i].vertices, mesh.made.triangleSources[i]);
+    }
+    return suspects;
+  }
+
+  // Moves clusters and turns quads until no polygons meet, where that can be. Gives the pairs left.
+  std::vector<mend::PolygonPair> mend(SeamedCut& mesh) {
+    mend::Source source;
+    source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
+      std::vector<Position> points;
+      for (const VertexIndex vertex : vertices) points.push_back(mesh.made.mesh.positions[vertex]);
+      return points;
+    };
+    source.isFixed = [&](VertexIndex vertex) { return mesh.cut.clusters[vertex].level == 0; };
+    source.voxelSize = base_.affine.voxelSize();
+    source.toTheFloor = false;
+    return mend::mend(mesh.made.mesh, suspectsOf(mesh), source, job_).left;
+  }
+
+  // Mends both meshes of a level, which share their clusters, in turn. Splits cells where that does
+  // not help; returns whether it did.
+  bool mendBoth(LevelMeshes& meshes, bool last, cut::CellFlags& forbidden) {
+    meshes.pairs = mend(meshes.regular);
+    if (last) return splitPairs(meshes.regular, meshes.pairs, forbidden);
+    std::vector<mend::PolygonPair> pairs;
+    for (int turn = 0; turn < kMostTurns; ++turn) {
+      if (!takeClusters(meshes.regular, meshes.transition) && turn > 0) break;
+      pairs = mend(meshes.transition);
+      if (!takeClusters(meshes.transition, meshes.regular)) break;
+      meshes.pairs = mend(meshes.regular);
+    }
+    if (takeClusters(meshes.regular, meshes.transition)) pairs = findPairs(meshes.transition);
+    bool split = splitPairs(meshes.regular, meshes.pairs, forbidden);
+    split |= splitPairs(meshes.transition, pairs, forbidden);
+    return split;
+  }
+
+  [[nodiscard]] std::vector<mend::PolygonPair> findPairs(SeamedCut& mesh) {
+    const mend::Surface surface(mesh.made.mesh, job_);
+    return mend::findPairs(surface, suspectsOf(mesh), job_);
+  }
+
+  // Moves the clusters of one mesh to where another of the same cut has them. Returns whether that
+  // changed anything.
+  static bool takeClusters(const SeamedCut& from, SeamedCut& to) {
+    bool any = false;
+    for (VertexIndex i = 0; i < from.clusterCount; ++i) {
+      Position& position = to.made.mesh.positions[i];
+      if (position == from.made.mesh.positions[i]) continue;
+      position = from.made.mesh.positions[i];
+      any = true;
+    }
+    return any;
+  }
+
+  bool splitPairs(const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
+                  cut::CellFlags& forbidden) {
+    std::vector<VertexIndex> vertices;
+    const Mesh& own = mesh.made.mesh;
+    const auto add = [&](mend::PolygonIndex polygon) {
+      if (polygon < own.quads.size()) {
+        const auto& v = own.quads[polygon].vertices;
+        vertices.insert(vertices.end(), v.begin(), v.end());
+      } else {
+        const auto& v = own.triangles[polygon - own.quads.size()].vertices;
+        vertices.insert(vertices.end(), v.begin(), v.end());
+      }
+    };
+    for (const mend::PolygonPair& pair : pairs) {
+      add(pair.a);
+      add(pair.b);
+    }
+    return certify::splitCells(vertices, mesh.cut, options_.rule.minLevel, forbidden);
+  }
+
+  // What was kept from the meshes before does not count here.
+  [[nodiscard]] std::vector<float> errorsOf(const SeamedCut& mesh, const cut::CutRule& rule) {
+    Certifier certifier(seamBase_, forest_.levels[0], rule, job_);
+    certifier.setIgnored(beyond_);
+    (void)certifier.measure(mesh.cut, mesh.made, mesh.altered);
+    return certifier.errorsAtVertices();
+  }
+
+  const level0::Level0<TreeT>& level0_;
+  const ChunkCells& chunks_;
+  const RegionOptions& options_;
+  base::Job& job_;
+  std::vector<Coord> cells_;  ///< of the base vertices
+  Mesh mesh_;                 ///< the base mesh, no vertex of it outside of its chunk
+  forest::Base<TreeT> base_;
+  forest::Forest forest_;
+  Seams seams_;
+  forest::Base<TreeT> seamBase_;  ///< with the seams' vertices
+  std::vector<SeamLines> lines_;  ///< of each level
+  cut::CellFlags forbidden_;
+  std::vector<std::uint8_t> beyond_;
+};
+
+}  // namespace
+
+template <class TreeT>
+std::vector<MadeChunk> makeRegion(const level0::Level0<TreeT>& level0,
+                                  const openvdb::math::Transform& transform,
+                                  const ChunkCells& chunks, const RegionOptions& options,
+                                  base::Job& job) {
+  if (level0.mesh().positions.empty()) return {};
+  RegionMaker<TreeT> maker(level0, chunks, options, job);
+  ChunkSplitter splitter(maker.cells(), maker.seams(), chunks, level0.affine(), transform,
+                         options.singlePrecision);
+  for (std::size_t level = 0; level < options.tolerances.size(); ++level) {
+    const bool last = level + 1 == options.tolerances.size();
+    splitter.addLevel(maker.makeLevel(level), maker.lines(level),
+                      last ? nullptr : &maker.lines(level + 1));
+  }
+  return splitter.takeChunks();
+}
+
+template std::vector<MadeChunk> makeRegion(const level0::Level0<openvdb::FloatTree>&,
+                                           const openvdb::math::Transform&, const ChunkCells&,
+                                           const RegionOptions&, base::Job&);
+template std::vector<MadeChunk> makeRegion(const level0::Level0<openvdb::DoubleTree>&,
+                                           const openvdb::math::Transform&, const ChunkCells&,
+                                           const RegionOptions&, base::Job&);
+
+}  // namespace tufa::chunks

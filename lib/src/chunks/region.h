@@ -1,0 +1,35 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/chunks.h>
+#include <vector>
+
+#include "base/job.h"
+#include "chunks/chunk_cells.h"
+#include "chunks/split_chunks.h"
+#include "cut/cut_rule.h"
+#include "level0/level0.h"
+
+namespace tufa::chunks {
+
+/// How the chunks of a region are made.
+struct RegionOptions {
+  cut::CutRule rule;               ///< but for its tolerance
+  std::vector<double> tolerances;  ///< of the levels, voxels
+  bool repair = true;              ///< split cells until no two polygons meet
+  bool singlePrecision = false;    ///< positions are rounded to floats
+};
+
+/// Makes the chunks of a region that the surface passes, in the order of their indices. `level0`
+/// must hold all blocks of these chunks and those that touch them.
+///
+/// Each level is a cut of the region's forest in which every chunk is a cut of its own. It is
+/// measured, and cells are split, with the seams of its level and with those of the next.
+template <class TreeT>
+[[nodiscard]] std::vector<MadeChunk> makeRegion(const level0::Level0<TreeT>& level0,
+                                                const openvdb::math::Transform& transform,
+                                                const ChunkCells& chunks,
+                                                const RegionOptions& options, base::Job& job);
+
+}  // namespace tufa::chunks

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "base/job.h"
+#include "chunks/polyline.h"
+#include "chunks/seams.h"
+#include "cut/cut.h"
+#include "forest/forest.h"
+#include "polygons/cut_polygons.h"
+
+namespace tufa::chunks {
+
+/// A side of a curve.
+struct StripPlace {
+  std::uint32_t curve = 0;  ///< in Seams::curves
+  bool above = false;       ///< in the chunk above the face
+};
+
+/// The mesh of a cut, parted at the seams.
+struct SeamedCut {
+  cut::Cut cut;  ///< of the base mesh with the seams' vertices
+  polygons::CutMesh made;
+  /// The strip that each of the last triangles is in: all others are inside their chunks.
+  std::vector<StripPlace> strips;
+  VertexIndex clusterCount = 0;   ///< vertices from here on are on seams
+  std::vector<SeamIndex> seamOf;  ///< of each of these
+  std::vector<VertexIndex>
+      altered;  ///< vertices of pieces and seams: not as the base mesh has them
+
+  [[nodiscard]] bool isOnSeam(VertexIndex vertex) const { return vertex >= clusterCount; }
+  [[nodiscard]] SeamIndex seamAt(VertexIndex vertex) const { return seamOf[vertex - clusterCount]; }
+};
+
+/// Takes the mesh of `cut`, which is one of the base mesh, with its seams as `lines` have them and
+/// strips along these in the chunks to be made. `vertexCells` has the cell of each base vertex.
+[[nodiscard]] SeamedCut meshWithSeams(const forest::Forest& forest, cut::Cut cut,
+                                      const Seams& seams, const SeamLines& lines,
+                                      const std::vector<openvdb::Coord>& vertexCells,
+                                      const ChunkCells& chunks, const base::Affine& affine,
+                                      base::Job& job);
+
+}  // namespace tufa::chunks

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/mesh.h>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/affine.h"
+#include "base/job.h"
+#include "chunks/chunk_cells.h"
+#include "forest/forest.h"
+#include "polygons/base_quads.h"
+
+namespace tufa::chunks {
+
+/// A vertex on the faces between chunks: where the base mesh passes them. Made from what is near
+/// the face alone: the same bits whichever of the chunks asks.
+struct SeamVertex {
+  openvdb::Coord cell;    ///< lattice point
+  openvdb::Vec3d offset;  ///< from it, in lattice steps
+  Normal normal;          ///< outward unit normal, world space
+};
+
+/// Names an element of Seams::vertices.
+using SeamIndex = std::uint32_t;
+inline constexpr SeamIndex kNoSeam = forest::kNone;
+
+/// A stretch of surface in a face of one cell, where the face lies between two chunks: an edge of
+/// the base mesh passes the face there. Or the diagonal of a quad that passes such a face, where
+/// that makes a corner of the curve.
+struct Arc {
+  VertexIndex below = 0;   ///< base vertex in the cell below the face
+  VertexIndex above = 0;   ///< base vertex in the cell above it
+  std::uint32_t quad = 0;  ///< a base quad that it is a side or the diagonal of
+  bool single = true;      ///< the only arc in its cell face
+  /// How far base vertices beside the arc lie off the plane through it, in world units: those up to
+  /// 1, 2, 4 and 5 steps away.
+  std::array<float, 4> flatness{};
+};
+
+/// A curve in which the surface passes the face between two chunks: arcs one behind the other. The
+/// lower chunk's surface lies to the left of it, seen from outside.
+struct SeamCurve {
+  int axis = 0;                 ///< across the face
+  openvdb::Coord chunk;         ///< the one above the face
+  std::vector<SeamIndex> arcs;  ///< seen from either side, the same one first
+  SeamIndex begin = kNoSeam;    ///< vertex on a chunk edge before the first arc, if any
+  SeamIndex end = kNoSeam;      ///< vertex on a chunk edge behind the last arc, if any
+  bool closed = false;          ///< the last arc is followed by the first
+};
+
+/// Where the base mesh of some chunks is parted along their faces. A vertex stands for each arc,
+/// and one for each point in which the surface crosses a chunk edge.
+struct Seams {
+  std::vector<SeamVertex> vertices;  ///< arcs first, then points on chunk edges
+  std::vector<Arc> arcs;
+  std::vector<SeamCurve> curves;  ///< sorted by axis, chunk and first arc
+  Mesh mesh;                      ///< the base mesh, the seams' vertices behind its own
+  /// The base quads: those of one chunk as they are, nothing (four times the same vertex) of the
+  /// others.
+  std::vector<Quad> quads;
+  std::vector<VertexIndex> beside;  ///< base vertices of these others; sorted
+};
+
+/// Finds the seams of the chunks to be made. `vertexCells` has the cell of each base vertex,
+/// `before` the positions of `base` before its repair.
+template <class TreeT>
+[[nodiscard]] Seams findSeams(const polygons::QuadContext<TreeT>& context, const Mesh& base,
+                              const Mesh& before, const std::vector<openvdb::Coord>& vertexCells,
+                              const ChunkCells& chunks, base::Job& job);
+
+}  // namespace tufa::chunks
