@@ -28,21 +28,4 @@ class MeshBuilder {
   Mesh mesh_;
 };
 
-/// Gives equal positions one index: for formats that repeat them for every face.
-class VertexWelder {
- public:
-  explicit VertexWelder(std::vector<Position>& positions);
-
-  /// The index of that position, which is added if it is new.
-  [[nodiscard]] VertexIndex indexOf(Position position);
-
- private:
-  void grow();
-  [[nodiscard]] std::size_t slotOf(const Position& position) const;
-
-  static constexpr VertexIndex kFree = 0xFFFFFFFF;
-  std::vector<Position>& positions_;
-  std::vector<VertexIndex> slots_;  ///< open addressing; a power of two, at most half full
-};
-
 }  // namespace tufa::io

@@ -4,15 +4,12 @@
 #include <openvdb/math/Mat4.h>
 
 #include <array>
-#include <cmath>
-#include <cstring>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
-#include "io/glb.h"
-#include "io/mesh_builder.h"
+#include "base/vertex_welder.h"
+#include "io/glb_file.h"
 #include "io/mesh_readers.h"
-#include "io/unpack_view.h"
 
 namespace tufa::io {
 namespace {
@@ -25,21 +22,12 @@ constexpr int kTriangles = 4;
 constexpr int kTriangleStrip = 5;
 constexpr int kTriangleFan = 6;
 
-/// Elements of the binary chunk, `stride` bytes apart.
-struct View {
-  const char* data = nullptr;
-  std::size_t count = 0;
-  std::size_t stride = 0;
-  int componentType = 0;
-  bool normalized = false;  ///< integers stand for -1 to 1 or 0 to 1
-};
-
 class GlbReader {
  public:
-  explicit GlbReader(const InputBytes& input) : input_(input) {}
+  explicit GlbReader(const InputBytes& input)
+      : input_(input), file_(input), json_(file_.document()) {}
 
   Mesh read() {
-    splitChunks();
     refuseUnknownExtensions();
     const Json nodes = json_.value("nodes", Json::array());
     visited_.assign(nodes.size(), false);
@@ -48,32 +36,6 @@ class GlbReader {
   }
 
  private:
-  [[nodiscard]] std::uint32_t word(std::size_t offset) const {
-    if (offset + 4 > input_.size()) input_.failAtByte(offset, "the file ends too early: truncated");
-    std::uint32_t value = 0;
-    std::memcpy(&value, input_.view().data() + offset, sizeof value);
-    return value;
-  }
-
-  void splitChunks() {
-    if (input_.size() < 12 || word(0) != glb::kMagic) input_.fail("it is not a .glb file");
-    if (word(4) != 2) input_.fail("it is glTF version " + std::to_string(word(4)) + ", not 2");
-    if (word(8) > input_.size()) {
-      input_.fail("it should have " + std::to_string(word(8)) + " bytes but has " +
-                  std::to_string(input_.size()) + ": truncated");
-    }
-    for (std::size_t at = 12; at + 8 <= word(8);) {
-      const std::size_t length = word(at);
-      const std::uint32_t type = word(at + 4);
-      if (length > word(8) - at - 8) input_.failAtByte(at, "a chunk is longer than the file");
-      const std::string_view chunk = input_.view().substr(at + 8, length);
-      if (type == glb::kJsonChunk && json_.is_null()) json_ = Json::parse(chunk);
-      if (type == glb::kBinaryChunk && binary_.data() == nullptr) binary_ = chunk;
-      at += 8 + length;
-    }
-    if (!json_.is_object()) input_.fail("it has no JSON chunk");
-  }
-
   void refuseUnknownExtensions() {
     for (const Json& extension : json_.value("extensionsRequired", Json::array())) {
       const std::string name = extension.get<std::string>();
@@ -158,7 +120,7 @@ class GlbReader {
   }
 
   void addPrimitive(const Json& primitive, int mode, const Matrix& transform) {
-    const View positions = viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
+    const glb::View positions = file_.viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
     const std::size_t first = mesh_.positions.size();
     const std::vector<VertexIndex> vertices =
         addPositions(positions, transform, primitive["attributes"].size() > 1);
@@ -183,12 +145,12 @@ class GlbReader {
   /// Adds the positions of a primitive and gives each one's place among them. Other attributes,
   /// such as normals at a crease, make vertices that differ at one position: `weld` makes them one
   /// again.
-  std::vector<VertexIndex> addPositions(const View& view, const Matrix& transform, bool weld) {
+  std::vector<VertexIndex> addPositions(const glb::View& view, const Matrix& transform, bool weld) {
     std::vector<Position> own;
     std::vector<VertexIndex> places(view.count);
-    VertexWelder welder(own);
+    base::VertexWelder welder(own);
     for (std::size_t n = 0; n < view.count; ++n) {
-      const Point moved = transform.transform(pointAt(view, n));
+      const Point moved = transform.transform(file_.pointAt(view, n));
       if (!moved.isFinite()) input_.fail("position " + std::to_string(n) + " is not finite");
       const Position position(moved.x(), moved.y(), moved.z());
       places[n] = weld ? welder.indexOf(position) : static_cast<VertexIndex>(n);
@@ -198,133 +160,17 @@ class GlbReader {
     return places;
   }
 
-  template <class Number>
-  static Point readPoint(const char* data) {
-    std::array<Number, 3> p;
-    std::memcpy(p.data(), data, sizeof p);
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-  }
-
-  /// Element n of a view of points: floats, or integers as KHR_mesh_quantization allows them.
-  [[nodiscard]] Point pointAt(const View& view, std::size_t n) const {
-    const char* const data = view.data + n * view.stride;
-    const auto scaled = [&](const Point& p, double most) {
-      if (!view.normalized) return p;
-      return Point(std::max(-1.0, p[0] / most), std::max(-1.0, p[1] / most),
-                   std::max(-1.0, p[2] / most));
-    };
-    switch (view.componentType) {
-      case glb::kFloat:
-        return readPoint<float>(data);
-      case glb::kByte:
-        return scaled(readPoint<std::int8_t>(data), 127);
-      case glb::kUnsignedByte:
-        return scaled(readPoint<std::uint8_t>(data), 255);
-      case glb::kShort:
-        return scaled(readPoint<std::int16_t>(data), 32767);
-      case glb::kUnsignedShort:
-        return scaled(readPoint<std::uint16_t>(data), 65535);
-      default:
-        input_.fail("its positions are of component type " + std::to_string(view.componentType) +
-                    ", not supported");
-    }
-  }
-
   [[nodiscard]] std::vector<std::uint32_t> indicesOf(const Json& primitive,
                                                      std::size_t positionCount) {
-    std::vector<std::uint32_t> indices;
-    if (!primitive.contains("indices")) {
-      for (std::size_t n = 0; n < positionCount; ++n) {
-        indices.push_back(static_cast<std::uint32_t>(n));
-      }
-      return indices;
-    }
-    const View view = viewOf(primitive["indices"], "SCALAR", 1);
-    indices.reserve(view.count);
-    for (std::size_t n = 0; n < view.count; ++n) {
-      std::uint32_t index = 0;  // little-endian: a shorter number fills the lower bytes
-      std::memcpy(&index, view.data + n * view.stride, sizeOf(view.componentType));
-      if (index >= positionCount) {
-        input_.fail("index " + std::to_string(n) + " names vertex " + std::to_string(index) +
-                    " of " + std::to_string(positionCount));
-      }
-      indices.push_back(index);
-    }
+    if (primitive.contains("indices")) return file_.indicesOf(primitive["indices"], positionCount);
+    std::vector<std::uint32_t> indices(positionCount);
+    std::iota(indices.begin(), indices.end(), 0u);
     return indices;
   }
 
-  [[nodiscard]] std::size_t sizeOf(int componentType) const {
-    switch (componentType) {
-      case glb::kByte:
-      case glb::kUnsignedByte:
-        return 1;
-      case glb::kShort:
-      case glb::kUnsignedShort:
-        return 2;
-      case glb::kUnsignedInt:
-      case glb::kFloat:
-        return 4;
-      default:
-        input_.fail("component type " + std::to_string(componentType) + " is not supported");
-    }
-  }
-
-  /// The bytes of a buffer view: a part of the binary chunk, or unpacked from one.
-  [[nodiscard]] std::string_view bytesOf(std::size_t index) {
-    const Json& view = json_.at("bufferViews").at(index);
-    const Json extensions = view.value("extensions", Json::object());
-    if (extensions.contains("EXT_meshopt_compression")) {
-      const Json& packed = extensions["EXT_meshopt_compression"];
-      const auto [found, isNew] = unpacked_.try_emplace(index);
-      if (isNew) found->second = unpackView(packed, partOfBinary(packed), input_);
-      return found->second;
-    }
-    return partOfBinary(view);
-  }
-
-  [[nodiscard]] std::string_view partOfBinary(const Json& range) const {
-    if (range.at("buffer") != 0 || json_.at("buffers").at(0).contains("uri")) {
-      input_.fail("its data lies outside the file, not supported");
-    }
-    const auto start = range.value("byteOffset", std::size_t{0});
-    const auto length = range.at("byteLength").get<std::size_t>();
-    if (start > binary_.size() || length > binary_.size() - start) failOutside();
-    return binary_.substr(start, length);
-  }
-
-  [[noreturn]] void failOutside() const {
-    input_.fail("an accessor reaches beyond the binary chunk: damaged");
-  }
-
-  /// The elements of an accessor, all of them inside its buffer view.
-  [[nodiscard]] View viewOf(const Json& accessorIndex, const std::string& type,
-                            std::size_t components) {
-    const Json& accessor = json_.at("accessors").at(accessorIndex.get<std::size_t>());
-    if (accessor.contains("sparse")) input_.fail("sparse accessors are not supported");
-    if (accessor.at("type") != type) input_.fail("an accessor is not of type " + type);
-    const auto viewIndex = accessor.at("bufferView").get<std::size_t>();
-    const std::string_view bytes = bytesOf(viewIndex);
-    const Json& bufferView = json_.at("bufferViews").at(viewIndex);
-    View view;
-    view.componentType = accessor.at("componentType").get<int>();
-    view.count = accessor.at("count").get<std::size_t>();
-    const std::size_t element = components * sizeOf(view.componentType);
-    view.stride = bufferView.value("byteStride", element);
-    view.normalized = accessor.value("normalized", false);
-    const auto offset = accessor.value("byteOffset", std::size_t{0});
-    const bool inside =
-        view.stride >= element && offset <= bytes.size() &&
-        (view.count == 0 || (element <= bytes.size() - offset &&
-                             view.count - 1 <= (bytes.size() - offset - element) / view.stride));
-    if (!inside) failOutside();
-    view.data = bytes.data() + offset;
-    return view;
-  }
-
   const InputBytes& input_;
-  Json json_;
-  std::string_view binary_;
-  std::map<std::size_t, std::string> unpacked_;  ///< packed buffer views
+  glb::File file_;
+  const Json& json_;
   std::vector<bool> visited_;
   Mesh mesh_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/vertex_welder.h"
 #include "io/mesh_builder.h"
 #include "io/mesh_readers.h"
 
@@ -42,7 +43,7 @@ Mesh readBinary(const InputBytes& input) {
                std::to_string(input.size()) + ": truncated, or not an .stl file");
   }
   Mesh mesh;
-  VertexWelder welder(mesh.positions);
+  base::VertexWelder welder(mesh.positions);
   mesh.triangles.reserve(claimedTriangles(input));
   for (std::size_t at = kPrefixBytes; at < claimedBytes(input); at += kTriangleBytes) {
     std::array<float, 12> numbers;  // the normal, then three corners
@@ -63,7 +64,7 @@ Mesh readBinary(const InputBytes& input) {
 Mesh readAscii(const InputBytes& input) {
   TextCursor text(input, 0, 1);
   MeshBuilder builder;
-  VertexWelder welder(builder.mesh().positions);
+  base::VertexWelder welder(builder.mesh().positions);
   std::vector<std::uint64_t> corners;
   bool inSolid = false;
   while (text.nextLine()) {
