@@ -1,6 +1,8 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <cstdint>
+#include <vector>
 
 #include "io/input_bytes.h"
 
@@ -8,7 +10,8 @@ namespace tufa::io {
 
 // One format each. All throw Error(UnreadableFile) with the place where reading failed, and
 // allocate no more than a small multiple of the file's size, whatever its header claims.
-[[nodiscard]] Mesh readPly(const InputBytes& input);
+/// `parts` gets the property `part` of every face that has one as a uchar.
+[[nodiscard]] Mesh readPly(const InputBytes& input, std::vector<std::uint8_t>* parts = nullptr);
 [[nodiscard]] Mesh readObj(const InputBytes& input);
 [[nodiscard]] Mesh readOff(const InputBytes& input);
 [[nodiscard]] Mesh readStl(const InputBytes& input);

@@ -190,7 +190,8 @@ class TextBody {
 template <class Body>
 class BodyReader {
  public:
-  BodyReader(const Header& header, Body body) : header_(header), body_(std::move(body)) {}
+  BodyReader(const Header& header, Body body, std::vector<std::uint8_t>* parts)
+      : header_(header), body_(std::move(body)), parts_(parts) {}
 
   Mesh read() {
     for (const Element& element : header_.elements) {
@@ -291,7 +292,14 @@ class BodyReader {
         const bool isCorners = property.countType && (property.name == "vertex_indices" ||
                                                       property.name == "vertex_index");
         if (!isCorners) {
-          skip(property);
+          const bool isPart = parts_ && !property.countType && property.name == "part" &&
+                              property.type == Type::Uint8;
+          if (isPart) {
+            const double part = body_.next(property.type);  // a text may hold any number
+            parts_->push_back(part >= 0 && part <= 255 ? static_cast<std::uint8_t>(part) : 255);
+          } else {
+            skip(property);
+          }
           continue;
         }
         corners.resize(nextCount(*property.countType));
@@ -307,18 +315,19 @@ class BodyReader {
 
   const Header& header_;
   Body body_;
+  std::vector<std::uint8_t>* parts_;
   MeshBuilder builder_;
   std::uint64_t vertexCount_ = 0;
 };
 
 }  // namespace
 
-Mesh readPly(const InputBytes& input) {
+Mesh readPly(const InputBytes& input, std::vector<std::uint8_t>* parts) {
   const Header header = readHeader(input);
   if (header.encoding == Encoding::Text) {
-    return BodyReader<TextBody>(header, TextBody(input, header)).read();
+    return BodyReader<TextBody>(header, TextBody(input, header), parts).read();
   }
-  return BodyReader<BinaryBody>(header, BinaryBody(input, header)).read();
+  return BodyReader<BinaryBody>(header, BinaryBody(input, header), parts).read();
 }
 
 }  // namespace tufa::io
