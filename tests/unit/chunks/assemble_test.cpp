@@ -1,0 +1,113 @@
+// Chunks put together at any levels, by hand-made ones.
+
+#include <gtest/gtest.h>
+
+#include <tufa/chunks.h>
+
+#include "support/expect_error.h"
+#include "support/mesh_oracle.h"
+#include "unit/chunks/hand_made.h"
+
+namespace tufa {
+namespace {
+
+using test::inspect;
+using test::makeDrum;
+using test::makeSheet;
+
+TEST(AssembleChunks, ClosesAcrossAFaceAtAnyTwoLevels) {
+  const std::vector<Chunk> drum = makeDrum();
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      const Mesh mesh = assembleChunks(drum, {a, b});
+      const test::MeshTopology topology = inspect(mesh);
+      EXPECT_TRUE(topology.manifold() && topology.closed()) << a << " beside " << b << topology;
+      EXPECT_EQ(topology.euler(), 2) << a << " beside " << b;
+      EXPECT_GT(test::volume(mesh), 0) << a << " beside " << b;
+      EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+    }
+  }
+}
+
+TEST(AssembleChunks, ClosesAroundAChunkEdgeAtAnyFourLevels) {
+  const std::vector<Chunk> sheet = makeSheet();
+  for (std::size_t code = 0; code < 81; ++code) {
+    const Mesh mesh = assembleChunks(sheet, {code / 27, code / 9 % 3, code / 3 % 3, code % 3});
+    const test::MeshTopology topology = inspect(mesh);
+    EXPECT_TRUE(topology.manifold()) << code << topology;
+    EXPECT_EQ(topology.components, 1u) << code;
+    EXPECT_EQ(topology.euler(), 1) << code << topology;  // one rim and no hole
+  }
+}
+
+TEST(AssembleChunks, MakesTheStripsOfEachChunkItself) {
+  // From the seams alone come the triangles that the chunks hold.
+  std::vector<Chunk> drum = makeDrum();
+  const std::size_t whole = assembleChunks(drum, {0, 1}).triangles.size();
+  const std::size_t far = assembleChunks(drum, {0, 2}).triangles.size();
+  EXPECT_EQ(whole, drum[0].levels[0].interior.size() + drum[0].levels[0].transition[1].size() +
+                       drum[1].levels[1].interior.size() + drum[1].levels[1].regular[0].size());
+  EXPECT_LT(far, whole);
+}
+
+TEST(AssembleChunks, LeavesChunksOpenWhoseNeighboursAreMissing) {
+  std::vector<Chunk> drum = makeDrum();
+  drum.pop_back();
+  const test::MeshTopology topology = inspect(assembleChunks(drum, {1}));
+  EXPECT_TRUE(topology.manifold());
+  EXPECT_FALSE(topology.closed());
+  EXPECT_TRUE(assembleChunks({}, {}).positions.empty());
+}
+
+TEST(AssembleChunks, NeedsSeamsForDistantLevelsOnly) {
+  std::vector<Chunk> drum = makeDrum();
+  for (Chunk& chunk : drum) {
+    for (ChunkLevel& level : chunk.levels) level.seams = {};
+  }
+  EXPECT_TRUE(inspect(assembleChunks(drum, {1, 2})).closed());
+  test::expectError(ErrorCode::InvalidArgument, "chunk (0, 0, 0) has no seams", [&] {
+    static_cast<void>(assembleChunks(drum, {0, 2}));
+  });
+}
+
+TEST(AssembleChunks, RefusesLevelsThatDoNotFit) {
+  const std::vector<Chunk> drum = makeDrum();
+  test::expectError(ErrorCode::InvalidArgument, "1 levels for 2 chunks",
+                    [&] { static_cast<void>(assembleChunks(drum, {0})); });
+  test::expectError(ErrorCode::InvalidArgument, "no level 3", [&] {
+    static_cast<void>(assembleChunks(drum, {0, 3}));
+  });
+  test::expectError(ErrorCode::InvalidArgument, "there twice", [&] {
+    static_cast<void>(assembleChunks({drum[0], drum[0]}, {0, 0}));
+  });
+}
+
+TEST(MeshForMask, DrawsOneStripForEachFace) {
+  const std::vector<Chunk> sheet = makeSheet();
+  const Chunk& chunk = sheet[0];
+  const ChunkLevel& level = chunk.levels[0];
+  for (const unsigned mask : {0u, 2u, 8u, 10u}) {
+    const Mesh mesh = meshForMask(chunk, 0, mask);
+    std::size_t triangles = level.interior.size();
+    for (std::size_t face = 0; face < kChunkFaces; ++face) {
+      triangles += ((mask >> face & 1u) != 0 ? level.transition : level.regular)[face].size();
+    }
+    EXPECT_EQ(mesh.triangles.size(), triangles) << mask;
+    EXPECT_EQ(inspect(mesh).unusedVertices, 0u) << mask;
+    EXPECT_TRUE(inspect(mesh).manifold()) << mask;
+    EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+  }
+}
+
+TEST(MeshForMask, RefusesStripsThatThereAreNot) {
+  const Chunk chunk = makeDrum()[0];
+  test::expectError(ErrorCode::InvalidArgument, "no level 3",
+                    [&] { static_cast<void>(meshForMask(chunk, 3, 0)); });
+  test::expectError(ErrorCode::InvalidArgument, "no strips for mask 2 at level 2",
+                    [&] { static_cast<void>(meshForMask(chunk, 2, 2)); });
+  test::expectError(ErrorCode::InvalidArgument, "mask 64",
+                    [&] { static_cast<void>(meshForMask(chunk, 0, 64)); });
+}
+
+}  // namespace
+}  // namespace tufa

@@ -1,0 +1,266 @@
+// Chunks in files: what is written is read back, and what is damaged is refused.
+
+#include <gtest/gtest.h>
+
+#include <tufa/chunks.h>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "support/expect_error.h"
+#include "support/scratch_folder.h"
+#include "unit/chunks/hand_made.h"
+
+namespace tufa {
+namespace {
+
+using test::readBytes;
+using test::ScratchFolder;
+using test::writeBytes;
+
+class ChunkFiles : public ::testing::Test {
+ protected:
+  void write(ChunkFormat format) {
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      const std::vector<std::string> names = writeChunk(index, chunks[i], name, format);
+      for (std::size_t k = 0; k < names.size(); ++k) index.chunks[i].levels[k].file = names[k];
+    }
+    writeChunkIndex(index, name);
+  }
+
+  void expectSame(const ChunkLevel& read, const ChunkLevel& made) {
+    EXPECT_EQ(read.positions, made.positions);
+    EXPECT_EQ(read.normals, made.normals);
+    EXPECT_EQ(read.interior, made.interior);
+    EXPECT_EQ(read.regular, made.regular);
+    EXPECT_EQ(read.transition, made.transition);
+    EXPECT_EQ(read.maxErrorVoxels, made.maxErrorVoxels);
+    EXPECT_EQ(read.transitionErrorVoxels, made.transitionErrorVoxels);
+  }
+
+  void expectUnreadable(const std::string& part) {
+    test::expectError(ErrorCode::UnreadableFile, part,
+                      [&] { static_cast<void>(readChunk(readChunkIndex(name), 0, name)); });
+  }
+
+  /// Reads what may be damaged: it is read or refused, and nothing else happens.
+  void expectReadOrRefused() {
+    try {
+      static_cast<void>(readChunk(readChunkIndex(name), 0, name));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::UnreadableFile) << error.what();
+    }
+  }
+
+  const ScratchFolder folder;
+  const std::string name = (folder / "").string();
+  std::vector<Chunk> chunks = test::makeDrum();
+  ChunkIndex index = test::indexOf(chunks);
+};
+
+class ChunkFormats : public ChunkFiles, public ::testing::WithParamInterface<ChunkFormat> {};
+
+TEST_P(ChunkFormats, AreReadBack) {
+  index.origin = {1024, -2048, 0.5};
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      chunks[i].levels[k].maxErrorVoxels = index.chunks[i].levels[k].maxErrorVoxels;
+      chunks[i].levels[k].transitionErrorVoxels = index.chunks[i].levels[k].transitionErrorVoxels;
+    }
+  }
+  write(GetParam());
+  EXPECT_EQ(folder.fileCount(), 7);
+  const ChunkIndex read = readChunkIndex(name);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const Chunk chunk = readChunk(read, i, name);
+    EXPECT_EQ(chunk.index, chunks[i].index);
+    ASSERT_EQ(chunk.levels.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) expectSame(chunk.levels[k], chunks[i].levels[k]);
+  }
+}
+
+TEST_P(ChunkFormats, HaveNoFileForALevelWithoutTriangles) {
+  chunks[0].levels[1] = {};
+  index = test::indexOf(test::makeDrum());
+  index.chunks[0].levels[1] = {};
+  write(GetParam());
+  EXPECT_EQ(folder.fileCount(), 6);
+  EXPECT_EQ(index.chunks[0].levels[1].file, "");
+  const Chunk chunk = readChunk(readChunkIndex(name), 0, name);
+  EXPECT_TRUE(chunk.levels[1].positions.empty());
+  EXPECT_FALSE(chunk.levels[2].positions.empty());
+}
+
+TEST_P(ChunkFormats, AreRefusedWhereTheyEndTooEarly) {
+  write(GetParam());
+  const auto file = folder / index.chunks[0].levels[0].file;
+  const std::string bytes = readBytes(file);
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    writeBytes(file, bytes.substr(0, size));
+    expectUnreadable("cannot read");
+  }
+}
+
+TEST_P(ChunkFormats, SurviveDamage) {
+  write(GetParam());
+  const auto file = folder / index.chunks[0].levels[0].file;
+  const std::string bytes = readBytes(file);
+  std::mt19937 random(3);
+  for (int round = 0; round < 3000; ++round) {
+    std::string damaged = bytes;
+    for (unsigned n = 1 + random() % 3; n > 0; --n) {
+      damaged[random() % damaged.size()] = static_cast<char>(random() & 255u);
+    }
+    writeBytes(file, damaged);
+    expectReadOrRefused();
+  }
+}
+
+TEST_P(ChunkFormats, AreRefusedWhereTheyDoNotFitTheIndex) {
+  write(GetParam());
+  ++index.chunks[0].levels[0].interiorTriangles;
+  writeChunkIndex(index, name);
+  expectUnreadable("other counts than chunks.json");
+  --index.chunks[0].levels[0].interiorTriangles;
+  index.chunks[0].levels[0].file = "missing.glb";
+  writeChunkIndex(index, name);
+  expectUnreadable("missing.glb");
+}
+
+INSTANTIATE_TEST_SUITE_P(Chunks, ChunkFormats,
+                         ::testing::Values(ChunkFormat::Glb, ChunkFormat::Ply),
+                         [](const auto& param) {
+                           return param.param == ChunkFormat::Glb ? "Glb" : "Ply";
+                         });
+
+TEST_F(ChunkFiles, KeepPositionsFarFromTheOriginInPly) {
+  for (ChunkLevel& level : chunks[0].levels) {
+    for (Position& p : level.positions) p = {p.x + 1e9 + 1.0 / 3, p.y, p.z};
+  }
+  write(ChunkFormat::Ply);
+  EXPECT_EQ(readChunk(readChunkIndex(name), 0, name).levels[0].positions,
+            chunks[0].levels[0].positions);
+}
+
+TEST_F(ChunkFiles, GlbHasAPrimitiveForEachPartAndOneVertexBuffer) {
+  write(ChunkFormat::Glb);
+  const std::string bytes = readBytes(folder / index.chunks[0].levels[0].file);
+  const std::size_t end = bytes.rfind("BIN");
+  const auto json = nlohmann::json::parse(bytes.substr(20, end - 4 - 20));
+  std::vector<std::string> names;
+  for (const auto& primitive : json["meshes"][0]["primitives"]) {
+    names.push_back(primitive["extras"]["name"]);
+    EXPECT_EQ(primitive["attributes"], json["meshes"][0]["primitives"][0]["attributes"]);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"interior", "face+x.regular", "face+x.transition"}));
+}
+
+TEST_F(ChunkFiles, GlbOfAnotherOriginIsRefused) {
+  write(ChunkFormat::Glb);
+  index.origin.x += 1;
+  writeChunkIndex(index, name);
+  expectUnreadable("its origin is not that of chunks.json");
+}
+
+TEST_F(ChunkFiles, IndexKeepsEveryBit) {
+  index.grid = "a \"name\"";
+  index.voxelSize = 1.0 / 3;
+  index.origin = {0.1, -1e300, 5e-324};
+  index.transform[3][1] = std::nextafter(2.0, 3.0);
+  index.tolerances = {1.0 / 7, 2.0 / 7, 3.0 / 7};
+  index.chunks[1].levels[2].maxErrorVoxels = std::sqrt(2.0);
+  index.chunks[1].levels[2].intersectionsLeft = 3;
+  index.chunks[0].index = openvdb::Coord(-7, 3, 2);
+  writeChunkIndex(index, name);
+  const ChunkIndex read = readChunkIndex(name);
+  EXPECT_EQ(read.grid, index.grid);
+  EXPECT_EQ(read.chunkSize, index.chunkSize);
+  EXPECT_EQ(read.tolerances, index.tolerances);
+  EXPECT_EQ(read.voxelSize, index.voxelSize);
+  EXPECT_EQ(read.transform, index.transform);
+  EXPECT_EQ(read.origin, index.origin);
+  ASSERT_EQ(read.chunks.size(), index.chunks.size());
+  for (std::size_t i = 0; i < read.chunks.size(); ++i) {
+    EXPECT_EQ(read.chunks[i].index, index.chunks[i].index);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ChunkLevelEntry& a = read.chunks[i].levels[k];
+      const ChunkLevelEntry& b = index.chunks[i].levels[k];
+      EXPECT_EQ(a.file, b.file);
+      EXPECT_EQ(a.vertices, b.vertices);
+      EXPECT_EQ(a.interiorTriangles, b.interiorTriangles);
+      EXPECT_EQ(a.regularTriangles, b.regularTriangles);
+      EXPECT_EQ(a.transitionTriangles, b.transitionTriangles);
+      EXPECT_EQ(a.least, b.least);
+      EXPECT_EQ(a.greatest, b.greatest);
+      EXPECT_EQ(a.maxErrorVoxels, b.maxErrorVoxels);
+      EXPECT_EQ(a.transitionErrorVoxels, b.transitionErrorVoxels);
+      EXPECT_EQ(a.intersectionsLeft, b.intersectionsLeft);
+    }
+  }
+}
+
+TEST_F(ChunkFiles, IndexTellsTheNeighbours) {
+  writeChunkIndex(index, name);
+  const auto json = nlohmann::json::parse(readBytes(folder / "chunks.json"));
+  EXPECT_EQ(json["tufa_chunks"], 1);
+  EXPECT_EQ(json["chunks"][0]["neighbours"], nlohmann::json({-1, 1, -1, -1, -1, -1}));
+  EXPECT_EQ(json["chunks"][1]["neighbours"], nlohmann::json({0, -1, -1, -1, -1, -1}));
+}
+
+TEST_F(ChunkFiles, IndexThatSaysWhatCannotBeIsRefused) {
+  write(ChunkFormat::Glb);
+  const auto good = nlohmann::json::parse(readBytes(folder / "chunks.json"));
+  const auto expectRefused = [&](const char* pointer, const nlohmann::json& value,
+                                 const std::string& part) {
+    nlohmann::json json = good;
+    json[nlohmann::json::json_pointer(pointer)] = value;
+    writeBytes(folder / "chunks.json", json.dump());
+    expectUnreadable(part);
+  };
+  expectRefused("/tufa_chunks", 2, "version is 2, not 1");
+  expectRefused("/chunk_size", 24, "power of two");
+  expectRefused("/chunk_size", -8, "a count is missing");
+  expectRefused("/voxel_size", 0, "not above 0");
+  expectRefused("/origin", {1, 2}, "three coordinates");
+  expectRefused("/transform/2", {1, 2, 3}, "four columns");
+  expectRefused("/tolerances_voxels", {0.1}, "one level for each tolerance");
+  expectRefused("/chunks/1/index", {0, 0, 0}, "not sorted");
+  expectRefused("/chunks/1/index", {4e9, 0, 0}, "no integer of the lattice");
+  expectRefused("/chunks/1/index", {1ull << 63, 0, 0}, "no integer of the lattice");
+  expectRefused("/chunks/0/levels/0/file", "../chunk.glb", "by its name alone");
+  expectRefused("/chunks/0/levels/0/file", "", "names no file");
+  expectRefused("/chunks/0/levels/0/vertices", -1, "a count is missing");
+  expectRefused("/chunks/0/levels/0/max_error_voxels", nullptr, "a number is missing");
+  expectRefused("/chunks/0/levels/0/max_error_voxels", -1, "below 0");
+  expectRefused("/chunks/0", nlohmann::json::array(), "damaged");
+  writeBytes(folder / "chunks.json", "{}");
+  expectUnreadable("no list of chunks");
+  writeBytes(folder / "chunks.json", "[");
+  expectUnreadable("its JSON is damaged");
+}
+
+TEST_F(ChunkFiles, IndexSurvivesDamage) {
+  write(ChunkFormat::Ply);
+  const std::string bytes = readBytes(folder / "chunks.json");
+  for (std::size_t size = 0; size + 2 < bytes.size(); size += 5) {
+    writeBytes(folder / "chunks.json", bytes.substr(0, size));
+    expectUnreadable("cannot read");
+  }
+  std::mt19937 random(4);
+  for (int round = 0; round < 3000; ++round) {
+    std::string damaged = bytes;
+    damaged[random() % damaged.size()] = "0123456789-.,[]{}\"e"[random() % 19];
+    writeBytes(folder / "chunks.json", damaged);
+    expectReadOrRefused();
+  }
+}
+
+TEST_F(ChunkFiles, AreNotWrittenToWhereTheyCannotBe) {
+  test::expectError(ErrorCode::UnwritableFile, "cannot write",
+                    [&] { writeChunk(index, chunks[0], name + "missing", ChunkFormat::Glb); });
+  test::expectError(ErrorCode::UnwritableFile, "cannot write",
+                    [&] { writeChunkIndex(index, name + "missing"); });
+}
+
+}  // namespace
+}  // namespace tufa
