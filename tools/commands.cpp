@@ -17,6 +17,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addInfoCommand(app, chosen);
   addMeshCommand(app, chosen);
   addLodCommand(app, chosen);
+  addChunksCommand(app, chosen);
   addCheckCommand(app, chosen);
 }
 

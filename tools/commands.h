@@ -21,6 +21,7 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen);
 void addInfoCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);
+void addChunksCommand(CLI::App& app, Command& chosen);
 void addCheckCommand(CLI::App& app, Command& chosen);
 
 /// Declares `--threads`, which all of them have.

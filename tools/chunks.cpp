@@ -1,0 +1,295 @@
+#include <CLI/CLI.hpp>
+
+#include <tufa/check.h>
+#include <tufa/chunks.h>
+#include <tufa/error.h>
+#include <tufa/io.h>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assemble.h"
+#include "commands.h"
+#include "console.h"
+#include "progress_bar.h"
+#include "volume.h"
+
+namespace tufa::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ChunksArguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> grid;
+  ChunkOptions chunks;
+  std::string tolerance = "0.1";
+  std::string format = "glb";
+  std::vector<std::string> only;
+  AssembleArguments assemble;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// What one run made and how long its parts took.
+struct ChunksRun {
+  ChunkIndex index;
+  ContourReport contour;
+  double readSeconds = 0;
+  double buildSeconds = 0;
+  double writeSeconds = 0;
+};
+
+openvdb::Coord readIndex(const std::string& text) {
+  const std::vector<std::string> words = CLI::detail::split(text, ',');
+  openvdb::Coord index;
+  bool good = words.size() == 3;
+  for (int axis = 0; good && axis < 3; ++axis) {
+    good = CLI::detail::lexical_cast(words[static_cast<std::size_t>(axis)], index[axis]);
+  }
+  if (good) return index;
+  throw Error(ErrorCode::InvalidArgument,
+              "--only wants indices of chunks such as 0,-1,2, not \"" + text + "\"");
+}
+
+ChunkOptions chunkOptions(const ChunksArguments& arguments, const openvdb::GridBase& grid,
+                          ProgressBar& bar) {
+  ChunkOptions options = arguments.chunks;
+  options.contour.tolerance = readTolerance("--tolerance", arguments.tolerance, grid);
+  for (const std::string& text : arguments.only) options.only.push_back(readIndex(text));
+  options.contour.progress = bar.callback();
+  return options;
+}
+
+/// Makes the folder, or throws Error(UnwritableFile).
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw Error(ErrorCode::UnwritableFile,
+                "cannot make the folder " + folder + (error ? ": " + error.message() : ""));
+  }
+  requireWritable(std::filesystem::path(folder) / "chunks.json");
+}
+
+/// Adds the chunks of an earlier run that this one has not made anew.
+void keepOthers(ChunkIndex& index, const std::string& folder) {
+  if (!std::filesystem::exists(std::filesystem::path(folder) / "chunks.json")) return;
+  const ChunkIndex before = readChunkIndex(folder);
+  if (before.grid != index.grid || before.chunkSize != index.chunkSize ||
+      before.tolerances != index.tolerances || before.transform != index.transform ||
+      !(before.origin == index.origin)) {
+    throw Error(ErrorCode::InvalidArgument,
+                folder + " holds chunks of another volume or of other options");
+  }
+  std::map<openvdb::Coord, ChunkEntry> chunks;
+  for (const auto* entries : {&before.chunks, &index.chunks}) {
+    for (const ChunkEntry& chunk : *entries) chunks.insert_or_assign(chunk.index, chunk);
+  }
+  index.chunks.clear();
+  for (auto& [place, chunk] : chunks) index.chunks.push_back(std::move(chunk));
+}
+
+ChunksRun build(const ChunksArguments& arguments) {
+  ProgressBar bar(arguments.quiet);
+  ChunksRun run;
+  openvdb::GridBase::Ptr grid;
+  run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
+  requireVoxels(*grid, arguments.input);
+  const ChunkOptions options = chunkOptions(arguments, *grid, bar);
+  makeFolder(arguments.output);
+  const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
+  std::map<openvdb::Coord, std::vector<std::string>> files;
+  const ChunkSink sink = [&](const ChunkIndex& index, Chunk&& chunk) {
+    run.writeSeconds +=
+        timed([&] { files[chunk.index] = writeChunk(index, chunk, arguments.output, format); });
+  };
+  run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
+  run.buildSeconds -= run.writeSeconds;
+  for (ChunkEntry& chunk : run.index.chunks) {
+    const std::vector<std::string>& names = files.at(chunk.index);
+    for (std::size_t i = 0; i < names.size(); ++i) chunk.levels[i].file = names[i];
+  }
+  if (options.only.empty() && run.index.chunks.empty()) {
+    requireSurface({}, run.contour.isovalue, *grid, arguments.input);
+  }
+  ChunkIndex all = run.index;
+  if (!options.only.empty()) keepOthers(all, arguments.output);
+  writeChunkIndex(all, arguments.output);
+  return run;
+}
+
+/// What all chunks have at one level together.
+struct LevelSum {
+  std::size_t interior = 0;
+  std::size_t regular = 0;
+  std::size_t transition = 0;
+  std::size_t pairsLeft = 0;
+  double maxErrorVoxels = 0;
+  double transitionErrorVoxels = 0;
+};
+
+LevelSum sumOf(const ChunkIndex& index, std::size_t level) {
+  LevelSum sum;
+  for (const ChunkEntry& chunk : index.chunks) {
+    const ChunkLevelEntry& entry = chunk.levels[level];
+    sum.interior += entry.interiorTriangles;
+    sum.regular += entry.regularTriangles;
+    sum.transition += entry.transitionTriangles;
+    sum.pairsLeft += entry.intersectionsLeft;
+    sum.maxErrorVoxels = std::max(sum.maxErrorVoxels, entry.maxErrorVoxels);
+    sum.transitionErrorVoxels = std::max(sum.transitionErrorVoxels, entry.transitionErrorVoxels);
+  }
+  return sum;
+}
+
+Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
+  Json json;
+  json["file"] = arguments.input;
+  json["grid"] = run.index.grid;
+  json["output"] = arguments.output;
+  json["isovalue"] = run.contour.isovalue;
+  json["inside"] = run.contour.insideIsBelow ? "below" : "above";
+  json["active_voxels"] = run.contour.activeVoxels;
+  json["non_finite_values"] = run.contour.nonFiniteValues;
+  json["cut_edges"] = run.contour.cutEdges;
+  json["voxel_size"] = run.index.voxelSize;
+  json["chunk_size"] = run.index.chunkSize;
+  json["chunks"] = run.index.chunks.size();
+  json["levels"] = Json::array();
+  for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
+    const LevelSum sum = sumOf(run.index, level);
+    json["levels"].push_back(
+        {{"level", level},
+         {"tolerance_voxels", run.index.tolerances[level]},
+         {"triangles",
+          {{"interior", sum.interior}, {"regular", sum.regular}, {"transition", sum.transition}}},
+         {"max_error_voxels", sum.maxErrorVoxels},
+         {"transition_error_voxels", sum.transitionErrorVoxels},
+         {"pairs_left", sum.pairsLeft}});
+  }
+  json["seconds"] = {
+      {"read", run.readSeconds}, {"build", run.buildSeconds}, {"write", run.writeSeconds}};
+  json["peak_memory_bytes"] = peakMemoryBytes();
+  json["threads"] = resolveThreads(arguments.chunks.contour.threads);
+  return json;
+}
+
+std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
+  std::string text = arguments.output + ": " + formatCount(run.index.chunks.size()) +
+                     " chunks of " + std::to_string(run.index.chunkSize) + " voxels from " +
+                     formatCount(run.contour.activeVoxels) + " active voxels\n";
+  for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
+    const LevelSum sum = sumOf(run.index, level);
+    text += "level " + std::to_string(level) + ": " + formatCount(sum.interior + sum.regular) +
+            " triangles, of which " + formatCount(sum.regular) + " in strips, and " +
+            formatCount(sum.transition) + " in strips to coarser chunks; within " +
+            shortNumber(sum.maxErrorVoxels) + " voxels\n";
+  }
+  return text + "read " + shortNumber(run.readSeconds) + " s, build " +
+         shortNumber(run.buildSeconds) + " s, write " + shortNumber(run.writeSeconds) + " s\n";
+}
+
+int runBuild(const ChunksArguments& arguments) {
+  const ChunksRun run = build(arguments);
+  noteData(run.contour);
+  if (arguments.json) {
+    print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  } else if (!arguments.quiet) {
+    print(summary(run, arguments));
+  }
+  return kDone;
+}
+
+/// Throws Error(InvalidArgument) for options that do not go together.
+void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
+  const bool assembling = !arguments.assemble.folder.empty();
+  if (assembling == !arguments.input.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                assembling ? "--assemble takes no volume" : "FILE or --assemble DIR is needed");
+  }
+  const std::vector<const char*> others =
+      assembling ? std::vector<const char*>{"--grid",   "--chunk",  "--levels", "--tolerance",
+                                            "--factor", "--format", "--only",   "--iso"}
+                 : std::vector<const char*>{"--lods", "--pixel-error", "--check"};
+  for (const char* option : others) {
+    if (command.count(option) == 0) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(option) + " is " + (assembling ? "not " : "only ") + "for --assemble");
+  }
+  if (assembling && arguments.assemble.lods.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "--assemble needs --lods");
+  }
+}
+
+void addBuildOptions(CLI::App& app, ChunksArguments& arguments) {
+  ChunkOptions& options = arguments.chunks;
+  app.add_option("--grid", arguments.grid, "name of the grid; default: the first level set");
+  app.add_option("--chunk", options.chunkSize,
+                 "voxels along an edge of a chunk, a power of two from 8 to 1024")
+      ->capture_default_str();
+  app.add_option("--levels", options.levels, "levels of each chunk")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  app.add_option("--tolerance", arguments.tolerance,
+                 "largest distance of level 0 to the uniform mesh, in voxels, or with the suffix w "
+                 "in world units")
+      ->capture_default_str();
+  app.add_option("--factor", options.factor, "each level's tolerance over that of the level before")
+      ->capture_default_str();
+  app.add_option("--format", arguments.format, "of the meshes: glb or ply")
+      ->check(CLI::IsMember({"glb", "ply"}))
+      ->capture_default_str();
+  app.add_option("--only", arguments.only,
+                 "indices of the chunks to make, such as 0,-1,2; default: all");
+}
+
+void addAssembleOptions(CLI::App& app, AssembleArguments& arguments) {
+  app.add_option("--assemble", arguments.folder, "make one mesh of the chunks of a folder");
+  app.add_option("--lods", arguments.lods,
+                 "levels of the chunks: all:K, random[:SEED] or camera:X,Y,Z");
+  app.add_option("--pixel-error", arguments.pixelError,
+                 "with camera: pixels of error, of 1080 in height and 45 degrees")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_flag("--check", arguments.check, "check the mesh; exit 1 if it is not watertight");
+}
+
+}  // namespace
+
+void addChunksCommand(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<ChunksArguments>();
+  CLI::App* const chunks = app.add_subcommand(
+      "chunks", "Divide a volume's surface into chunks, each at several levels of detail");
+  chunks->add_option("FILE", arguments->input, "a .vdb file");
+  chunks
+      ->add_option("-o,--output", arguments->output,
+                   "the folder to write; with --assemble the mesh")
+      ->required();
+  addBuildOptions(*chunks, *arguments);
+  addAssembleOptions(*chunks, arguments->assemble);
+  addContourOptions(*chunks, arguments->chunks.contour);
+  chunks->add_flag("--json", arguments->json, "one JSON object on standard output");
+  chunks->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
+  chunks->callback([arguments, chunks, &chosen] {
+    chosen = [arguments, chunks] {
+      requireOneTask(*arguments, *chunks);
+      if (arguments->assemble.folder.empty()) return runBuild(*arguments);
+      AssembleArguments assemble = arguments->assemble;
+      assemble.output = arguments->output;
+      assemble.threads = arguments->chunks.contour.threads;
+      assemble.json = arguments->json;
+      assemble.quiet = arguments->quiet;
+      return runAssemble(assemble);
+    };
+  });
+}
+
+}  // namespace tufa::tools
