@@ -1,0 +1,100 @@
+import * as THREE from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+
+const kFaces = ["face-x", "face+x", "face-y", "face+y", "face-z", "face+z"];
+const kParallelLoads = 16;
+
+/// The meshes of chunks, loaded as they are asked for.
+export class ChunkMeshes {
+  constructor(index, url) {
+    this.index = index;
+    this.url = url;
+    this.loader = new GLTFLoader();
+    this.levels = new Map(); // "chunk/level" -> null while it is on its way
+    this.queue = [];
+    this.loading = 0;
+  }
+
+  /// Whether the mesh is here; if not, it is asked for.
+  has(chunk, level) {
+    const key = `${chunk}/${level}`;
+    if (!this.levels.has(key)) {
+      this.levels.set(key, null);
+      this.queue.push([chunk, level, key]);
+      this.pump();
+    }
+    return this.levels.get(key) !== null;
+  }
+
+  /// Meshes that are on their way.
+  get pending() {
+    return this.queue.length + this.loading;
+  }
+
+  /// Forgets the wishes that no load has begun for.
+  forgetQueue() {
+    for (const [, , key] of this.queue) this.levels.delete(key);
+    this.queue = [];
+  }
+
+  pump() {
+    while (this.loading < kParallelLoads && this.queue.length > 0) {
+      const [chunk, level, key] = this.queue.shift();
+      ++this.loading;
+      this.load(chunk, level)
+        .then((parts) => this.levels.set(key, parts))
+        .catch((error) => {
+          this.failure = error;
+          console.error(error);
+        })
+        .finally(() => {
+          --this.loading;
+          this.pump();
+        });
+    }
+  }
+
+  async load(chunk, level) {
+    const { file } = this.index.chunks[chunk].levels[level];
+    if (!file) return { attributes: null, parts: {} };
+    const response = await fetch(this.url + file);
+    if (!response.ok) throw new Error(`${file}: ${response.status}`);
+    const gltf = await this.loader.parseAsync(await response.arrayBuffer(), "");
+    let attributes = null;
+    const parts = {};
+    gltf.scene.traverse(({ geometry }) => {
+      if (!geometry) return;
+      attributes ??= geometry.attributes; // all primitives share them
+      parts[geometry.userData.name] = geometry.index.array;
+    });
+    return { attributes, parts };
+  }
+
+  /// What to draw of a chunk at a level: its interior, and for each face the strip that the mask
+  /// says. Groups 0, 1 and 2 are the interior, the regular strips and those to coarser chunks.
+  geometry(chunk, level, mask) {
+    const { attributes, parts } = this.levels.get(`${chunk}/${level}`);
+    const geometry = new THREE.BufferGeometry();
+    if (!attributes) return geometry;
+    const isCoarser = (face) => (mask >> face) & 1;
+    const groups = [
+      ["interior"],
+      kFaces.filter((_, face) => !isCoarser(face)).map((face) => `${face}.regular`),
+      kFaces.filter((_, face) => isCoarser(face)).map((face) => `${face}.transition`),
+    ].map((names) => names.map((name) => parts[name]).filter(Boolean));
+    const count = groups.flat().reduce((sum, part) => sum + part.length, 0);
+    const indices = new (attributes.position.count > 65535 ? Uint32Array : Uint16Array)(count);
+    let end = 0;
+    groups.forEach((group, material) => {
+      const begin = end;
+      for (const part of group) {
+        indices.set(part, end);
+        end += part.length;
+      }
+      geometry.addGroup(begin, end - begin, material);
+    });
+    for (const name in attributes) geometry.setAttribute(name, attributes[name]);
+    geometry.setIndex(new THREE.BufferAttribute(indices, 1));
+    return geometry;
+  }
+}

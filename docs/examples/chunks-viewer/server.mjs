@@ -1,0 +1,54 @@
+// node server.mjs FOLDER [PORT]: shows the chunks of a folder at http://127.0.0.1:PORT/. Serves the
+// files beside this one and, below /chunks/, those of FOLDER; to this machine alone.
+import { createReadStream, realpathSync, statSync } from "node:fs";
+import { createServer } from "node:http";
+import { dirname, extname, join, sep } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const kTypes = {
+  ".html": "text/html; charset=utf-8",
+  ".js": "text/javascript; charset=utf-8",
+  ".json": "application/json",
+  ".glb": "model/gltf-binary",
+};
+
+/// The file that a request names, if it lies in one of the two folders.
+function fileOf(url, folder) {
+  const path = decodeURIComponent(new URL(url, "http://localhost").pathname);
+  const own = dirname(fileURLToPath(import.meta.url));
+  const [root, rest] = path.startsWith("/chunks/") ? [folder, path.slice(7)] : [own, path];
+  const file = realpathSync(join(root, rest === "/" ? "index.html" : rest));
+  const inside = file.startsWith(realpathSync(root) + sep);
+  return inside && statSync(file).isFile() ? file : null;
+}
+
+/// Serves a folder of chunks; gives the server once it listens. Port 0 stands for any free one.
+export function serve(folder, port) {
+  const server = createServer((request, response) => {
+    try {
+      const file = fileOf(request.url, folder);
+      if (!file) throw new Error("outside");
+      response.writeHead(200, {
+        "content-type": kTypes[extname(file)] ?? "application/octet-stream",
+        "cache-control": "no-cache",
+      });
+      createReadStream(file).pipe(response);
+    } catch {
+      response.writeHead(404).end("not found\n");
+    }
+  });
+  return new Promise((resolve, reject) => {
+    server.once("error", reject);
+    server.listen(port, "127.0.0.1", () => resolve(server));
+  });
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const [folder, port = "8080"] = process.argv.slice(2);
+  if (!folder) {
+    console.error("usage: node server.mjs FOLDER [PORT]");
+    process.exit(2);
+  }
+  const server = await serve(folder, Number(port));
+  console.log(`http://127.0.0.1:${server.address().port}/`);
+}

@@ -1,0 +1,186 @@
+import * as THREE from "three";
+import { ChunkMeshes } from "./chunk_meshes.js";
+import { FlyCamera } from "./fly_camera.js";
+import { boxOf, selectLods, transitionMask } from "./lods.js";
+
+const kUrl = "chunks/";
+const kBackground = "#ff00ff"; // loud: a crack in the ground cannot hide
+const kColours = ["#3f8f5f", "#c2a83e", "#4f86c6", "#cf6a3c", "#8a8f98", "#5fb3a8", "#a3502e"];
+
+const byId = (id) => document.getElementById(id);
+
+/// Draws all chunks of an index, each at a level of its own.
+class Viewer {
+  constructor(index) {
+    this.index = index;
+    this.meshes = new ChunkMeshes(index, kUrl);
+    this.pixelError = 1;
+    this.drawn = null; // levels on the screen
+    this.options = { wireframe: false, strips: false, freeze: false, masks: true };
+    this.makeScene();
+    this.placeCamera();
+    this.objects = index.chunks.map(() => {
+      const object = new THREE.Mesh(new THREE.BufferGeometry());
+      object.visible = false;
+      this.scene.add(object);
+      return object;
+    });
+    addEventListener("resize", () => this.resize());
+    this.resize();
+  }
+
+  makeScene() {
+    this.renderer = new THREE.WebGLRenderer({ antialias: true });
+    this.renderer.setPixelRatio(devicePixelRatio);
+    document.body.prepend(this.renderer.domElement);
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(kBackground);
+    this.scene.add(new THREE.HemisphereLight("#ffffff", "#50483c", 1.6));
+    const sun = new THREE.DirectionalLight("#fff4dc", 2.2);
+    sun.position.set(-3, -2, 4);
+    this.scene.add(sun);
+    const material = (color) => new THREE.MeshLambertMaterial({ color });
+    const strips = [material("#e6e2d6"), material("#262b30")];
+    this.materials = kColours.map((colour) => [material(colour), ...strips]);
+  }
+
+  /// Positions are counted from the index's origin: all numbers that the graphics card sees are
+  /// small. Only the eye is asked for in world space.
+  get eye() {
+    return this.camera.position.toArray().map((x, axis) => x + this.index.origin[axis]);
+  }
+
+  placeCamera() {
+    const box = new THREE.Box3();
+    for (const { min, max } of this.index.chunks.map(boxOf)) {
+      box.expandByPoint(new THREE.Vector3(...min)).expandByPoint(new THREE.Vector3(...max));
+    }
+    box.translate(new THREE.Vector3(...this.index.origin).negate());
+    const size = box.getSize(new THREE.Vector3()).length();
+    this.camera = new THREE.PerspectiveCamera(45, 1, size / 20000, size * 4);
+    this.fly = new FlyCamera(this.camera, this.renderer.domElement, size / 20);
+    const centre = box.getCenter(new THREE.Vector3());
+    this.camera.position.set(centre.x, box.min.y - size / 20, box.max.z + size / 6);
+    this.camera.lookAt(centre);
+  }
+
+  resize() {
+    this.renderer.setSize(innerWidth, innerHeight);
+    this.camera.aspect = innerWidth / innerHeight;
+    this.camera.updateProjectionMatrix();
+  }
+
+  wantedLods() {
+    const verticalAngle = (this.camera.fov / 180) * Math.PI;
+    const screenHeight = this.renderer.domElement.height;
+    return selectLods(this.index, { eye: this.eye, verticalAngle, screenHeight }, this.pixelError);
+  }
+
+  /// Draws at new levels once all their meshes are here: what is on the screen always fits
+  /// together.
+  update() {
+    if (this.options.freeze && this.drawn) return;
+    // To begin with, the coarsest level: little to load.
+    const wanted = this.drawn
+      ? this.wantedLods()
+      : this.index.chunks.map(({ levels }) => levels.length - 1);
+    this.meshes.forgetQueue();
+    let missing = 0;
+    wanted.forEach((level, chunk) => (missing += this.meshes.has(chunk, level) ? 0 : 1));
+    this.missing = missing;
+    const isNew = !this.drawn || wanted.some((level, chunk) => level !== this.drawn[chunk]);
+    if (missing === 0 && isNew) this.show(wanted);
+  }
+
+  show(lods) {
+    this.drawn = lods;
+    this.objects.forEach((object, chunk) => {
+      const mask = this.options.masks ? transitionMask(this.index, chunk, lods) : 0;
+      const state = `${lods[chunk]}/${mask}`;
+      const materials = this.materials[lods[chunk] % kColours.length];
+      object.material = this.options.strips ? materials : materials[0];
+      if (object.userData.state === state) return;
+      object.userData.state = state;
+      object.geometry.dispose();
+      object.geometry = this.meshes.geometry(chunk, lods[chunk], mask);
+      object.visible = object.geometry.index !== null;
+    });
+  }
+
+  set(option, value) {
+    this.options[option] = value;
+    for (const material of this.materials.flat()) material.wireframe = this.options.wireframe;
+    if (this.drawn) this.show(this.drawn);
+  }
+
+  render() {
+    const start = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    this.renderMilliseconds = performance.now() - start;
+  }
+
+  /// Whether what the camera asks for is on the screen.
+  get settled() {
+    return this.drawn !== null && this.missing === 0 && this.meshes.pending === 0;
+  }
+
+  look(eye, target) {
+    const local = (p) => p.map((x, axis) => x - this.index.origin[axis]);
+    this.camera.position.set(...local(eye));
+    this.camera.lookAt(...local(target));
+    this.camera.updateMatrixWorld();
+  }
+
+  figures(frameMilliseconds) {
+    const { triangles, calls } = this.renderer.info.render;
+    const levels = this.index.tolerances_voxels.map(
+      (_, level) => this.drawn?.filter((lod) => lod === level).length ?? 0,
+    );
+    return (
+      `${this.index.chunks.length.toLocaleString("en")} chunks, at level 0, 1, ...: ${levels.join(", ")}\n` +
+      `${triangles.toLocaleString("en")} triangles in ${calls.toLocaleString("en")} draw calls\n` +
+      `${frameMilliseconds.toFixed(1)} ms a frame, ${this.renderMilliseconds.toFixed(1)} ms of it here\n` +
+      (this.meshes.failure?.message ??
+        (this.missing ? `${this.missing} meshes on their way` : "all meshes here"))
+    );
+  }
+}
+
+function connectPanel(viewer) {
+  for (const option of ["wireframe", "strips", "freeze"]) {
+    byId(option).addEventListener("change", (event) => viewer.set(option, event.target.checked));
+  }
+  const showError = () => {
+    viewer.pixelError = 2 ** Number(byId("error").value);
+    byId("errorText").textContent = `${viewer.pixelError.toFixed(2)} pixels of error`;
+  };
+  byId("error").addEventListener("input", showError);
+  showError();
+  byId("legend").innerHTML = viewer.index.tolerances_voxels
+    .map((tolerance, level) => {
+      const colour = kColours[level % kColours.length];
+      return `<span class="swatch" style="background:${colour}"></span>${level}: ${tolerance}`;
+    })
+    .join("");
+}
+
+const response = await fetch(`${kUrl}chunks.json`);
+const index = await response.json();
+if (index.tufa_chunks !== 1) throw new Error(`chunks.json of version ${index.tufa_chunks}`);
+const viewer = new Viewer(index);
+connectPanel(viewer);
+let before = performance.now();
+let frame = 0;
+let shown = 0;
+viewer.renderer.setAnimationLoop((now) => {
+  const elapsed = Math.max(0, now - before);
+  before = now;
+  frame += (elapsed - frame) / 10;
+  viewer.fly.move(Math.min(elapsed, 100) / 1000);
+  viewer.update();
+  viewer.render();
+  if (now - shown < 250) return;
+  shown = now;
+  byId("figures").textContent = viewer.figures(frame);
+});
+window.viewer = viewer; // for the console

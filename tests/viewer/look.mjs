@@ -1,0 +1,125 @@
+// node look.mjs VIEWER CHUNKS TUFA CHROMIUM FOLDER: opens a folder of chunks in the viewer, looks
+// down onto the ground from some places, and fails if the background shows through, or if the levels
+// are others than the command's. Leaves pictures in FOLDER.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [viewer, chunks, tufa, chromium, folder] = process.argv.slice(2);
+const puppeteer = createRequire(join(viewer, "package.json"))("puppeteer-core");
+const { serve } = await import(pathToFileURL(join(viewer, "server.mjs")));
+
+const kWidth = 1280;
+const kHeight = 720;
+const kPixelError = 6; // so much that cracks could not be missed
+
+const server = await serve(chunks, 0);
+const browser = await puppeteer.launch({
+  executablePath: chromium,
+  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  defaultViewport: { width: kWidth, height: kHeight },
+  protocolTimeout: 600000,
+});
+
+/// Pixels of a picture in the colour of the background, or mixed with it.
+function countLoudPixels(page, png) {
+  return page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let loud = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i] > data[i + 1] + 40 && data[i + 2] > data[i + 1] + 40) ++loud;
+    }
+    return loud;
+  }, Buffer.from(png).toString("base64"));
+}
+
+/// Waits until all meshes that the camera asks for are drawn.
+async function settle(page) {
+  await page.waitForFunction("viewer.meshes.failure || viewer.settled", { timeout: 300000 });
+  assert.equal(await page.evaluate("viewer.meshes.failure?.message ?? null"), null);
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
+
+async function look(page, eye, target) {
+  await page.evaluate((from, to) => viewer.look(from, to), eye, target);
+  // One frame, so that the viewer has asked for what it wants there.
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await settle(page);
+}
+
+const setPanel = (page, visible) =>
+  page.evaluate((on) => (document.getElementById("panel").style.display = on ? "" : "none"), visible);
+
+const countLoud = async (page) => countLoudPixels(page, await page.screenshot());
+
+try {
+  const page = await browser.newPage();
+  const faults = [];
+  page.on("pageerror", (error) => faults.push(error.message));
+  page.on("requestfailed", (request) => faults.push(request.url()));
+  await page.goto(`http://127.0.0.1:${server.address().port}/`);
+  await page.waitForFunction("window.viewer", { timeout: 60000 });
+  await page.evaluate((error) => (viewer.pixelError = error), kPixelError);
+  await settle(page);
+  const index = await page.evaluate("viewer.index");
+  assert.ok(index.chunks.length >= 1000, `${index.chunks.length} chunks`);
+  console.log(`${index.chunks.length} chunks`);
+
+  // The ground fills the picture: its edges are at 1 and -1.
+  const top = Math.max(...index.chunks.map(({ levels }) => levels[0].bounds.max[2]));
+  const places = [
+    { eye: [0, -0.75, top + 0.12], target: [0, -0.55, top] },
+    { eye: [-0.7, -0.2, top + 0.15], target: [-0.4, -0.1, top] },
+    { eye: [0.3, 0.6, top + 0.3], target: [0.1, 0.2, top] },
+  ];
+  await setPanel(page, false);
+  for (const [number, { eye, target }] of places.entries()) {
+    await look(page, eye, target);
+    const lods = await page.evaluate("viewer.drawn");
+    assert.ok(new Set(lods).size >= 3, "levels in the picture");
+    const png = await page.screenshot({ path: join(folder, `ground${number}.png`) });
+    const loud = await countLoudPixels(page, png);
+    console.log(`from ${eye}: ${loud} loud pixels, levels ${[0, 1, 2, 3].map((k) => lods.filter((lod) => lod === k).length)}`);
+    assert.equal(loud, 0, "the background shows through the ground");
+
+    // The same levels as the library's.
+    const error = (kPixelError * 1080) / kHeight;
+    const report = JSON.parse(
+      execFileSync(tufa, ["chunks", "--assemble", chunks, "--lods", `camera:${eye}`, "--pixel-error",
+        `${error}`, "-o", join(folder, "seen.ply"), "--json"], { maxBuffer: 1 << 28 }),
+    );
+    assert.deepEqual(lods, report.lods, "levels chosen by the page and by the command");
+  }
+
+  // That nothing loud was seen means something only if cracks and holes are seen.
+  await page.evaluate("viewer.set('masks', false)");
+  const cracks = await countLoud(page);
+  await page.evaluate("viewer.set('masks', true)");
+  assert.equal(await countLoud(page), 0);
+  await page.evaluate("viewer.scene.visible = true, viewer.objects.forEach((o, i) => (o.visible = i % 7 !== 0))");
+  const holes = await countLoud(page);
+  console.log(`${cracks} loud pixels without transition strips, ${holes} without every seventh chunk`);
+  assert.ok(cracks > 0, "no crack is seen without transition strips");
+  assert.ok(holes > 1000, "no hole is seen without every seventh chunk");
+  await page.evaluate("viewer.objects.forEach((o) => (o.visible = true))");
+
+  await setPanel(page, true);
+  await look(page, places[0].eye, places[0].target);
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 1000)));
+  await page.screenshot({ path: join(folder, "viewer.png") });
+  await page.evaluate("viewer.set('wireframe', true), viewer.set('strips', true)");
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 2000)));
+  await page.screenshot({ path: join(folder, "strips.png") });
+  console.log(await page.evaluate("document.getElementById('figures').textContent"));
+  assert.deepEqual(faults, []);
+} finally {
+  await browser.close();
+  server.close();
+}
