@@ -12,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "assemble.h"
@@ -68,15 +69,18 @@ ChunkOptions chunkOptions(const ChunksArguments& arguments, const openvdb::GridB
   return options;
 }
 
-/// Makes the folder, or throws Error(UnwritableFile).
+/// Throws Error(UnwritableFile) if it is plain now that the folder could not be made or written to.
+void requireWritableFolder(const std::filesystem::path& folder) {
+  requireWritable(std::filesystem::is_directory(folder) ? folder / "chunks.json" : folder);
+}
+
+/// Makes the folder if it is not there, or throws Error(UnwritableFile).
 void makeFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directory(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw Error(ErrorCode::UnwritableFile,
-                "cannot make the folder " + folder + (error ? ": " + error.message() : ""));
-  }
-  requireWritable(std::filesystem::path(folder) / "chunks.json");
+  if (!error) return;
+  throw Error(ErrorCode::UnwritableFile,
+              "cannot make the folder " + folder + ": " + error.message());
 }
 
 /// Adds the chunks of an earlier run that this one has not made anew.
@@ -90,7 +94,7 @@ void keepOthers(ChunkIndex& index, const std::string& folder) {
                 folder + " holds chunks of another volume or of other options");
   }
   std::map<openvdb::Coord, ChunkEntry> chunks;
-  for (const auto* entries : {&before.chunks, &index.chunks}) {
+  for (const std::vector<ChunkEntry>* entries : {&before.chunks, &std::as_const(index.chunks)}) {
     for (const ChunkEntry& chunk : *entries) chunks.insert_or_assign(chunk.index, chunk);
   }
   index.chunks.clear();
@@ -104,12 +108,13 @@ ChunksRun build(const ChunksArguments& arguments) {
   run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
   requireVoxels(*grid, arguments.input);
   const ChunkOptions options = chunkOptions(arguments, *grid, bar);
-  makeFolder(arguments.output);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
   std::map<openvdb::Coord, std::vector<std::string>> files;
   const ChunkSink sink = [&](const ChunkIndex& index, Chunk&& chunk) {
-    run.writeSeconds +=
-        timed([&] { files[chunk.index] = writeChunk(index, chunk, arguments.output, format); });
+    run.writeSeconds += timed([&] {
+      makeFolder(arguments.output);
+      files[chunk.index] = writeChunk(index, chunk, arguments.output, format);
+    });
   };
   run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
   run.buildSeconds -= run.writeSeconds;
@@ -120,6 +125,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   if (options.only.empty() && run.index.chunks.empty()) {
     requireSurface({}, run.contour.isovalue, *grid, arguments.input);
   }
+  makeFolder(arguments.output);
   ChunkIndex all = run.index;
   if (!options.only.empty()) keepOthers(all, arguments.output);
   writeChunkIndex(all, arguments.output);
@@ -198,6 +204,7 @@ std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
 }
 
 int runBuild(const ChunksArguments& arguments) {
+  requireWritableFolder(arguments.output);
   const ChunksRun run = build(arguments);
   noteData(run.contour);
   if (arguments.json) {

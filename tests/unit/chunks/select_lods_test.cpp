@@ -54,7 +54,9 @@ TEST(ChunkIndex, FindsChunksAndTheirNeighbours) {
       beyond[face / 2] += face % 2 == 1 ? 1 : -1;
       const std::ptrdiff_t other = index.neighbour(i, face);
       EXPECT_EQ(other, index.find(beyond));
-      if (other >= 0) EXPECT_EQ(index.chunks[static_cast<std::size_t>(other)].index, beyond);
+      if (other >= 0) {
+        EXPECT_EQ(index.chunks[static_cast<std::size_t>(other)].index, beyond);
+      }
     }
   }
   EXPECT_EQ(index.find(openvdb::Coord(0, 0, 0)), -1);  // one of those left out
