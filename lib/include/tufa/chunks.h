@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <tufa/contour.h>
+#include <tufa/export.h>
 #include <tufa/lod.h>
 #include <tufa/mesh.h>
 #include <array>
@@ -98,9 +99,9 @@ struct ChunkIndex {
   std::vector<ChunkEntry> chunks;  ///< sorted by index
 
   /// The place of a chunk in `chunks`, or -1.
-  [[nodiscard]] std::ptrdiff_t find(const openvdb::Coord& index) const;
+  [[nodiscard]] TUFA_API std::ptrdiff_t find(const openvdb::Coord& index) const;
   /// The place of the chunk beyond a face of a chunk, or -1.
-  [[nodiscard]] std::ptrdiff_t neighbour(std::size_t chunk, int face) const;
+  [[nodiscard]] TUFA_API std::ptrdiff_t neighbour(std::size_t chunk, int face) const;
 };
 
 /// Takes the chunks, one at a time, from the calling thread, in the order they are made. The index
@@ -114,32 +115,34 @@ using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
 /// for options out of their range, too.
 ///
 /// Memory holds the grid and a few chunks.
-ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
-                       const ChunkSink& sink, ContourReport* report = nullptr);
+TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
+                                const ChunkSink& sink, ContourReport* report = nullptr);
 
 /// The triangles of a chunk to draw: its interior, and for each face the transition strip if the
-/// face's bit in `mask` is set, else the regular one. Only the vertices that they use.
-[[nodiscard]] Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask);
+/// face's bit in `mask` is set, else the regular one. Only the vertices that they use. Throws
+/// Error(InvalidArgument) where there are no such strips: a mask other than 0 at the last level.
+[[nodiscard]] TUFA_API Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask);
 
 /// A bit for each face of a chunk whose neighbour is drawn at a coarser level. `lods` has a level
 /// for each of the index's chunks.
-[[nodiscard]] unsigned transitionMask(const ChunkIndex& index, std::size_t chunk,
-                                      const std::vector<std::size_t>& lods);
+[[nodiscard]] TUFA_API unsigned transitionMask(const ChunkIndex& index, std::size_t chunk,
+                                               const std::vector<std::size_t>& lods);
 
 /// Lowers levels (to finer ones) until neighbours differ by at most one.
-void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods);
+TUFA_API void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods);
 
 /// For each chunk the coarsest level whose certified error is seen under at most `pixelError`
 /// pixels, made finer where neighbours would differ by more than one level.
-[[nodiscard]] std::vector<std::size_t> selectLods(const ChunkIndex& index, const Camera& camera,
-                                                  double pixelError = 1);
+[[nodiscard]] TUFA_API std::vector<std::size_t> selectLods(const ChunkIndex& index,
+                                                           const Camera& camera,
+                                                           double pixelError = 1);
 
 /// One mesh of all chunks, each at its own level; vertices at equal positions become one. Levels of
 /// neighbours may differ by more than one if the chunks have their seams. Chunks that are not there
 /// leave their neighbours open. Throws Error(InvalidArgument) if `lods` does not fit, or where
 /// seams are needed and missing.
-[[nodiscard]] Mesh assembleChunks(const std::vector<Chunk>& chunks,
-                                  const std::vector<std::size_t>& lods);
+[[nodiscard]] TUFA_API Mesh assembleChunks(const std::vector<Chunk>& chunks,
+                                           const std::vector<std::size_t>& lods);
 
 /// How chunks are stored.
 enum class ChunkFormat {
@@ -149,17 +152,17 @@ enum class ChunkFormat {
 
 /// Writes the meshes of a chunk into a folder, one file a level, and gives their names, relative to
 /// it. Each file appears whole or not at all. Throws Error(UnwritableFile).
-std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
-                                    const std::string& folder, ChunkFormat format);
+TUFA_API std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
+                                             const std::string& folder, ChunkFormat format);
 
 /// Writes chunks.json. Throws Error(UnwritableFile).
-void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
+TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
 
 /// Reads chunks.json. Throws Error(UnreadableFile).
-[[nodiscard]] ChunkIndex readChunkIndex(const std::string& folder);
+[[nodiscard]] TUFA_API ChunkIndex readChunkIndex(const std::string& folder);
 
 /// Reads the meshes of a chunk back, without seams. Throws Error(UnreadableFile).
-[[nodiscard]] Chunk readChunk(const ChunkIndex& index, std::size_t chunk,
-                              const std::string& folder);
+[[nodiscard]] TUFA_API Chunk readChunk(const ChunkIndex& index, std::size_t chunk,
+                                       const std::string& folder);
 
 }  // namespace tufa
