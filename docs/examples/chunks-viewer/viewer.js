@@ -151,8 +151,8 @@ function connectPanel(viewer) {
     byId(option).addEventListener("change", (event) => viewer.set(option, event.target.checked));
   }
   const showError = () => {
-    viewer.pixelError = 2 ** Number(byId("error").value);
-    byId("errorText").textContent = `${viewer.pixelError.toFixed(2)} pixels of error`;
+    viewer.pixelError = Number((2 ** Number(byId("error").value)).toPrecision(3));
+    byId("errorText").textContent = `${viewer.pixelError} pixels of error`;
   };
   byId("error").addEventListener("input", showError);
   showError();

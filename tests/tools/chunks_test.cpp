@@ -1,0 +1,141 @@
+// `tufa chunks` from outside: what is in the folder, and what its chunks make together.
+
+#include <gtest/gtest.h>
+
+#include <tufa/chunks.h>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tools/command_fixture.h"
+
+namespace tufa {
+namespace {
+
+using test::Outcome;
+using test::readBytes;
+
+class ChunksCommand : public test::CommandTest {
+ protected:
+  void makeChunks(const std::string& arguments) {
+    ASSERT_EQ(run("make sphere --voxel 0.05 -o v.vdb").exitCode, 0);
+    const Outcome outcome = run("chunks v.vdb -o d --chunk 16 --levels 3 " + arguments);
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  }
+
+  [[nodiscard]] std::set<std::string> namesIn(const std::string& name) const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / name)) {
+      names.insert(entry.path().filename().string());
+    }
+    return names;
+  }
+};
+
+TEST_F(ChunksCommand, FillsAFolder) {
+  makeChunks("--quiet");
+  const ChunkIndex index = readChunkIndex((folder / "d").string());
+  EXPECT_EQ(index.chunkSize, 16);
+  EXPECT_EQ(index.tolerances.size(), 3u);
+  EXPECT_GT(index.chunks.size(), 20u);
+  std::set<std::string> expected{"chunks.json"};
+  for (const ChunkEntry& chunk : index.chunks) {
+    for (const ChunkLevelEntry& level : chunk.levels) {
+      EXPECT_LE(level.maxErrorVoxels, index.tolerances[&level - chunk.levels.data()]);
+      if (!level.file.empty()) expected.insert(level.file);
+    }
+  }
+  EXPECT_EQ(namesIn("d"), expected);
+}
+
+TEST_F(ChunksCommand, GivesTheKeysOfItsReport) {
+  ASSERT_EQ(run("make sphere --voxel 0.1 -o v.vdb").exitCode, 0);
+  const Outcome outcome = run("chunks v.vdb -o d --chunk 16 --levels 2 --json");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto json = nlohmann::json::parse(outcome.out);
+  for (const char* key :
+       {"file", "grid", "output", "isovalue", "inside", "active_voxels", "voxel_size", "chunk_size",
+        "chunks", "levels", "seconds", "peak_memory_bytes", "threads"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  ASSERT_EQ(json["levels"].size(), 2u);
+  EXPECT_GT(json["levels"][0]["triangles"]["transition"], 0);
+  EXPECT_EQ(json["levels"][1]["triangles"]["transition"], 0);
+}
+
+TEST_F(ChunksCommand, AssemblesClosedMeshesOfAnyLevels) {
+  for (const char* format : {"glb", "ply"}) {
+    makeChunks(std::string("--quiet --format ") + format);
+    for (const char* lods : {"all:0", "all:2", "random", "random:7", "random:8", "random:9",
+                             "camera:5,-3,1", "camera:0.6,0.6,0.6"}) {
+      const Outcome outcome =
+          run(std::string("chunks --assemble d --lods ") + lods + " -o m.ply --check");
+      EXPECT_EQ(outcome.exitCode, 0) << format << " " << lods << "\n" << outcome.out << outcome.err;
+    }
+  }
+}
+
+TEST_F(ChunksCommand, AssemblesTheLevelsItSays) {
+  makeChunks("--quiet");
+  const auto lodsOf = [&](const std::string& lods) {
+    const Outcome outcome = run("chunks --assemble d -o m.ply --json --lods " + lods);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out)["lods"].get<std::vector<std::size_t>>();
+  };
+  const ChunkIndex index = readChunkIndex((folder / "d").string());
+  EXPECT_EQ(lodsOf("all:1"), std::vector<std::size_t>(index.chunks.size(), 1));
+  EXPECT_EQ(lodsOf("random:5"), lodsOf("random:5"));
+  EXPECT_NE(lodsOf("random:5"), lodsOf("random:6"));
+  Camera camera;
+  camera.eye = {3, 2, 1};
+  EXPECT_EQ(lodsOf("camera:3,2,1 --pixel-error 2"), selectLods(index, camera, 2));
+}
+
+TEST_F(ChunksCommand, MakesChunksAloneAsTheyAreTogether) {
+  makeChunks("--quiet");
+  std::filesystem::rename(folder / "d", folder / "together");
+  const ChunkIndex index = readChunkIndex((folder / "together").string());
+  // Some at a time, the chunks.json of the runs before kept.
+  for (std::size_t i = 0; i < index.chunks.size(); i += 9) {
+    std::string only;
+    for (std::size_t n = i; n < std::min(i + 9, index.chunks.size()); ++n) {
+      const openvdb::Coord& at = index.chunks[n].index;
+      only += " " + std::to_string(at.x()) + "," + std::to_string(at.y()) + "," +
+              std::to_string(at.z());
+    }
+    makeChunks("--quiet --only" + only);
+  }
+  ASSERT_EQ(namesIn("d"), namesIn("together"));
+  for (const std::string& name : namesIn("d")) {
+    EXPECT_EQ(readBytes(folder / "d" / name), readBytes(folder / "together" / name)) << name;
+  }
+  expectFailure("chunks v.vdb -o d --chunk 16 --levels 2 --only 0,0,0", 2, "of other options");
+}
+
+TEST_F(ChunksCommand, RefusesWhatItCannotDo) {
+  makeSphere();
+  expectFailure("chunks -o d", 2, "FILE or --assemble DIR is needed");
+  expectFailure("chunks s.vdb -o d --chunk 24", 2, "24");
+  expectFailure("chunks s.vdb -o d --factor 1", 2, "1");
+  expectFailure("chunks s.vdb -o d --levels 17", 2, "--levels");
+  expectFailure("chunks s.vdb -o d --only 1,2", 2, "\"1,2\"");
+  expectFailure("chunks s.vdb -o d --format obj", 2, "--format");
+  expectFailure("chunks s.vdb -o d --lods all:0", 2, "only for --assemble");
+  expectFailure("chunks s.vdb -o d --normals faces", 2, "not for chunks");
+  expectFailure("chunks s.vdb -o missing/d", 3, "no folder");
+  expectFailure("chunks missing.vdb -o d", 3, "missing.vdb");
+  expectFailure("chunks s.vdb --assemble d --lods all:0 -o m.ply", 2, "takes no volume");
+  expectFailure("chunks --assemble d -o m.ply", 2, "needs --lods");
+  expectFailure("chunks --assemble d --lods all:0 -o m.ply", 3, "chunks.json");
+  expectFailure("chunks --assemble d --lods all:0 -o m.xyz", 2, "ending");
+  ASSERT_EQ(run("chunks s.vdb -o d --chunk 16 --levels 2").exitCode, 0);
+  for (const char* lods : {"all:2", "all:-1", "all", "some", "random:x", "camera:1,2"}) {
+    expectFailure(std::string("chunks --assemble d -o m.ply --lods ") + lods, 2,
+                  std::string(lods) == "all:2" ? "no level 2" : "--lods is");
+  }
+}
+
+}  // namespace
+}  // namespace tufa
