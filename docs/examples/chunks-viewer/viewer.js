@@ -132,13 +132,14 @@ class Viewer {
   }
 
   figures(frameMilliseconds) {
-    const { triangles, calls } = this.renderer.info.render;
+    const { render } = this.renderer.info;
+    const triangles = render.triangles + render.lines / 3; // wires are three lines a triangle
     const levels = this.index.tolerances_voxels.map(
       (_, level) => this.drawn?.filter((lod) => lod === level).length ?? 0,
     );
     return (
       `${this.index.chunks.length.toLocaleString("en")} chunks, at level 0, 1, ...: ${levels.join(", ")}\n` +
-      `${triangles.toLocaleString("en")} triangles in ${calls.toLocaleString("en")} draw calls\n` +
+      `${triangles.toLocaleString("en")} triangles in ${render.calls.toLocaleString("en")} draw calls\n` +
       `${frameMilliseconds.toFixed(1)} ms a frame, ${this.renderMilliseconds.toFixed(1)} ms of it here\n` +
       (this.meshes.failure?.message ??
         (this.missing ? `${this.missing} meshes on their way` : "all meshes here"))
