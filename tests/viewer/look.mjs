@@ -122,7 +122,8 @@ try {
   await look(page, places[0].eye, places[0].target);
   await page.evaluate(() => new Promise((done) => setTimeout(done, 1000)));
   await page.screenshot({ path: join(folder, "viewer.png") });
-  await page.evaluate("viewer.set('wireframe', true), viewer.set('strips', true)");
+  await page.click("#strips");
+  await page.click("#wireframe");
   await page.evaluate(() => new Promise((done) => setTimeout(done, 2000)));
   await page.screenshot({ path: join(folder, "strips.png") });
   console.log(await page.evaluate("document.getElementById('figures').textContent"));

@@ -5,6 +5,7 @@ import { boxOf, selectLods, transitionMask } from "./lods.js";
 
 const kUrl = "chunks/";
 const kBackground = "#ff00ff"; // loud: a crack in the ground cannot hide
+const kWireBackground = "#15191e";
 const kColours = ["#3f8f5f", "#c2a83e", "#4f86c6", "#cf6a3c", "#8a8f98", "#5fb3a8", "#a3502e"];
 
 const byId = (id) => document.getElementById(id);
@@ -110,6 +111,7 @@ class Viewer {
   set(option, value) {
     this.options[option] = value;
     for (const material of this.materials.flat()) material.wireframe = this.options.wireframe;
+    this.scene.background.set(this.options.wireframe ? kWireBackground : kBackground);
     if (this.drawn) this.show(this.drawn);
   }
 
