@@ -60,7 +60,11 @@ async function look(page, eye, target) {
 const setPanel = (page, visible) =>
   page.evaluate((on) => (document.getElementById("panel").style.display = on ? "" : "none"), visible);
 
-const countLoud = async (page) => countLoudPixels(page, await page.screenshot());
+/// The same of what is drawn from now on.
+async function countLoud(page) {
+  await twoFrames(page);
+  return countLoudPixels(page, await page.screenshot());
+}
 
 try {
   const page = await browser.newPage();
