@@ -5,8 +5,9 @@ const boxes = new WeakMap(); // chunk -> corners of the box around all its level
 
 export function boxOf(chunk) {
   if (!boxes.has(chunk)) {
+    const levels = chunk.levels.filter(({ vertices }, level) => level === 0 || vertices > 0);
     const corner = (name, choose) =>
-      [0, 1, 2].map((axis) => choose(...chunk.levels.map(({ bounds }) => bounds[name][axis])));
+      [0, 1, 2].map((axis) => choose(...levels.map(({ bounds }) => bounds[name][axis])));
     boxes.set(chunk, { min: corner("min", Math.min), max: corner("max", Math.max) });
   }
   return boxes.get(chunk);

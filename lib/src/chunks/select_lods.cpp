@@ -19,6 +19,7 @@ double distanceTo(const ChunkEntry& chunk, const Position& eye) {
     double least = chunk.levels.front().least.*axis;
     double greatest = chunk.levels.front().greatest.*axis;
     for (const ChunkLevelEntry& level : chunk.levels) {
+      if (level.vertices == 0) continue;
       least = std::min(least, level.least.*axis);
       greatest = std::max(greatest, level.greatest.*axis);
     }

@@ -27,6 +27,7 @@ ChunkIndex makeIndex(int size, int levels) {
           ChunkLevelEntry& level = chunk.levels.emplace_back();
           level.least = Position(8.0 * x, 8.0 * y, 8.0 * z);
           level.greatest = Position(8.0 * x + 8, 8.0 * y + 8, 8.0 * z + 8);
+          level.vertices = 8;
           level.maxErrorVoxels = tolerance;
         }
       }
@@ -143,6 +144,18 @@ TEST(SelectLods, IsFinestWhereTheEyeIs) {
   EXPECT_EQ(lods[static_cast<std::size_t>(index.find(openvdb::Coord(1, 0, 0)))], 0u);
   EXPECT_TRUE(isRestricted(index, lods));
   EXPECT_GT(*std::max_element(lods.begin(), lods.end()), 1u);
+}
+
+TEST(SelectLods, DoesNotLookAtTheBoundsOfEmptyLevels) {
+  ChunkIndex index = makeIndex(2, 2);
+  const Camera camera{{100, 0, 0}};
+  const std::vector<std::size_t> lods = selectLods(index, camera, 1);
+  for (ChunkEntry& chunk : index.chunks) {
+    ChunkLevelEntry& empty = chunk.levels.emplace_back();
+    empty.least = empty.greatest = camera.eye;
+    empty.maxErrorVoxels = 1e6;
+  }
+  EXPECT_EQ(selectLods(index, camera, 1), lods);
 }
 
 TEST(SelectLods, RefusesLevelsOfAnotherIndex) {
