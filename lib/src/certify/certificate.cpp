@@ -263,6 +263,8 @@ template <class TreeT>
 void Certifier<TreeT>::measureCorner(VertexIndex vertex, Part& part) {
   if (changed_[vertex] == 0 || isFine(vertex)) return;
   if (firstAround_[vertex] == firstAround_[vertex + 1]) return;
+  const cut::ClusterRef& ref = cut_->clusters[vertex];
+  if (ref.level == 0 && made_->mesh.positions[vertex] == base_.mesh.positions[ref.cluster]) return;
   const Vec3d point = vectorOf(made_->mesh.positions[vertex]);
   const Piece& piece = pieces_[around_[firstAround_[vertex]]];
   const double distance = std::min(distanceToBase(point, facing(&vertex, 1)),

@@ -28,18 +28,23 @@ struct ChunkCells {
     return own.min() +
            openvdb::Coord(number / (dim[1] * dim[2]), number / dim[2] % dim[1], number % dim[2]);
   }
-  /// Lattice coordinates, counted from `from`, moved into the chunk of `cell` by what it takes to
-  /// stand off its faces.
+  /// Lattice coordinates, counted from `from`, brought into the chunk of `cell` if they lie beyond
+  /// its faces or on them. Different points stay different.
   [[nodiscard]] openvdb::Vec3d keepInside(openvdb::Vec3d at, const openvdb::Coord& from,
                                           const openvdb::Coord& cell) const {
+    const auto standOff = [](double distance) {
+      return distance >= kOffFace ? distance : kOffFace / (1 + kOffFace - distance);
+    };
     for (int axis = 0; axis < 3; ++axis) {
       const double lower = ((cell[axis] >> level) << level) - from[axis];
-      at[axis] = std::clamp(at[axis], lower + kOffFace, lower + (1 << level) - kOffFace);
+      const double upper = lower + (1 << level);
+      if (at[axis] - lower < kOffFace) at[axis] = lower + standOff(at[axis] - lower);
+      if (upper - at[axis] < kOffFace) at[axis] = upper - standOff(upper - at[axis]);
     }
     return at;
   }
-  /// Least distance of a chunk's own vertices from its faces, in voxels.
-  static constexpr double kOffFace = 2e-3;
+  /// Vertices of a chunk's own are kept this far from its faces, in voxels, those beyond them half.
+  static constexpr double kOffFace = 0.01;
 
   [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(own.volume()); }
 };

@@ -18,6 +18,9 @@ constexpr double kFold = 1e6;
 // A triangle whose normal and the mean of those of its corners have a smaller cosine is folded.
 constexpr double kLeastCosine = 0.1;
 
+// What an edge across between vertices that stand for no common arc costs more.
+constexpr double kAstray = 3;
+
 // A vertex of one side, and the first of the arcs that it stands for.
 struct Link {
   VertexIndex vertex;
@@ -68,6 +71,9 @@ class Stitcher {
 
   // The best of all ways. Empty if it uses an edge across twice.
   std::vector<StripTriangle> best() {
+    for (std::size_t i = 0; i < seam_.tiles.size(); ++i) {
+      paired_.emplace(seam_.tiles[i], seam_.line[i]);
+    }
     tiles_ = chainOf(seam_.tiles, seam_.closed);
     line_ = chainOf(seam_.line, seam_.closed);
     if (seam_.closed) startNearest();
@@ -112,7 +118,8 @@ class Stitcher {
     return kFold * ((at(c) - at(b)).lengthSqr() + u.lengthSqr() + v.lengthSqr());
   }
   [[nodiscard]] double acrossCost(std::size_t i, std::size_t j) const {
-    return (at(tiles_[i].vertex) - at(line_[j].vertex)).lengthSqr();
+    const std::pair<VertexIndex, VertexIndex> pair{tiles_[i].vertex, line_[j].vertex};
+    return (paired_.contains(pair) ? 1 : kAstray) * (at(pair.first) - at(pair.second)).lengthSqr();
   }
 
   // Turns both sides of a loop to a short edge across that the arcs have.
@@ -243,7 +250,8 @@ class Stitcher {
   std::vector<Link> tiles_, line_;  // of a loop with the first again at the end
   std::size_t lineCount_ = 0;       // without that
   const MayJoin& mayJoin_;
-  std::vector<double> costs_;         // of the pairs (tile, line)
+  std::set<std::pair<VertexIndex, VertexIndex>> paired_;  // vertices that stand for one arc
+  std::vector<double> costs_;                             // of the pairs (tile, line)
   std::vector<std::uint8_t> byTile_;  // whether the last step to a pair was one from tile to tile
 };
 
