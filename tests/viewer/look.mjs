@@ -13,7 +13,7 @@ const { serve } = await import(pathToFileURL(join(viewer, "server.mjs")));
 
 const kWidth = 1280;
 const kHeight = 720;
-const kErrorSlider = 2.6; // 6 pixels: so much that cracks could not be missed
+const kErrorSlider = 1.6; // 3 pixels: so much that cracks could not be missed
 
 const server = await serve(chunks, 0);
 const browser = await puppeteer.launch({

@@ -27,7 +27,7 @@ if(NOT EXISTS ${viewer}/node_modules/puppeteer-core/package.json OR
   endif()
 endif()
 
-execute_process(COMMAND ${TUFA} make terrain --voxel 0.004 -o ${FOLDER}/terrain.vdb
+execute_process(COMMAND ${TUFA} make terrain --voxel 0.007 -o ${FOLDER}/terrain.vdb
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${TUFA} chunks ${FOLDER}/terrain.vdb -o ${FOLDER}/terrain --chunk 16
     --levels 4 --tolerance 0.1 --factor 2.5 --quiet
