@@ -165,7 +165,6 @@ Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
   json["inside"] = run.contour.insideIsBelow ? "below" : "above";
   json["active_voxels"] = run.contour.activeVoxels;
   json["non_finite_values"] = run.contour.nonFiniteValues;
-  json["cut_edges"] = run.contour.cutEdges;
   json["voxel_size"] = run.index.voxelSize;
   json["chunk_size"] = run.index.chunkSize;
   json["chunks"] = run.index.chunks.size();
@@ -206,7 +205,9 @@ std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
 int runBuild(const ChunksArguments& arguments) {
   requireWritableFolder(arguments.output);
   const ChunksRun run = build(arguments);
-  noteData(run.contour);
+  ContourReport contour = run.contour;
+  contour.cutEdges = 0;  // has those in it where the regions end that chunks are made in
+  noteData(contour);
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
