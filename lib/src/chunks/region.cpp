@@ -26,6 +26,9 @@ using openvdb::Coord;
 constexpr double kLineShare = 0.5;
 // How often the two meshes of a level are mended in turn.
 constexpr int kMostTurns = 3;
+// After so many rounds no cells are split any more because polygons meet: where they still do, as
+// on white noise, smaller cells do not help.
+constexpr int kMostRounds = 12;
 
 // The cell of each base vertex.
 template <class TreeT>
@@ -128,7 +131,7 @@ class RegionMaker {
                          job_);
       transition->setIgnored(beyond_);
     }
-    while (true) {
+    for (int round = 0;; ++round) {
       const cut::CellFlags merged = cut::mergeCells(forest_, base_.topology, rule, forbidden, job_);
       const cut::Cut cut = cut::makeCut(forest_, base_.topology, merged, job_);
       LevelMeshes meshes;
@@ -139,7 +142,7 @@ class RegionMaker {
         if (splitFar(meshes.transition, *transition, forbidden)) continue;
       }
       if (options_.repair) {
-        if (mendBoth(meshes, last, forbidden)) continue;
+        if (mendBoth(meshes, last, forbidden) && round < kMostRounds) continue;
         bool split = splitFar(meshes.regular, regular, forbidden);
         if (!last) split |= splitFar(meshes.transition, *transition, forbidden);
         if (split) continue;
