@@ -133,7 +133,7 @@ TEST_F(ChunksCommand, RefusesWhatItCannotDo) {
   ASSERT_EQ(run("chunks s.vdb -o d --chunk 16 --levels 2").exitCode, 0);
   for (const char* lods : {"all:2", "all:-1", "all", "some", "random:x", "camera:1,2"}) {
     expectFailure(std::string("chunks --assemble d -o m.ply --lods ") + lods, 2,
-                  std::string(lods) == "all:2" ? "no level 2" : "--lods is");
+                  std::string(lods).rfind("all:", 0) == 0 ? "no level" : "--lods is");
   }
 }
 
