@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ChunkMixtures,
                                             ::testing::Values(0.04), ::testing::Values(16, 32)));
 INSTANTIATE_TEST_SUITE_P(Noise, ChunkMixtures,
                          ::testing::Combine(::testing::Values(Shape::Noise),
-                                            ::testing::Values(0.02), ::testing::Values(16, 32)));
+                                            ::testing::Values(0.05), ::testing::Values(16, 32)));
 
 TEST(ChunkMasks, OccurAll) {
   ChunkOptions options;

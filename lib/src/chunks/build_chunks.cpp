@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "base/bits.h"
 #include "base/job.h"
 #include "blocks/blocks.h"
 #include "blocks/field.h"
@@ -191,8 +192,7 @@ class ChunkBuilder {
     const auto at = [&](double share) { return begin + share * (end - begin); };
     const level0::StageEnds ends = {at(0.1), at(0.15), at(0.3), at(0.35), at(0.4), at(0.45)};
     const level0::Level0<TreeT> level0(grid_.transform(), blocks, box, scale, contour, ends, job_);
-    report_.surfaceCells += level0.topology().cellCount;
-    report_.cutEdges += level0.topology().cutEdges;
+    addCounts(level0);
     job_.beginStage("levels", end);
     for (chunks::MadeChunk& made :
          chunks::makeRegion(level0, grid_.transform(), cells_, region_, job_)) {
@@ -203,6 +203,23 @@ class ChunkBuilder {
       }
       sink_(index, std::move(made.chunk));
       entries_.push_back(std::move(entry));
+    }
+  }
+
+  // Counts what lies in the region itself: the margin is in other regions too, and the surface is
+  // cut open where it ends.
+  void addCounts(const level0::Level0<TreeT>& level0) {
+    const forest::Base<TreeT> base = level0.base(false);
+    for (std::size_t i = 0; i < base.topology.blocks.size(); ++i) {
+      const components::SurfaceBlock& block = base.topology.blocks[i];
+      if (!cells_.own.isInside(cells_.chunkOf(base.origin(i)))) continue;
+      report_.surfaceCells += block.cellCount;
+      if (block.special < 0) continue;
+      for (const blocks::BlockBits& cut : base.topology.specials[block.special].cut) {
+        for (const std::uint64_t slab : cut.slabs) {
+          report_.cutEdges += static_cast<std::size_t>(base::countBits(slab));
+        }
+      }
     }
   }
 

@@ -55,6 +55,7 @@ class Joints {
       const auto& v = quad.vertices;
       for (int i = 0; i < 4; ++i) add(v[i], v[(i + 1) % 4]);
       add(v[0], v[2]);
+      add(v[1], v[3]);  // mending may turn it
     }
     for (const Triangle& triangle : mesh.triangles) {
       const auto& v = triangle.vertices;
