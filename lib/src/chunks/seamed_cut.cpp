@@ -117,6 +117,30 @@ void addStrips(const Seams& seams, const SeamLines& lines,
   }
 }
 
+// Quads whose diagonal is an edge of a strip are split along the other one.
+void partDiagonals(SeamedCut& result) {
+  Mesh& mesh = result.made.mesh;
+  std::vector<std::pair<VertexIndex, VertexIndex>> edges;
+  const auto edge = [](VertexIndex a, VertexIndex b) {
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  for (std::size_t i = mesh.triangles.size() - result.strips.size(); i < mesh.triangles.size();
+       ++i) {
+    const auto& v = mesh.triangles[i].vertices;
+    for (int k = 0; k < 3; ++k) {
+      const VertexIndex a = v[k], b = v[(k + 1) % 3];
+      if (!result.isOnSeam(a) && !result.isOnSeam(b)) edges.push_back(edge(a, b));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (Quad& quad : mesh.quads) {
+    auto& v = quad.vertices;
+    if (std::binary_search(edges.begin(), edges.end(), edge(v[0], v[2]))) {
+      std::rotate(v.begin(), v.begin() + 1, v.end());
+    }
+  }
+}
+
 }  // namespace
 
 SeamedCut meshWithSeams(const forest::Forest& forest, cut::Cut cut, const Seams& seams,
@@ -142,6 +166,7 @@ SeamedCut meshWithSeams(const forest::Forest& forest, cut::Cut cut, const Seams&
   result.made = polygons::meshCut(forest, result.cut, seams.mesh, seams.quads, affine, job);
   keepInChunks(vertexCells, chunks, affine, result);
   addStrips(seams, lines, vertexOf, chunks, result);
+  partDiagonals(result);
   return result;
 }
 

@@ -152,7 +152,7 @@ class Stitcher {
     for (const std::size_t i : besideFolds()) {
       const Link &a = tiles[i - 1], &b = tiles[i], &c = tiles[i + 1];
       if (a.vertex == c.vertex || stepCost(a.vertex, b.vertex, c.vertex) > 0) continue;
-      if (!mayJoin_(a.vertex, c.vertex)) continue;
+      if (areJoined(tiles, a.vertex, c.vertex) || !mayJoin_(a.vertex, c.vertex)) continue;
       tiles_ = tiles;
       tiles_.erase(tiles_.begin() + static_cast<std::ptrdiff_t>(i));
       findCosts();
@@ -166,6 +166,15 @@ class Stitcher {
     if (bestTiles.empty()) return false;
     strip_.push_back(bestEar);
     return true;
+  }
+
+  // Whether two vertices follow each other on the chunk's side already, as in a loop of three.
+  static bool areJoined(const std::vector<Link>& tiles, VertexIndex a, VertexIndex b) {
+    for (std::size_t i = 0; i + 1 < tiles.size(); ++i) {
+      const VertexIndex from = tiles[i].vertex, to = tiles[i + 1].vertex;
+      if ((from == a && to == b) || (from == b && to == a)) return true;
+    }
+    return false;
   }
 
   // Places in tiles_, but for the ends, next to folded triangles of the best way; sorted.
