@@ -88,7 +88,7 @@ try {
   const top = Math.max(...index.chunks.map(({ levels }) => levels[0].bounds.max[2]));
   const places = [
     { eye: [0, -0.75, top + 0.12], target: [0, -0.62, top] },
-    { eye: [-0.7, -0.2, top + 0.15], target: [-0.57, -0.14, top] },
+    { eye: [-0.7, -0.2, top + 0.15], target: [-0.6, -0.16, top] },
     { eye: [0.3, 0.6, top + 0.3], target: [0.2, 0.4, top] },
   ];
   await setPanel(page, false);
