@@ -14,7 +14,8 @@ struct CutRule {
   int minLevel = 0;      ///< cells up to this level need not keep the bounds above
   int maxLevel = 31;     ///< no cell above this level
   /// Cells in different cells of this level, 3 or more, may differ by more than one level.
-  int chunkLevel = 31;
+  int chunkLevel = kNoChunks;
+  static constexpr int kNoChunks = 31;
   /// Multiplies the tolerance at a lattice point; empty: 1 everywhere.
   std::function<double(const openvdb::Vec3d&)> scale;
 

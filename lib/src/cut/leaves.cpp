@@ -60,8 +60,8 @@ class Merger {
 
   // Whether two cells of a level are in chunks of their own, between which there is no balance.
   [[nodiscard]] bool areApart(const openvdb::Coord& a, const openvdb::Coord& b, int level) const {
+    if (rule_.chunkLevel >= CutRule::kNoChunks) return false;
     const int shift = rule_.chunkLevel - level;
-    if (shift >= 31) return false;
     return (a[0] >> shift) != (b[0] >> shift) || (a[1] >> shift) != (b[1] >> shift) ||
            (a[2] >> shift) != (b[2] >> shift);
   }
