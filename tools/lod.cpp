@@ -47,6 +47,7 @@ struct LodArguments {
 struct LodRun {
   std::string gridName;
   LodChain chain;
+  bool dropping = false;  ///< components may be left out
   ContourReport contour;
   LodWriteReport written;
   std::vector<double> smallestAngles;  ///< degrees
@@ -94,7 +95,11 @@ LodRun runStages(const LodArguments& arguments) {
   run.gridName = grid->getName();
   requireVoxels(*grid, arguments.input);
   const LodOptions options = chainOptions(arguments, *grid, bar);
+  run.dropping = options.allowTopologyChange;
   run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
+  if (run.chain.levels.empty() && !run.chain.stopped.empty()) {
+    throw Error(ErrorCode::InvalidArgument, run.chain.stopped);
+  }
   requireSurface(run.chain.levels.empty() ? Mesh() : run.chain.levels[0].mesh, run.contour.isovalue,
                  *grid, arguments.input);
   if (arguments.report) {
@@ -120,6 +125,15 @@ LodRun runStages(const LodArguments& arguments) {
   return run;
 }
 
+Json droppedToJson(const Lod& lod) {
+  Json json = Json::array();
+  for (const DroppedComponent& piece : lod.dropped) {
+    json.push_back({{"centre", {piece.centre.x, piece.centre.y, piece.centre.z}},
+                    {"size_voxels", piece.sizeVoxels}});
+  }
+  return json;
+}
+
 Json levelToJson(const LodRun& run, std::size_t level) {
   const Lod& lod = run.chain.levels[level];
   Json json;
@@ -135,6 +149,7 @@ Json levelToJson(const LodRun& run, std::size_t level) {
   json["smallest_angle_degrees"] = run.smallestAngles[level];
   json["screen_coverage"] = lod.screenCoverage;
   json["pairs_left"] = lod.intersectionsLeft;
+  if (run.dropping) json["dropped"] = droppedToJson(lod);
   json["seconds"] = lod.seconds;
   if (!run.checks.empty()) json["check"] = toJson(run.checks[level]);
   return json;
@@ -189,6 +204,7 @@ std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
   std::vector<std::vector<std::string>> rows = {{"level", "triangles", "error (voxels)",
                                                  "error (world)", "smallest angle", "coverage",
                                                  "seconds"}};
+  if (run.dropping) rows[0].push_back("dropped");
   if (!run.checks.empty()) rows[0].push_back("watertight");
   for (std::size_t level = 0; level < run.chain.levels.size(); ++level) {
     const Lod& lod = run.chain.levels[level];
@@ -197,6 +213,7 @@ std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
                     shortNumber(lod.certificate.maxErrorWorld),
                     shortNumber(run.smallestAngles[level]), shortNumber(lod.screenCoverage),
                     shortNumber(lod.seconds)});
+    if (run.dropping) rows.back().push_back(formatCount(lod.dropped.size()));
     if (!run.checks.empty()) rows.back().push_back(run.checks[level].watertight() ? "yes" : "no");
   }
   return rows;
@@ -331,6 +348,9 @@ void addChainOptions(CLI::App& app, LodArguments& arguments) {
       ->excludes("--tolerance")
       ->excludes("--factor")
       ->excludes("--tolerances");
+  app.add_flag("--allow-topology-change", arguments.lod.allowTopologyChange,
+               "leave out components and closed cavities smaller than a level's tolerance; tunnels "
+               "and handles stay");
 }
 
 void addGlbOptions(CLI::App& app, LodArguments& arguments) {

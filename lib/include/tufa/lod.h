@@ -26,16 +26,29 @@ struct LodOptions {
   /// to 5 % fewer, and tells what error came of it. Level 0 has no more than the uniform mesh.
   /// Needs edges to be collapsed: `contour.simplify`, and no bounds on cells or angles.
   std::vector<std::size_t> triangles;
+  /// A level may be made without connected components of the surface, closed cavities among them,
+  /// that fit into a box whose diagonal is its tolerance, but never without the one of most
+  /// vertices. Handles and tunnels stay. For a number of triangles that is out of reach else,
+  /// larger components are left out, too, the smallest first, and the level's tolerance says so.
+  bool allowTopologyChange = false;
   /// The projected error, in pixels, at which a level comes in; see Lod::screenCoverage.
   double pixelError = 1;
   int screenHeight = 1080;  ///< pixels, for Lod::screenCoverage
+};
+
+/// A connected component of the surface that a level was made without.
+struct DroppedComponent {
+  Position centre;        ///< of its bounding box, world space
+  double sizeVoxels = 0;  ///< diagonal of that box
 };
 
 /// One level of detail.
 struct Lod {
   Mesh mesh;             ///< world space
   double tolerance = 0;  ///< voxels; if triangles were asked for, the largest error that came of it
-  Certificate certificate;  ///< distance to the uniform mesh of the grid
+  Certificate certificate;  ///< distance to the uniform mesh of the grid, without what was dropped
+  /// What the level before still has, see LodOptions::allowTopologyChange.
+  std::vector<DroppedComponent> dropped;
   /// Draw this level while the model's bounding sphere takes at least this share of the screen's
   /// height: below, the next level's error is no more than LodOptions::pixelError. 0 for the last.
   double screenCoverage = 0;
@@ -43,15 +56,16 @@ struct Lod {
   double seconds = 0;                 ///< wall clock, without what all levels share
 };
 
-/// Levels of detail of one surface, the finest first. All have the topology of the uniform mesh;
-/// errors rise and triangles fall from level to level.
+/// Levels of detail of one surface, the finest first. All have the topology of the uniform mesh,
+/// but for components that were dropped; errors rise and triangles fall from level to level.
 struct LodChain {
   std::vector<Lod> levels;   ///< the finest first; none without a surface
   double voxelSize = 1;      ///< world units: the cube root of a voxel's volume
   Position centre;           ///< of the bounding sphere of level 0
   double radius = 0;         ///< of that sphere, world units
   double sharedSeconds = 0;  ///< wall clock of what all levels share: reading, level 0, forest
-  /// Why there are fewer levels than asked for; empty if there are not.
+  /// Why there are fewer levels than asked for; empty if there are not. A number of triangles that
+  /// is out of reach ends the chain with the level before.
   std::string stopped;
 };
 

@@ -19,6 +19,8 @@ constexpr int kMostSteps = 12;
 constexpr double kFirstTolerance = 0.1;
 constexpr double kFirstShare = 0.25;
 constexpr double kLeastTolerance = 0.01;
+// Components are left out for a number of triangles up to so many times the size of the smallest.
+constexpr double kDropStep = 2;
 
 std::vector<VertexIndex> baseVerticesOf(const cut::Cut& cut) {
   std::vector<VertexIndex> vertices;
@@ -97,6 +99,43 @@ double toleranceFor(std::size_t triangles, const forest::Forest& forest,
   return rule.tolerance;
 }
 
+// Collapses edges, without the components that may be dropped.
+template <class TreeT>
+Measured collapseRest(const forest::Base<TreeT>& base, Measured mesh, cut::CutRule& rule,
+                      const AdaptOptions& options, Certifier<TreeT>& certifier,
+                      std::vector<Dropped>& dropped, base::Job& job) {
+  cut::CutRule sizes = rule;
+  double next = options.drop ? dropComponents(base, sizes, mesh, dropped) : 0;
+  if (!options.simplify) {
+    if (!dropped.empty()) mendAndMeasure(certifier, options.repair, mesh, job);
+    return mesh;
+  }
+  for (;;) {
+    cut::CutRule own = rule;
+    Measured collapsed =
+        simplifyCut(base, mesh, own, options.triangles, options.repair, certifier, job);
+    const std::size_t count = collapsed.made.mesh.triangleCount();
+    if (options.triangles == 0 || count <= options.triangles || next == 0) {
+      rule = own;
+      return collapsed;
+    }
+    sizes.tolerance = kDropStep * std::max(next, sizes.tolerance);
+    next = dropComponents(base, sizes, mesh, dropped);
+  }
+}
+
+// The share of base vertices and quads that a mesh stands for; the others count as without error.
+double presentShare(const Mesh& base, const cut::Cut& cut, const std::vector<std::uint8_t>& used) {
+  const auto isUsed = [&](VertexIndex vertex) { return used[cut.vertexOf[vertex]] != 0; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < base.positions.size(); ++i) {
+    count += isUsed(static_cast<VertexIndex>(i)) ? 1 : 0;
+  }
+  for (const Quad& quad : base.quads) count += isUsed(quad.vertices[0]) ? 1 : 0;
+  const std::size_t all = base.positions.size() + base.quads.size();
+  return count == 0 ? 1.0 : static_cast<double>(count) / static_cast<double>(all);
+}
+
 template <class TreeT>
 AdaptiveMesh finish(const forest::Base<TreeT>& base, const forest::Forest& forest,
                     const cut::CutRule& rule, Measured mesh, AdaptiveMesh adaptive,
@@ -117,6 +156,8 @@ AdaptiveMesh finish(const forest::Base<TreeT>& base, const forest::Forest& fores
   adaptive.baseQuads.insert(adaptive.baseQuads.end(), mesh.made.triangleSources.begin(),
                             mesh.made.triangleSources.end());
   adaptive.mesh = std::move(mesh.made.mesh);
+  const std::vector<std::uint8_t> used = removeUnused(adaptive.mesh, adaptive.baseVertices);
+  adaptive.meanError /= presentShare(base.mesh, mesh.cut, used);
   return adaptive;
 }
 
@@ -135,9 +176,7 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
   }
   Certifier<TreeT> certifier(base, forest.levels[0], cutRule, job);
   Measured mesh = cutAndMeasure(base, forest, cutRule, options.repair, certifier, adaptive, job);
-  if (options.simplify) {
-    mesh = simplifyCut(base, mesh, last, options.triangles, options.repair, certifier, job);
-  }
+  mesh = collapseRest(base, std::move(mesh), last, options, certifier, adaptive.dropped, job);
   if (kept != nullptr) *kept = mesh;
   return finish(base, forest, last, std::move(mesh), std::move(adaptive), job);
 }
@@ -149,7 +188,7 @@ AdaptiveMesh coarsen(const forest::Base<TreeT>& base, const forest::Forest& fore
   AdaptiveMesh adaptive;
   cut::CutRule last = rule;
   Certifier<TreeT> certifier(base, forest.levels[0], last, job);
-  kept = simplifyCut(base, kept, last, options.triangles, options.repair, certifier, job);
+  kept = collapseRest(base, std::move(kept), last, options, certifier, adaptive.dropped, job);
   adaptive.rounds = 1;
   return finish(base, forest, last, kept, std::move(adaptive), job);
 }

@@ -2,6 +2,7 @@
 
 #include <tufa/contour.h>
 
+#include "certify/drop_components.h"
 #include "certify/measured.h"
 #include "cut/leaves.h"
 #include "forest/forest.h"
@@ -15,6 +16,9 @@ struct AdaptOptions {
   /// If not 0 and edges are collapsed: down to so many triangles, and the tolerance is what comes
   /// of it.
   std::size_t triangles = 0;
+  /// Leave out components smaller than the tolerance, see dropComponents(); of a number of
+  /// triangles that cannot be met else, larger ones, too, the smallest first.
+  bool drop = false;
 };
 
 /// The coarsest mesh found that keeps a rule, and how far it is from the base mesh.
@@ -29,6 +33,7 @@ struct AdaptiveMesh {
   int rounds = 0;                            ///< meshes made and measured
   mend::MendReport mended;                   ///< of the last round
   double tolerance = 0;                      ///< voxels; that it was collapsed with
+  std::vector<Dropped> dropped;              ///< components that were left out
 };
 
 /// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the

@@ -63,7 +63,7 @@ class Samples {
  public:
   Samples(const forest::Base<TreeT>& base, const Measured& mesh) : base_(base), mesh_(mesh) {
     const Mesh& own = mesh.made.mesh;
-    polygonOf_.resize(own.positions.size());
+    polygonOf_.assign(own.positions.size(), forest::kNone);
     std::uint32_t polygon = 0;
     const auto take = [&](const auto& v, std::uint32_t source) {
       for (const VertexIndex vertex : v) polygonOf_[vertex] = polygon;
@@ -113,7 +113,9 @@ class Samples {
       least[to] = squared;
       nearest[to] = static_cast<VertexIndex>(i);
     }
-    for (const VertexIndex vertex : nearest) addVertex(vertex);
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+      if (polygonOf_[i] != forest::kNone) addVertex(nearest[i]);
+    }
   }
 
   const forest::Base<TreeT>& base_;

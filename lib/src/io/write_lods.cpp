@@ -123,6 +123,7 @@ class LodDocument {
                    {"mean_error_voxels", lod.certificate.meanErrorVoxels},
                    {"max_error_metres", lod.certificate.maxErrorVoxels * metres},
                    {"mean_error_metres", lod.certificate.meanErrorVoxels * metres}};
+    if (!lod.dropped.empty()) extras["dropped_components"] = lod.dropped.size();
     if (streams.frame.quantized) {
       // Half a step along each axis.
       extras["quantization_error_metres"] =

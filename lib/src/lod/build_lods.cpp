@@ -78,19 +78,20 @@ std::vector<Target> targetsOf(const LodOptions& options) {
   return targets;
 }
 
-// Why a level is no coarser, or not as coarse as asked for.
+// Why a level is no coarser, or not as coarse as asked for, and was left out.
 std::string stopOf(std::size_t level, const Target& target, std::size_t triangles) {
-  const std::string because = ": the surface's topology allows no coarser mesh";
   if (target.triangles > 0) {
     return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
-           " triangles but " + std::to_string(triangles) + because;
+           " triangles: the surface allows no fewer than " + std::to_string(triangles) +
+           ", and that level was left out";
   }
   return "level " + std::to_string(level) + " at a tolerance of " +
          std::to_string(target.tolerance) + " voxels has no fewer triangles than level " +
-         std::to_string(level - 1) + because;
+         std::to_string(level - 1) + ": the surface's topology allows no coarser mesh";
 }
 
 void setBounds(LodChain& chain) {
+  if (chain.levels.empty()) return;
   openvdb::BBoxd box;
   for (const Position& p : chain.levels.front().mesh.positions) {
     box.expand(openvdb::Vec3d(p.x, p.y, p.z));
@@ -134,13 +135,13 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
 
   const bool collapses = cut::maySimplify(contour);
   certify::Measured kept;
-  for (std::size_t i = 0; i < targets.size() && chain.stopped.empty(); ++i) {
+  for (std::size_t i = 0; i < targets.size(); ++i) {
     const Clock::time_point begin = Clock::now();
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
     job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
     const Target& target = targets[i];
-    const certify::AdaptOptions how{contour.repair ? &repair : nullptr, collapses,
-                                    target.triangles};
+    const certify::AdaptOptions how{contour.repair ? &repair : nullptr, collapses, target.triangles,
+                                    options.allowTopologyChange};
     rule.tolerance = target.triangles > 0 && i > 0 ? rule.tolerance : target.tolerance;
     certify::AdaptiveMesh adaptive = i > 0 && collapses
                                          ? coarsen(base, forest, rule, how, job, kept)
@@ -150,11 +151,17 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
     const bool coarser = i == 0 || triangles < chain.levels.back().mesh.triangleCount();
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
       chain.stopped = stopOf(i, target, triangles);
+      break;
     }
-    if (!coarser) break;
     Lod lod;
     lod.certificate = certify::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves);
     lod.tolerance = target.triangles > 0 ? lod.certificate.maxErrorVoxels : target.tolerance;
+    for (const certify::Dropped& piece : adaptive.dropped) {
+      lod.dropped.push_back(
+          {level0.affine().toWorld(Position(piece.centre[0], piece.centre[1], piece.centre[2])),
+           piece.size});
+      if (target.triangles > 0) lod.tolerance = std::max(lod.tolerance, piece.size);
+    }
     lod.mesh = std::move(adaptive.mesh);
     const level0::Origins origins{std::move(adaptive.baseVertices), std::move(adaptive.baseQuads)};
     level0::finishMesh(level0, contour, origins, adaptive.suspects, lod.mesh, report, job);

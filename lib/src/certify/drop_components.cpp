@@ -1,0 +1,132 @@
+#include "certify/drop_components.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace tufa::certify {
+namespace {
+
+using openvdb::Vec3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// For each vertex the least one of its component.
+std::vector<VertexIndex> componentsOf(const Mesh& mesh) {
+  std::vector<VertexIndex> parents(mesh.positions.size());
+  std::iota(parents.begin(), parents.end(), VertexIndex{0});
+  const auto rootOf = [&](VertexIndex i) {
+    while (parents[i] != i) i = parents[i] = parents[parents[i]];
+    return i;
+  };
+  const auto join = [&](const auto& v) {
+    for (const VertexIndex other : v) {
+      const VertexIndex a = rootOf(v[0]), b = rootOf(other);
+      parents[std::max(a, b)] = std::min(a, b);
+    }
+  };
+  for (const Quad& quad : mesh.quads) join(quad.vertices);
+  for (const Triangle& triangle : mesh.triangles) join(triangle.vertices);
+  for (VertexIndex i = 0; i < parents.size(); ++i) parents[i] = rootOf(i);
+  return parents;
+}
+
+struct Component {
+  openvdb::BBoxd box;
+  double tolerance = kInfinity;  // the least at one of its base vertices, voxels
+  std::size_t baseVertices = 0;
+  bool present = false;  // has polygons
+  bool gone = false;
+};
+
+template <class Polygon>
+void removeWhere(const std::vector<std::uint8_t>& gone, std::vector<Polygon>& polygons,
+                 std::vector<std::uint32_t>& sources) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    if (gone[polygons[i].vertices[0]] != 0) continue;
+    polygons[kept] = polygons[i];
+    sources[kept++] = sources[i];
+  }
+  polygons.resize(kept);
+  sources.resize(kept);
+}
+
+}  // namespace
+
+template <class TreeT>
+double dropComponents(const forest::Base<TreeT>& base, const cut::CutRule& rule, Measured& mesh,
+                      std::vector<Dropped>& dropped) {
+  Mesh& own = mesh.made.mesh;
+  const std::vector<VertexIndex> componentOf = componentsOf(own);
+  std::vector<Component> components(own.positions.size());
+  for (const Quad& quad : own.quads) components[componentOf[quad.vertices[0]]].present = true;
+  for (const Triangle& t : own.triangles) components[componentOf[t.vertices[0]]].present = true;
+  for (std::size_t i = 0; i < base.mesh.positions.size(); ++i) {
+    Component& component = components[componentOf[mesh.cut.vertexOf[i]]];
+    if (!component.present) continue;
+    const Position& p = base.mesh.positions[i];
+    const Vec3d point(p.x, p.y, p.z);
+    component.box.expand(point);
+    component.tolerance = std::min(component.tolerance, toleranceAt(rule, base.affine, point));
+    ++component.baseVertices;
+  }
+  const auto largest = std::max_element(
+      components.begin(), components.end(),
+      [](const Component& a, const Component& b) { return a.baseVertices < b.baseVertices; });
+  double next = 0;
+  bool any = false;
+  for (auto component = components.begin(); component != components.end(); ++component) {
+    if (!component->present || component == largest) continue;
+    const double size = component->box.extents().length() / base.affine.voxelSize();
+    component->gone = size <= component->tolerance;
+    any |= component->gone;
+    if (component->gone) {
+      dropped.push_back({component->box.getCenter(), size});
+    } else if (component->tolerance > 0 && (next == 0 || size < next)) {
+      next = size;
+    }
+  }
+  if (!any) return next;
+  std::vector<std::uint8_t> gone(own.positions.size());
+  for (std::size_t i = 0; i < gone.size(); ++i) gone[i] = components[componentOf[i]].gone ? 1 : 0;
+  removeWhere(gone, own.quads, mesh.made.quadSources);
+  removeWhere(gone, own.triangles, mesh.made.triangleSources);
+  return next;
+}
+
+std::vector<std::uint8_t> removeUnused(Mesh& mesh, std::vector<VertexIndex>& baseVertices) {
+  std::vector<std::uint8_t> used(mesh.positions.size(), 0);
+  for (const Quad& quad : mesh.quads) {
+    for (const VertexIndex vertex : quad.vertices) used[vertex] = 1;
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const VertexIndex vertex : triangle.vertices) used[vertex] = 1;
+  }
+  std::vector<VertexIndex> numbers(used.size());
+  VertexIndex count = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i] == 0) continue;
+    mesh.positions[count] = mesh.positions[i];
+    mesh.normals[count] = mesh.normals[i];
+    baseVertices[count] = baseVertices[i];
+    numbers[i] = count++;
+  }
+  mesh.positions.resize(count);
+  mesh.normals.resize(count);
+  baseVertices.resize(count);
+  for (Quad& quad : mesh.quads) {
+    for (VertexIndex& vertex : quad.vertices) vertex = numbers[vertex];
+  }
+  for (Triangle& triangle : mesh.triangles) {
+    for (VertexIndex& vertex : triangle.vertices) vertex = numbers[vertex];
+  }
+  return used;
+}
+
+template double dropComponents(const forest::Base<openvdb::FloatTree>&, const cut::CutRule&,
+                               Measured&, std::vector<Dropped>&);
+template double dropComponents(const forest::Base<openvdb::DoubleTree>&, const cut::CutRule&,
+                               Measured&, std::vector<Dropped>&);
+
+}  // namespace tufa::certify
