@@ -11,7 +11,7 @@ namespace tufa::certify {
 namespace {
 
 // A mesh that will be simplified is cut at this share of the tolerance.
-constexpr double kCutShare = 0.7;
+constexpr double kCutShare = 0.5;
 // One that is to have so many triangles is cut with so many times as many, at a tolerance found in
 // so many steps from a first one, voxels. Collapsing begins with a share of it, or the least one.
 constexpr double kLeastCut = 2, kMostCut = 4;

@@ -89,7 +89,8 @@ void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured&
     mesh.suspects = suspectsOf(mesh.made, mesh.cut, repair->suspects);
     mesh.mended = mendCut(*repair, mesh.cut, withMarks(mesh.made.mesh, mesh.suspects, fresh),
                           mesh.made.mesh, job);
-    mesh.altered = verticesOf(mesh.made.mesh, mesh.mended.changed);
+    const std::vector<VertexIndex> mended = verticesOf(mesh.made.mesh, mesh.mended.changed);
+    mesh.altered.insert(mesh.altered.end(), mended.begin(), mended.end());
   }
   mesh.deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
   std::vector<mend::PolygonIndex> polygons;

@@ -16,10 +16,12 @@ using openvdb::Vec3d;
 constexpr std::uint8_t kJoined = std::numeric_limits<std::uint8_t>::max();
 // What a vertex may move in all is tested at points only; the rest is for what lies between them.
 constexpr double kFirstShare = 0.9;
-// A vertex that was faulty gets this share of its freedom. After so many rounds nothing is
-// collapsed anew, and what made it faulty is undone.
-constexpr double kLess = 0.6;
+// A vertex that was faulty gets this share of its freedom, when it is faulty again the square of
+// it, and so on. After so many rounds it gets none, and after so many nothing is collapsed anew,
+// and what made it faulty is undone.
+constexpr float kLess = 0.6F;
 constexpr int kSoftRounds = 5;
+constexpr int kFirmRounds = 12;
 // After so many further rounds its neighbours are undone, too, then theirs, at most so far at once.
 constexpr int kRoundsPerRing = 4;
 constexpr int kMostRings = 8;
@@ -187,6 +189,48 @@ bool undo(const simplify::Collapsed& collapsed, const Mesh& mesh, std::vector<st
   return false;
 }
 
+// Takes freedom from what went into faulty vertices: all, or shares that are squared. False if none
+// was left.
+bool takeFreedom(const simplify::Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
+                 std::vector<float>* shares, std::vector<float>& allowed) {
+  bool any = false;
+  for (std::size_t i = 0; i < allowed.size(); ++i) {
+    if (faulty[collapsed.vertexOf[i]] == 0 || !(allowed[i] > 0)) continue;
+    any = true;
+    if (shares == nullptr) {
+      allowed[i] = 0;
+      continue;
+    }
+    allowed[i] *= (*shares)[i];
+    (*shares)[i] *= (*shares)[i];
+  }
+  return any;
+}
+
+// Takes all freedom from what went into faulty vertices or, where none is left, into their
+// neighbours.
+bool freeze(const simplify::Collapsed& collapsed, const Mesh& mesh,
+            std::vector<std::uint8_t> faulty, std::vector<float>& allowed) {
+  for (int ring = 0; ring < kMostRings; ++ring, faulty = widen(mesh, std::move(faulty), 1)) {
+    if (takeFreedom(collapsed, faulty, nullptr, allowed)) return true;
+  }
+  return false;
+}
+
+// Lets no edges be turned at what went into faulty vertices. Whether one had been turned there.
+bool stiffen(const simplify::Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
+             std::vector<float>& turning) {
+  std::vector<std::uint8_t> turned(faulty.size(), 0);
+  for (const VertexIndex vertex : collapsed.turned) turned[vertex] = faulty[vertex];
+  bool any = false;
+  for (std::size_t i = 0; i < turning.size(); ++i) {
+    if (turned[collapsed.vertexOf[i]] == 0 || !(turning[i] > 0)) continue;
+    turning[i] = 0;
+    any = true;
+  }
+  return any;
+}
+
 // The mesh after a collapse of `from`, told in the terms of the base mesh.
 Measured compose(const Measured& from, const simplify::Collapsed& collapsed) {
   Measured mesh;
@@ -202,6 +246,8 @@ Measured compose(const Measured& from, const simplify::Collapsed& collapsed) {
   for (std::size_t i = 0; i < mesh.cut.clusters.size(); ++i) {
     if (collapsed.members[i] > 1) mesh.cut.clusters[i].level = kJoined;
   }
+  for (const VertexIndex vertex : collapsed.turned) mesh.cut.clusters[vertex].level = kJoined;
+  mesh.altered = collapsed.turned;
   const std::size_t quadsBefore = from.made.mesh.quads.size();
   const auto sourceOf = [&](std::uint32_t polygon) {
     return polygon < quadsBefore ? from.made.quadSources[polygon]
@@ -223,6 +269,7 @@ std::vector<std::uint8_t> findFresh(const simplify::Collapsed& before, const Mea
   std::vector<std::uint8_t> mended(before.members.size(), 0), fresh(now.members.size(), 0);
   for (const VertexIndex vertex : was.altered) mended[vertex] = 1;
   for (const VertexIndex vertex : was.meeting) mended[vertex] = 1;
+  for (const VertexIndex vertex : now.turned) fresh[vertex] = 1;
   for (std::size_t i = 0; i < now.vertexOf.size(); ++i) {
     const VertexIndex from = before.vertexOf[i], to = now.vertexOf[i];
     if (mended[from] != 0 || before.members[from] != now.members[to] ||
@@ -251,8 +298,11 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     const double least = std::max(0.0, toleranceAt(rule, base.affine, vectorOf(p)));
     bounds.allowed.push_back(static_cast<float>(kFirstShare * least * base.affine.voxelSize()));
   }
+  bounds.turning = bounds.allowed;
+  std::vector<float> shares(bounds.allowed.size(), kLess);
   simplify::Collapsed collapsed;
   Measured result;
+  int undoRounds = 0;
   for (int round = 1;; ++round) {
     bounds.samples = samples.all();
     simplify::Collapsed next = simplify::collapse(mesh.made.mesh, planes, bounds, job);
@@ -268,16 +318,16 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     const std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, triangles > 0);
     bool any = soft && !result.deviation.farPoints.empty();
     if (soft) {
-      for (std::size_t i = 0; i < collapsed.vertexOf.size(); ++i) {
-        if (faulty[collapsed.vertexOf[i]] == 0) continue;
-        bounds.allowed[i] *= static_cast<float>(kLess);
-        any = true;
-      }
-    } else {
-      bounds.onlyRepeat = true;
-      any = undo(collapsed, result.made.mesh, faulty, (round - kSoftRounds) / kRoundsPerRing,
-                 bounds.undone);
+      any |= takeFreedom(collapsed, faulty, &shares, bounds.allowed);
+    } else if (round < kFirmRounds) {
+      any = freeze(collapsed, result.made.mesh, faulty, bounds.allowed);
     }
+    bounds.undone.clear();
+    if (!any) {
+      bounds.onlyRepeat = true;
+      any = undo(collapsed, result.made.mesh, faulty, undoRounds++ / kRoundsPerRing, bounds.undone);
+    }
+    any |= stiffen(collapsed, faulty, bounds.turning);
     bounds.before = &collapsed;
     if (!any) return result;
   }

@@ -8,6 +8,7 @@
 #include "simplify/edge_mesh.h"
 #include "simplify/edge_queue.h"
 #include "simplify/ring.h"
+#include "simplify/turn_needles.h"
 
 namespace tufa::simplify {
 namespace {
@@ -80,6 +81,7 @@ class Collapser {
   [[nodiscard]] Collapsed result() {
     Collapsed out;
     out.looseness = looseness_;
+    const std::vector<std::uint8_t> turned = turnThin();
     out.sampleTriangles = std::move(sampleTriangles_);
     out.steps = std::move(steps_);
     const auto vertices = static_cast<std::uint32_t>(mesh_.vertexCount());
@@ -99,23 +101,29 @@ class Collapser {
     }
     const auto corner = [&](std::size_t i) { return numbers[mesh_.corner(i)]; };
     std::vector<std::uint32_t> sources;
+    const auto addTriangle = [&](std::size_t t, std::uint32_t polygon) {
+      out.mesh.triangles.emplace_back(corner(t), corner(t + 1), corner(t + 2));
+      sources.push_back(polygon);
+      if (turned[t / 3] == 0) return;
+      const auto& v = out.mesh.triangles.back().vertices;
+      out.turned.insert(out.turned.end(), v.begin(), v.end());
+    };
     for (std::uint32_t polygon = 0; polygon < given_.quads.size(); ++polygon) {
       const std::size_t t = std::size_t{6} * polygon;
       const bool first = mesh_.isAlive(t), second = mesh_.isAlive(t + 3);
-      if (first && second) {
+      if (first && second && turned[t / 3] == 0 && turned[t / 3 + 1] == 0) {
         out.mesh.quads.emplace_back(corner(t), corner(t + 1), corner(t + 2), corner(t + 5));
         out.sources.push_back(polygon);
-      } else if (first || second) {
-        const std::size_t s = first ? t : t + 3;
-        out.mesh.triangles.emplace_back(corner(s), corner(s + 1), corner(s + 2));
-        sources.push_back(polygon);
+        continue;
       }
+      if (first) addTriangle(t, polygon);
+      if (second) addTriangle(t + 3, polygon);
     }
     for (std::size_t i = 0; i < given_.triangles.size(); ++i) {
       const std::size_t t = 6 * given_.quads.size() + 3 * i;
-      if (!mesh_.isAlive(t)) continue;
-      out.mesh.triangles.emplace_back(corner(t), corner(t + 1), corner(t + 2));
-      sources.push_back(static_cast<std::uint32_t>(given_.quads.size() + i));
+      if (mesh_.isAlive(t)) {
+        addTriangle(t, static_cast<std::uint32_t>(given_.quads.size() + i));
+      }
     }
     out.sources.insert(out.sources.end(), sources.begin(), sources.end());
     return out;
@@ -129,6 +137,19 @@ class Collapser {
     double planes;
     PlaneSum sum;  ///< of both, seen from the point
   };
+
+  // Turns edges of the result, and marks triangles that were turned. What is kept for a next
+  // collapse is of the mesh before.
+  std::vector<std::uint8_t> turnThin() {
+    if (bounds_.turning.empty()) return std::vector<std::uint8_t>(mesh_.cornerCount() / 3, 0);
+    std::vector<double> allowed(mesh_.vertexCount(), std::numeric_limits<double>::infinity());
+    for (std::uint32_t i = 0; i < allowed.size(); ++i) {
+      double& own = allowed[mesh_.rootOf(i)];
+      own = std::min(own, looseness_ * static_cast<double>(bounds_.turning[i]));
+      if (mesh_.isRoot(i) && mesh_.isOnBoundary(i)) own = 0;
+    }
+    return turnNeedles(mesh_, bounds_, allowed, sampleTriangles_);
+  }
 
   [[nodiscard]] double allowedAt(VertexIndex a, VertexIndex b) const {
     return looseness_ * static_cast<double>(std::min(allowed_[a], allowed_[b]));

@@ -30,6 +30,7 @@ struct Collapsed {
   std::vector<std::uint32_t> sources;  ///< polygon of the input of each polygon, quads first
   std::vector<VertexIndex> vertexOf;   ///< for each vertex of the input
   std::vector<std::uint32_t> members;  ///< number of input vertices of each vertex
+  std::vector<VertexIndex> turned;     ///< corners of triangles at an edge that was turned
   double looseness = 1;                ///< what `allowed` was multiplied by to get so far
   std::vector<std::uint32_t> sampleTriangles;  ///< for a next collapse
   std::vector<Step> steps;                     ///< in order, for a next collapse
@@ -54,6 +55,7 @@ struct Bounds {
   const Collapsed* before = nullptr;
   std::vector<std::uint8_t> undone;  ///< of its steps, those not to be made again; empty: none
   bool onlyRepeat = false;           ///< make no new steps
+  std::vector<float> turning;        ///< as `allowed`, where edges are turned; empty: none are
 };
 
 /// Collapses edges of a mesh with normals, the one of least error first, each to the point of least
@@ -62,7 +64,8 @@ struct Bounds {
 /// Keeps the mesh a manifold of the same topology (the link condition; vertices on a boundary
 /// stay). A collapse is not made if a triangle around it would turn over or become a needle, if a
 /// sample near those triangles would be farther from them than is allowed, or the new vertex from
-/// the surface at its nearest sample. Quads of which nothing was collapsed stay quads. One thread.
+/// the surface at its nearest sample. Last, edges are turned that make needles, see turnNeedles().
+/// Quads of which nothing was changed stay quads. One thread.
 [[nodiscard]] Collapsed collapse(const Mesh& mesh, const std::vector<PlaneSum>& planes,
                                  const Bounds& bounds, base::Job& job);
 

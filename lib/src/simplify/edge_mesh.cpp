@@ -52,6 +52,12 @@ bool EdgeMesh::isOnBoundary(VertexIndex vertex) const {
   return triangles < 3 || balance != 0;
 }
 
+std::size_t EdgeMesh::degree(VertexIndex vertex) const {
+  std::size_t triangles = 0;
+  forTriangles(vertex, [&](std::uint32_t, VertexIndex, VertexIndex) { ++triangles; });
+  return triangles;
+}
+
 void EdgeMesh::collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const {
   out.clear();
   forTriangles(vertex, [&](std::uint32_t, VertexIndex x, VertexIndex) { out.push_back(x); });
@@ -80,11 +86,8 @@ bool EdgeMesh::mayCollapse(VertexIndex a, VertexIndex b) {
     marks_[x] = atB;
   });
   if (twice || common != 2) return false;
-  return std::all_of(beside.begin(), beside.end(), [&](VertexIndex vertex) {
-    std::size_t triangles = 0;
-    forTriangles(vertex, [&](std::uint32_t, VertexIndex, VertexIndex) { ++triangles; });
-    return triangles > 3;
-  });
+  return std::all_of(beside.begin(), beside.end(),
+                     [&](VertexIndex vertex) { return degree(vertex) > 3; });
 }
 
 void EdgeMesh::collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d& point) {
@@ -109,6 +112,23 @@ void EdgeMesh::collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d
       *link = next_[*link];
     }
   }
+}
+
+void EdgeMesh::turn(std::uint32_t t, std::uint32_t u, VertexIndex a, VertexIndex b, VertexIndex c,
+                    VertexIndex d) {
+  replaceCorner(t, b, d);
+  replaceCorner(u, a, c);
+}
+
+void EdgeMesh::replaceCorner(std::uint32_t triangle, VertexIndex from, VertexIndex to) {
+  std::uint32_t place = triangle;
+  while (corners_[place] != from) ++place;
+  std::uint32_t* link = &first_[from];
+  while (*link != place) link = &next_[*link];
+  *link = next_[place];
+  corners_[place] = to;
+  next_[place] = first_[to];
+  first_[to] = place;
 }
 
 }  // namespace tufa::simplify

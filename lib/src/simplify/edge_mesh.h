@@ -44,6 +44,8 @@ class EdgeMesh {
     }
   }
   [[nodiscard]] bool isOnBoundary(VertexIndex vertex) const;
+  /// Number of triangles around a vertex.
+  [[nodiscard]] std::size_t degree(VertexIndex vertex) const;
   /// Neighbours of a vertex off the boundary, by place.
   void collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const;
 
@@ -52,8 +54,13 @@ class EdgeMesh {
   [[nodiscard]] bool mayCollapse(VertexIndex a, VertexIndex b);
   /// Lets `drop` go into its neighbour `keep`, and that to `point`.
   void collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d& point);
+  /// Makes the triangles t = (a, b, c) and u = (b, a, d) into (a, d, c) and (b, c, d).
+  void turn(std::uint32_t t, std::uint32_t u, VertexIndex a, VertexIndex b, VertexIndex c,
+            VertexIndex d);
 
  private:
+  void replaceCorner(std::uint32_t triangle, VertexIndex from, VertexIndex to);
+
   std::vector<openvdb::Vec3d> points_;
   std::vector<std::uint32_t> ranks_;         // of each vertex by its place
   std::vector<VertexIndex> order_;           // the vertices by rank

@@ -22,8 +22,7 @@ constexpr double kFold = -0.3;
 constexpr double kRound = 0.1;
 constexpr double kWorse = 0.5;
 
-// 1 for an equilateral triangle of twice this area vector's length, 0 for three points on a line.
-double roundness(double twiceArea, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+double roundnessOf(double twiceArea, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const double squares = (b - a).lengthSqr() + (c - b).lengthSqr() + (a - c).lengthSqr();
   return squares > 0 ? 2 * std::sqrt(3.0) * twiceArea / squares : 0;
 }
@@ -35,6 +34,10 @@ bool isWithin(const Vec3d& a, const Vec3d& b, double cosine) {
 }
 
 }  // namespace
+
+double roundness(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  return roundnessOf((b - a).cross(c - a).length(), a, b, c);
+}
 
 bool Ring::collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b, const Vec3d& point,
                    const Vec3d& facing) {
@@ -51,7 +54,7 @@ bool Ring::collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b, const Vec
       const Vec3d& px = mesh.point(x);
       const Vec3d& py = mesh.point(y);
       const Vec3d was = (px - p).cross(py - p);
-      const double round = roundness(was.length(), p, px, py);
+      const double round = roundnessOf(was.length(), p, px, py);
       before = std::min(before, round);
       if (x == other || y == other) {
         if (own < other) star_.push_back(t);
@@ -61,7 +64,7 @@ bool Ring::collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b, const Vec
       triangles_.push_back(t);
       edges_.push_back({x, y});
       const Vec3d is = (px - point).cross(py - point);
-      after = std::min(after, roundness(is.length(), point, px, py));
+      after = std::min(after, roundnessOf(is.length(), point, px, py));
       upright &= isWithin(was, is, kLeastTurn) ||
                  ((round < kNeedle || !isWithin(facing, was, kLeastFacing)) &&
                   isWithin(facing, is, kLeastFacing));
@@ -102,7 +105,6 @@ double Ring::sharpest(const EdgeMesh& mesh) const {
   return least;
 }
 
-// The normal of the triangle across the edge from x to y of another one; `own` if it has none.
 Vec3d Ring::normalAcross(const EdgeMesh& mesh, VertexIndex x, VertexIndex y, const Vec3d& own) {
   Vec3d normal = own;
   mesh.forTriangles(y, [&](std::uint32_t, VertexIndex next, VertexIndex last) {

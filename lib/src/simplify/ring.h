@@ -9,6 +9,10 @@
 
 namespace tufa::simplify {
 
+/// 1 for an equilateral triangle, 0 for three points on a line.
+[[nodiscard]] double roundness(const openvdb::Vec3d& a, const openvdb::Vec3d& b,
+                               const openvdb::Vec3d& c);
+
 /// The triangles around an edge, and what becomes of them if it is collapsed.
 class Ring {
  public:
@@ -28,10 +32,12 @@ class Ring {
   [[nodiscard]] const std::vector<std::uint32_t>& triangles() const { return triangles_; }
   [[nodiscard]] const std::vector<base::FlatTriangle>& shapes() const { return shapes_; }
 
- private:
-  [[nodiscard]] double sharpest(const EdgeMesh& mesh) const;
+  /// The normal of the triangle across the edge from x to y of another one; `own` if it has none.
   [[nodiscard]] static openvdb::Vec3d normalAcross(const EdgeMesh& mesh, VertexIndex x,
                                                    VertexIndex y, const openvdb::Vec3d& own);
+
+ private:
+  [[nodiscard]] double sharpest(const EdgeMesh& mesh) const;
 
   std::vector<std::uint32_t> star_, triangles_;
   std::vector<std::array<VertexIndex, 2>> edges_;  ///< opposite to the new vertex

@@ -178,5 +178,50 @@ TEST(Collapse, UndoesStepsAndThoseThatNeedThem) {
   EXPECT_EQ(solve(problem).mesh.positions, problem.mesh.positions);
 }
 
+// A pyramid that stands on its top; c lies almost on the edge from a to b.
+Problem pyramid() {
+  Problem problem;
+  Mesh& mesh = problem.mesh;
+  mesh.positions = {{0, 0, 0}, {2, 0, 0}, {1, 0.01, 0}, {1, -1, 0}, {1, 0, -1}};
+  constexpr VertexIndex kA = 0, kB = 1, kC = 2, kD = 3, kTop = 4;
+  mesh.triangles = {{kA, kB, kC}, {kB, kA, kD}};
+  const VertexIndex around[] = {kA, kD, kB, kC, kA};
+  for (int i = 0; i < 4; ++i) mesh.triangles.emplace_back(around[i + 1], around[i], kTop);
+  mesh.normals.assign(5, Normal(0, 0, 1));
+  problem.planes.resize(5);
+  problem.bounds.allowed.assign(5, 0);
+  problem.bounds.turning.assign(5, 0.1F);
+  problem.bounds.distance = [](const Vec3d&, const Vec3d&, double) { return 0.0; };
+  return problem;
+}
+
+TEST(Collapse, TurnsAnEdgeThatMakesANeedle) {
+  const Problem problem = pyramid();
+  const Collapsed turned = solve(problem);
+  EXPECT_EQ(turned.mesh.positions, problem.mesh.positions);
+  const test::MeshTopology topology = test::inspect(turned.mesh);
+  EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
+  std::vector<Triangle> expected = problem.mesh.triangles;
+  expected[0] = {0, 3, 2};
+  expected[1] = {2, 3, 1};
+  ASSERT_EQ(turned.mesh.triangles.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    auto found = turned.mesh.triangles[i].vertices, wanted = expected[i].vertices;
+    std::sort(found.begin(), found.end());
+    std::sort(wanted.begin(), wanted.end());
+    EXPECT_EQ(found, wanted);
+  }
+  EXPECT_EQ(turned.turned.size(), 6U);
+}
+
+TEST(Collapse, TurnsNoEdgeWhereTheSurfaceIsTooFar) {
+  Problem problem = pyramid();
+  problem.bounds.distance = [](const Vec3d&, const Vec3d&, double) { return 0.2; };
+  EXPECT_EQ(solve(problem).mesh.triangles, problem.mesh.triangles);
+  problem = pyramid();
+  problem.bounds.turning[3] = 0;
+  EXPECT_EQ(solve(problem).mesh.triangles, problem.mesh.triangles);
+}
+
 }  // namespace
 }  // namespace tufa::simplify

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simplify/collapse.h"
+#include "simplify/edge_mesh.h"
+
+namespace tufa::simplify {
+
+/// Turns the longest edge of flat triangles where that makes both triangles at it rounder, and
+/// neither the topology, nor a direction, nor what is near a sample suffers. Looks at triangles as
+/// they lie in the mesh, a few times over.
+///
+/// `allowed` tells for each vertex how far the surface may move there, 0: not at all.
+/// `sampleTriangles` is where each sample is. Returns a mark for each triangle, 1 if it was turned.
+[[nodiscard]] std::vector<std::uint8_t> turnNeedles(EdgeMesh& mesh, const Bounds& bounds,
+                                                    const std::vector<double>& allowed,
+                                                    std::vector<std::uint32_t> sampleTriangles);
+
+}  // namespace tufa::simplify
