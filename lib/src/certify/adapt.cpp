@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "certify/simplify_cut.h"
 #include "certify/split_cells.h"
 
 namespace tufa::certify {
@@ -112,10 +111,9 @@ Measured collapseRest(const forest::Base<TreeT>& base, Measured mesh, cut::CutRu
   }
   for (;;) {
     cut::CutRule own = rule;
-    Measured collapsed =
-        simplifyCut(base, mesh, own, options.triangles, options.repair, certifier, job);
+    Measured collapsed = simplifyCut(base, mesh, own, options.goal, options.repair, certifier, job);
     const std::size_t count = collapsed.made.mesh.triangleCount();
-    if (options.triangles == 0 || count <= options.triangles || next == 0) {
+    if (options.goal.triangles == 0 || count <= options.goal.triangles || next == 0) {
       rule = own;
       return collapsed;
     }
@@ -170,8 +168,8 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
   AdaptiveMesh adaptive;
   cut::CutRule cutRule = rule, last = rule;
   if (options.simplify) cutRule.tolerance *= kCutShare;
-  if (options.simplify && options.triangles > 0) {
-    cutRule.tolerance = toleranceFor(options.triangles, forest, base.topology, rule, job);
+  if (options.simplify && options.goal.triangles > 0) {
+    cutRule.tolerance = toleranceFor(options.goal.triangles, forest, base.topology, rule, job);
     last.tolerance = std::max(kFirstShare * cutRule.tolerance, kLeastTolerance);
   }
   Certifier<TreeT> certifier(base, forest.levels[0], cutRule, job);

@@ -3,7 +3,7 @@
 #include <tufa/contour.h>
 
 #include "certify/drop_components.h"
-#include "certify/measured.h"
+#include "certify/simplify_cut.h"
 #include "cut/leaves.h"
 #include "forest/forest.h"
 
@@ -13,9 +13,7 @@ namespace tufa::certify {
 struct AdaptOptions {
   const Repair* repair = nullptr;  ///< take self-intersections out; null: leave them
   bool simplify = false;           ///< collapse edges of the cut's mesh, see simplifyCut()
-  /// If not 0 and edges are collapsed: down to so many triangles, and the tolerance is what comes
-  /// of it.
-  std::size_t triangles = 0;
+  Goal goal;                       ///< how far edges are collapsed
   /// Leave out components smaller than the tolerance, see dropComponents(); of a number of
   /// triangles that cannot be met else, larger ones, too, the smallest first.
   bool drop = false;

@@ -284,7 +284,7 @@ std::vector<std::uint8_t> findFresh(const simplify::Collapsed& before, const Mea
 
 template <class TreeT>
 Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut::CutRule& rule,
-                     std::size_t triangles, const Repair* repair, Certifier<TreeT>& certifier,
+                     const Goal& goal, const Repair* repair, Certifier<TreeT>& certifier,
                      base::Job& job) {
   const std::vector<simplify::PlaneSum> planes = gatherPlanes(base, mesh);
   Samples<TreeT> samples(base, mesh);
@@ -292,7 +292,7 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
   bounds.distance = [&certifier](const Vec3d& point, const Vec3d& normal, double enough) {
     return certifier.distanceToBase(point, normal, enough);
   };
-  bounds.triangles = triangles;
+  bounds.triangles = goal.triangles;
   const double tolerance = rule.tolerance;
   for (const Position& p : mesh.made.mesh.positions) {
     const double least = std::max(0.0, toleranceAt(rule, base.affine, vectorOf(p)));
@@ -312,10 +312,12 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     rule.tolerance = tolerance * collapsed.looseness;
     certifier.setRule(rule);
     result = compose(mesh, collapsed);
+    const std::size_t count = result.made.mesh.triangleCount();
+    if (round == 1 && goal.giveUp > 0 && count >= goal.giveUp) return result;
     mendAndMeasure(certifier, repair, result, job, fresh);
     for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);
     const bool soft = round < kSoftRounds;
-    const std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, triangles > 0);
+    const std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, goal.triangles > 0);
     bool any = soft && !result.deviation.farPoints.empty();
     if (soft) {
       any |= takeFreedom(collapsed, faulty, &shares, bounds.allowed);
@@ -334,10 +336,10 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
 }
 
 template Measured simplifyCut(const forest::Base<openvdb::FloatTree>&, const Measured&,
-                              cut::CutRule&, std::size_t, const Repair*,
+                              cut::CutRule&, const Goal&, const Repair*,
                               Certifier<openvdb::FloatTree>&, base::Job&);
 template Measured simplifyCut(const forest::Base<openvdb::DoubleTree>&, const Measured&,
-                              cut::CutRule&, std::size_t, const Repair*,
+                              cut::CutRule&, const Goal&, const Repair*,
                               Certifier<openvdb::DoubleTree>&, base::Job&);
 
 }  // namespace tufa::certify

@@ -18,6 +18,10 @@ namespace {
 
 constexpr level0::StageEnds kEnds = {0.08, 0.15, 0.33, 0.4, 0.42, 0.45};
 constexpr double kForestEnd = 0.55;
+// Triangles of a level fall at least with this power of its tolerance, up to this many times that
+// of the level before.
+constexpr double kLeastSlope = -0.3;
+constexpr double kMostRatio = 4;
 
 using Clock = std::chrono::steady_clock;
 
@@ -86,8 +90,19 @@ std::string stopOf(std::size_t level, const Target& target, std::size_t triangle
            ", and that level was left out";
   }
   return "level " + std::to_string(level) + " at a tolerance of " +
-         std::to_string(target.tolerance) + " voxels has no fewer triangles than level " +
-         std::to_string(level - 1) + ": the surface's topology allows no coarser mesh";
+         std::to_string(target.tolerance) + " voxels has " + std::to_string(triangles) +
+         " triangles, hardly fewer than level " + std::to_string(level - 1) +
+         ", and was left out: the surface's topology allows no coarser mesh";
+}
+
+// A level with so many triangles or more is not worth its error: at four times the tolerance there
+// should be a third fewer. Else what is left is needed for the topology.
+std::size_t tooMany(const Target& target, const Lod& before) {
+  const std::size_t most = before.mesh.triangleCount();
+  if (target.triangles > 0 || !(before.tolerance > 0)) return most;
+  const double ratio = std::min(target.tolerance / before.tolerance, kMostRatio);
+  return static_cast<std::size_t>(
+      std::ceil(static_cast<double>(most) * std::pow(ratio, kLeastSlope)));
 }
 
 void setBounds(LodChain& chain) {
@@ -140,7 +155,9 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
     job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
     const Target& target = targets[i];
-    const certify::AdaptOptions how{contour.repair ? &repair : nullptr, collapses, target.triangles,
+    const std::size_t most = i > 0 ? tooMany(target, chain.levels.back()) : 0;
+    const certify::Goal goal{target.triangles, target.triangles > 0 ? 0 : most};
+    const certify::AdaptOptions how{contour.repair ? &repair : nullptr, collapses, goal,
                                     options.allowTopologyChange};
     rule.tolerance = target.triangles > 0 && i > 0 ? rule.tolerance : target.tolerance;
     certify::AdaptiveMesh adaptive = i > 0 && collapses
@@ -148,7 +165,7 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
                                          : adapt(base, forest, rule, how, job, &kept);
     rule.tolerance = adaptive.tolerance;
     const std::size_t triangles = adaptive.mesh.triangleCount();
-    const bool coarser = i == 0 || triangles < chain.levels.back().mesh.triangleCount();
+    const bool coarser = i == 0 || triangles < most;
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
       chain.stopped = stopOf(i, target, triangles);
       break;

@@ -20,6 +20,8 @@ using openvdb::Vec3d;
 constexpr double kLengthShare = 1e-4;
 // Cosine of the angle up to which a sample's normal and a triangle's belong to one side.
 constexpr double kOneSide = 0.9;
+// Edges are collapsed with this share of the freedom first: what would cost more waits.
+constexpr double kFirstFreedom = 0.4;
 // Freedom for a number of triangles grows by this factor at a time, by the larger one where that
 // gave less than this share of the triangles, up to so much.
 constexpr double kLooser = 1.25;
@@ -55,6 +57,7 @@ class Collapser {
       attachFrom(0);
     }
     if (bounds_.onlyRepeat) return;
+    if (bounds_.before == nullptr && bounds_.triangles == 0) looseness_ = kFirstFreedom;
     for (bool anew = bounds_.before == nullptr;; anew = true) {
       const std::size_t start = mesh_.triangleCount();
       tooFar_ = false;
@@ -70,7 +73,12 @@ class Collapser {
         if (canCollapse(edge, reach)) apply(edge, reach);
       }
       const std::size_t left = mesh_.triangleCount();
-      if (left <= bounds_.triangles || bounds_.triangles == 0) return;
+      if (bounds_.triangles == 0) {
+        if (looseness_ >= 1) return;
+        looseness_ = 1;
+        continue;
+      }
+      if (left <= bounds_.triangles) return;
       if (anew && !tooFar_) return;  // more freedom is of no use
       const bool little = static_cast<double>(start - left) < kLittle * static_cast<double>(start);
       looseness_ *= anew && little ? kMuchLooser : kLooser;
