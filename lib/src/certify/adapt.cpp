@@ -18,6 +18,9 @@ constexpr int kMostSteps = 12;
 constexpr double kFirstTolerance = 0.1;
 constexpr double kFirstShare = 0.25;
 constexpr double kLeastTolerance = 0.01;
+// Cells along creases need far more triangles than collapsed edges: a cut at more than this is
+// worse than what comes of collapsing a finer one.
+constexpr double kMostTolerance = 0.25;
 // Components are left out for a number of triangles up to so many times the size of the smallest.
 constexpr double kDropStep = 2;
 
@@ -169,7 +172,8 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
   cut::CutRule cutRule = rule, last = rule;
   if (options.simplify) cutRule.tolerance *= kCutShare;
   if (options.simplify && options.goal.triangles > 0) {
-    cutRule.tolerance = toleranceFor(options.goal.triangles, forest, base.topology, rule, job);
+    cutRule.tolerance = std::min(
+        kMostTolerance, toleranceFor(options.goal.triangles, forest, base.topology, rule, job));
     last.tolerance = std::max(kFirstShare * cutRule.tolerance, kLeastTolerance);
   }
   Certifier<TreeT> certifier(base, forest.levels[0], cutRule, job);
