@@ -33,6 +33,7 @@ struct ChunkOptions {
 /// A curve in which the surface passes a face of a chunk, as one level of the chunk has it. The
 /// uniform mesh divides it into short arcs, the same on both sides of the face and at every level.
 struct ChunkSeam {
+  /// What `begin` and `end` are where there is no such vertex.
   static constexpr VertexIndex kNone = std::numeric_limits<VertexIndex>::max();
 
   /// For each arc the vertex inside the chunk that stands for it. From arc to arc the chunk's

@@ -14,4 +14,14 @@ namespace tufa {
 /// Error with ErrorCode::Cancelled and frees everything it holds.
 using Progress = std::function<bool(std::string_view stage, double fraction)>;
 
+/// A Progress that asks an interrupter as OpenVDB's own tools take it, such as
+/// openvdb::util::NullInterrupter and what programs derive from it: any type with
+/// `bool wasInterrupted(int percent)`. The interrupter must live as long as the call.
+template <class Interrupter>
+[[nodiscard]] Progress progressOf(Interrupter& interrupter) {
+  return [&interrupter](std::string_view /*stage*/, double fraction) {
+    return !interrupter.wasInterrupted(static_cast<int>(100 * fraction));
+  };
+}
+
 }  // namespace tufa

@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
 #include <tufa/error.h>
@@ -62,14 +63,19 @@ void Job::look(std::size_t done, std::size_t count) {
 }
 
 void Job::forRanges(std::size_t count, std::size_t grain, const RangeBody& body) {
+  // TBB would hand out a few large ranges, and nobody would ask in between whether to stop.
+  constexpr std::size_t kMostRanges = 2048;
+  const std::size_t size = std::max(grain, (count + kMostRanges - 1) / kMostRanges);
   std::atomic<std::size_t> done{0};
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      if (cancelled_.load(std::memory_order_relaxed)) return;
-                      body(range.begin(), range.end());
-                      done.fetch_add(range.size(), std::memory_order_relaxed);
-                      if (std::this_thread::get_id() == caller_) report(done, count);
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, size),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        if (cancelled_.load(std::memory_order_relaxed)) return;
+        body(range.begin(), range.end());
+        done.fetch_add(range.size(), std::memory_order_relaxed);
+        if (std::this_thread::get_id() == caller_) report(done, count);
+      },
+      tbb::simple_partitioner());
 }
 
 }  // namespace tufa::base

@@ -63,6 +63,21 @@ void requireScalar(const openvdb::GridBase& grid) {
   }
 }
 
+void requireCoordinates(const openvdb::GridBase& grid) {
+  // Cells and nodes of the tree reach that far beyond the data at most.
+  constexpr std::int64_t kMargin = 4096;
+  constexpr std::int64_t kEnd = std::int64_t{1} << 31;
+  openvdb::CoordBBox box;
+  if (!grid.constBaseTree().evalLeafBoundingBox(box)) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min()[axis] >= kMargin - kEnd && box.max()[axis] < kEnd - kMargin) continue;
+    throw Error(ErrorCode::LimitExceeded,
+                "grid \"" + grid.getName() + "\" has coordinates from " +
+                    std::to_string(box.min()[axis]) + " to " + std::to_string(box.max()[axis]) +
+                    ", too near to the ends of 32-bit integers; move it towards the origin");
+  }
+}
+
 template <class TreeT>
 Level0<TreeT>::Level0(const openvdb::Grid<TreeT>& grid, const ContourOptions& options,
                       const StageEnds& ends, base::Job& job)

@@ -159,9 +159,10 @@ inline Solution solveOneDirection(const Qef& qef, float halfSize) {
   const Vector x = {c[0] + n[0] * along, c[1] + n[1] * along, c[2] + n[2] * along};
   const int oneDirection = (squared > 0.25F * qef.count * qef.count) &
                            (trace * squared < (1 + static_cast<float>(kFreeShare)) * first);
-  const int inside =
-      (std::abs(x[0]) <= halfSize) & (std::abs(x[1]) <= halfSize) & (std::abs(x[2]) <= halfSize);
-  return {x[0], x[1], x[2], oneDirection, inside};
+  const int insideX = std::abs(x[0]) <= halfSize;
+  const int insideY = std::abs(x[1]) <= halfSize;
+  const int insideZ = std::abs(x[2]) <= halfSize;
+  return {x[0], x[1], x[2], oneDirection, insideX & insideY & insideZ};
 }
 
 // Several problems, number by number.

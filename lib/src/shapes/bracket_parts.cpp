@@ -158,8 +158,8 @@ const Parts& Parts::get() {
     Parts all;
     all.faces = makeFaces();
     all.edges = makeEdges(all.faces);
-    for (const auto& holes : {baseHoles(), uprightHoles(), ribHoles()}) {
-      all.holes.insert(all.holes.end(), holes.begin(), holes.end());
+    for (const auto& group : {baseHoles(), uprightHoles(), ribHoles()}) {
+      all.holes.insert(all.holes.end(), group.begin(), group.end());
     }
     return all;
   }();
