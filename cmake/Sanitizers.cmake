@@ -3,6 +3,7 @@
 add_library(tufa_sanitizers INTERFACE)
 if(TUFA_SANITIZE)
   target_compile_options(tufa_sanitizers INTERFACE
-    -fsanitize=${TUFA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    -fsanitize=${TUFA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    $<$<CXX_COMPILER_ID:Clang>:-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/sanitizers-ignored.txt>)
   target_link_options(tufa_sanitizers INTERFACE -fsanitize=${TUFA_SANITIZE})
 endif()

@@ -1,0 +1,30 @@
+#!/bin/sh
+# Builds the fuzz targets with clang, AddressSanitizer and UndefinedBehaviorSanitizer and runs each of
+# them for some seconds: tools/fuzz.sh SECONDS [TARGET...]
+#
+# What they find new lies in build/fuzz/corpus, an input that breaks a promise in build/fuzz/broken.
+set -eu
+cd "$(dirname "$0")/.."
+
+[ $# -ge 1 ] || {
+  sed -n '2,5s/^# \{0,1\}//p' "$0" >&2
+  exit 2
+}
+seconds=$1
+shift
+cmake --preset fuzz
+cmake --build --preset fuzz --parallel "$(tools/jobs.sh)"
+
+[ $# -gt 0 ] || set -- $(ls tests/fuzz/corpus)
+for target in "$@"; do
+  found=build/fuzz/corpus/$target
+  mkdir -p "$found" build/fuzz/broken
+  log=build/fuzz/$target.log
+  build/fuzz/bin/fuzz_"$target" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=60 \
+    -print_final_stats=1 -artifact_prefix=build/fuzz/broken/"$target"- \
+    "$found" tests/fuzz/corpus/"$target" >"$log" 2>&1 || {
+    tail -n 40 "$log" >&2
+    exit 1
+  }
+  printf '%s: %s executions\n' "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")"
+done
