@@ -19,7 +19,7 @@ for folder in "$corpus"/read_*; do
   check bin/fuzz_"${folder##*/}" "$folder"
 done
 check bin/fuzz_contour "$corpus"/contour
-check bin/stages_test --gtest_filter=Blocks*:Isovalue*:Ambiguity*:CaseTable*:Crease*:Crossings*:Qef*:PlaceVertices*
+check bin/stages_test --gtest_filter="Blocks*:Isovalue*:Ambiguity*:CaseTable*:Crease*:Crossings*:Qef*:PlaceVertices*"
 check bin/io_test
 check bin/simplify_test
 check bin/chunk_parts_test
