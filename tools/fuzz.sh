@@ -15,12 +15,13 @@ shift
 cmake --preset fuzz
 cmake --build --preset fuzz --parallel "$(tools/jobs.sh)"
 
+export LSAN_OPTIONS=suppressions=tests/lsan.supp:print_suppressions=0
 [ $# -gt 0 ] || set -- $(ls tests/fuzz/corpus)
 for target in "$@"; do
   found=build/fuzz/corpus/$target
   mkdir -p "$found" build/fuzz/broken
   log=build/fuzz/$target.log
-  build/fuzz/bin/fuzz_"$target" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=60 \
+  build/fuzz/bin/fuzz_"$target" -seed=1 -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=60 \
     -print_final_stats=1 -artifact_prefix=build/fuzz/broken/"$target"- \
     "$found" tests/fuzz/corpus/"$target" >"$log" 2>&1 || {
     tail -n 40 "$log" >&2
