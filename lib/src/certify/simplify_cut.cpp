@@ -30,14 +30,15 @@ Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
 // The planes of the base vertices that each vertex stands for, seen from it.
 template <class TreeT>
-std::vector<simplify::PlaneSum> gatherPlanes(const forest::Base<TreeT>& base,
-                                             const Measured& mesh) {
+std::vector<simplify::PlaneSum> gatherPlanes(const forest::Base<TreeT>& base, const Measured& mesh,
+                                             base::Job& job) {
   std::vector<simplify::PlaneSum> planes(mesh.cut.clusters.size());
   const auto add = [&](VertexIndex to, const Vec3d& offset, const Normal& n) {
     const Vec3d normal(n.x, n.y, n.z);
     if (normal.lengthSqr() > 0) planes[to].addPlane(offset, normal);
   };
   for (std::size_t i = 0; i < base.mesh.positions.size(); ++i) {
+    job.lookAtTimes(i);
     const auto vertex = static_cast<VertexIndex>(i);
     const VertexIndex to = mesh.cut.vertexOf[i];
     const Vec3d offset = vectorOf(base.mesh.positions[i]) - vectorOf(mesh.made.mesh.positions[to]);
@@ -63,7 +64,8 @@ std::vector<simplify::PlaneSum> gatherPlanes(const forest::Base<TreeT>& base,
 template <class TreeT>
 class Samples {
  public:
-  Samples(const forest::Base<TreeT>& base, const Measured& mesh) : base_(base), mesh_(mesh) {
+  Samples(const forest::Base<TreeT>& base, const Measured& mesh, base::Job& job)
+      : base_(base), mesh_(mesh) {
     const Mesh& own = mesh.made.mesh;
     polygonOf_.assign(own.positions.size(), forest::kNone);
     std::uint32_t polygon = 0;
@@ -77,7 +79,7 @@ class Samples {
     for (std::size_t i = 0; i < own.triangles.size(); ++i) {
       take(own.triangles[i].vertices, mesh.made.triangleSources[i]);
     }
-    addNearest();
+    addNearest(job);
   }
 
   /// Adds a point by its number in Deviation::farPoints.
@@ -103,11 +105,12 @@ class Samples {
     samples_.push_back({base_.mesh.positions[vertex], base_.mesh.normals[vertex],
                         polygonOf_[mesh_.cut.vertexOf[vertex]]});
   }
-  void addNearest() {
+  void addNearest(base::Job& job) {
     const Mesh& own = mesh_.made.mesh;
     std::vector<VertexIndex> nearest(own.positions.size());
     std::vector<double> least(own.positions.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < base_.mesh.positions.size(); ++i) {
+      job.lookAtTimes(i);
       const VertexIndex to = mesh_.cut.vertexOf[i];
       const double squared =
           (vectorOf(base_.mesh.positions[i]) - vectorOf(own.positions[to])).lengthSqr();
@@ -232,11 +235,12 @@ bool stiffen(const simplify::Collapsed& collapsed, const std::vector<std::uint8_
 }
 
 // The mesh after a collapse of `from`, told in the terms of the base mesh.
-Measured compose(const Measured& from, const simplify::Collapsed& collapsed) {
+Measured compose(const Measured& from, const simplify::Collapsed& collapsed, base::Job& job) {
   Measured mesh;
   const std::vector<VertexIndex>& vertexOf = collapsed.vertexOf;
   mesh.cut.vertexOf.resize(from.cut.vertexOf.size());
   for (std::size_t i = 0; i < from.cut.vertexOf.size(); ++i) {
+    job.lookAtTimes(i);
     mesh.cut.vertexOf[i] = vertexOf[from.cut.vertexOf[i]];
   }
   mesh.cut.clusters.resize(collapsed.mesh.positions.size());
@@ -286,8 +290,8 @@ template <class TreeT>
 Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut::CutRule& rule,
                      const Goal& goal, const Repair* repair, Certifier<TreeT>& certifier,
                      base::Job& job) {
-  const std::vector<simplify::PlaneSum> planes = gatherPlanes(base, mesh);
-  Samples<TreeT> samples(base, mesh);
+  const std::vector<simplify::PlaneSum> planes = gatherPlanes(base, mesh, job);
+  Samples<TreeT> samples(base, mesh, job);
   simplify::Bounds bounds;
   bounds.distance = [&certifier](const Vec3d& point, const Vec3d& normal, double enough) {
     return certifier.distanceToBase(point, normal, enough);
@@ -311,7 +315,7 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     collapsed = std::move(next);
     rule.tolerance = tolerance * collapsed.looseness;
     certifier.setRule(rule);
-    result = compose(mesh, collapsed);
+    result = compose(mesh, collapsed, job);
     const std::size_t count = result.made.mesh.triangleCount();
     if (round == 1 && goal.giveUp > 0 && count >= goal.giveUp) return result;
     mendAndMeasure(certifier, repair, result, job, fresh);

@@ -150,7 +150,10 @@ class TopologyBuilder {
       }
     });
     topology_.surfaceBlockOf.assign(blocks_.count(), kNoSurfaceBlock);
+    topology_.blocks.reserve(
+        static_cast<std::size_t>(std::count(found.begin(), found.end(), std::uint8_t{1})));
     for (std::size_t i = 0; i < blocks_.count(); ++i) {
+      job_.lookAtTimes(i);
       if (found[i] == 0) continue;
       topology_.surfaceBlockOf[i] = static_cast<SurfaceBlockIndex>(topology_.blocks.size());
       topology_.blocks.emplace_back();

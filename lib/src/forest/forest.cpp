@@ -36,6 +36,7 @@ LevelPatches buildBlocks(const Base<TreeT>& base, std::vector<BlockForest>& bloc
   });
   top.level.first.reserve(count + 1);
   for (std::uint32_t i = 0; i < count; ++i) {
+    job.lookAtTimes(i);
     const auto first = static_cast<std::uint32_t>(top.level.clusters.size());
     top.level.first.push_back(first);
     top.level.indices.emplace(top.level.cells[i], i);
