@@ -13,7 +13,7 @@ namespace tufa::certify {
 struct AdaptOptions {
   const Repair* repair = nullptr;  ///< take self-intersections out; null: leave them
   bool simplify = false;           ///< collapse edges of the cut's mesh, see simplifyCut()
-  Goal goal;                       ///< how far edges are collapsed
+  Goal goal = {};                  ///< how far edges are collapsed
   /// Leave out components smaller than the tolerance, see dropComponents(); of a number of
   /// triangles that cannot be met else, larger ones, too, the smallest first.
   bool drop = false;
