@@ -9,7 +9,7 @@ packages="ca-certificates cmake g++ git ninja-build
   libcli11-dev nlohmann-json3-dev libpng-dev libgtest-dev"
 case "${1:-}" in
   "") ;;
-  gate) packages="$packages clang clang-format doxygen" ;;
+  gate) packages="$packages clang clang-format doxygen libclang-rt-dev" ;;
   *)
     echo "usage: $0 [gate]" >&2
     exit 2
