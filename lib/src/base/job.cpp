@@ -1,10 +1,5 @@
 #include "base/job.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-#include <tbb/task_arena.h>
-
 #include <tufa/error.h>
 #include <algorithm>
 #include <utility>
@@ -18,14 +13,7 @@ Job::Job(int threads, Progress progress) : threads_(threads), progress_(std::mov
   }
 }
 
-void Job::run(const std::function<void()>& work) {
-  if (threads_ == 0) {
-    work();
-    return;
-  }
-  tbb::task_arena arena(threads_);
-  arena.execute(work);
-}
+void Job::run(const std::function<void()>& work) { runWithThreads(threads_, work); }
 
 void Job::closeStage() {
   if (times_.empty()) return;
@@ -67,15 +55,12 @@ void Job::forRanges(std::size_t count, std::size_t grain, const RangeBody& body)
   constexpr std::size_t kMostRanges = 2048;
   const std::size_t size = std::max(grain, (count + kMostRanges - 1) / kMostRanges);
   std::atomic<std::size_t> done{0};
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, count, size),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        if (cancelled_.load(std::memory_order_relaxed)) return;
-        body(range.begin(), range.end());
-        done.fetch_add(range.size(), std::memory_order_relaxed);
-        if (std::this_thread::get_id() == caller_) report(done, count);
-      },
-      tbb::simple_partitioner());
+  runRanges(count, size, [&](std::size_t begin, std::size_t end) {
+    if (cancelled_.load(std::memory_order_relaxed)) return;
+    body(begin, end);
+    done.fetch_add(end - begin, std::memory_order_relaxed);
+    if (std::this_thread::get_id() == caller_) report(done, count);
+  });
 }
 
 }  // namespace tufa::base

@@ -10,16 +10,16 @@
 #include <thread>
 #include <vector>
 
+#include "base/parallel.h"
+
 namespace tufa::base {
 
-/// One long call: its threads, its progress and its stage times. The only door to TBB.
+/// One long call: its threads, its progress and its stage times.
 ///
 /// Loops hand out index ranges; bodies write to places of their own only, so that results do not
 /// depend on the number of threads.
 class Job {
  public:
-  using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
-
   /// At most `threads` threads, 0: as many as the caller's arena has. `progress` may be empty.
   Job(int threads, Progress progress);
 

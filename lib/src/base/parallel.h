@@ -1,23 +1,38 @@
 #pragma once
 
-#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
 
-#include <utility>
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+
+// The only door to TBB. What the functions promise of memory: a task sees what its caller did
+// before, and after the call the caller sees what the tasks did.
 
 namespace tufa::base {
+
+using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
+
+/// Runs `work` with at most `threads` threads, 0: as many as the caller's arena has.
+void runWithThreads(int threads, const std::function<void()>& work);
+
+/// Calls body(begin, end) over disjoint ranges that cover [0, count), in parallel, each of at most
+/// `size` indices.
+void runRanges(std::size_t count, std::size_t size, const RangeBody& body);
+
+/// Runs both, at the same time where there is a thread to spare.
+void runBoth(const std::function<void()>& first, const std::function<void()>& second);
 
 /// Sorts a random access range. No two elements may be equivalent, else their order could depend on
 /// the number of threads.
 template <class Iterator, class Less>
 void parallelSort(Iterator begin, Iterator end, const Less& less) {
+#ifdef TUFA_THREAD_SANITIZER
+  // It would see half of TBB's sort, the half in headers.
+  std::sort(begin, end, less);
+#else
   tbb::parallel_sort(begin, end, less);
-}
-
-/// Runs both, at the same time where there is a thread to spare.
-template <class First, class Second>
-void runBoth(First&& first, Second&& second) {
-  tbb::parallel_invoke(std::forward<First>(first), std::forward<Second>(second));
+#endif
 }
 
 }  // namespace tufa::base

@@ -1,0 +1,97 @@
+#include "base/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#ifdef TUFA_THREAD_SANITIZER
+extern "C" {
+void __tsan_acquire(void* address);
+void __tsan_release(void* address);
+}
+#endif
+
+namespace tufa::base {
+namespace {
+
+#ifdef TUFA_THREAD_SANITIZER
+
+/// One call that hands tasks out. ThreadSanitizer does not see into TBB, whose library is built
+/// without it; so this file is as well, and this class tells it what TBB promises. It tells no
+/// more: two tasks of one call stay without any order.
+class HandOver {
+ public:
+  HandOver() { __tsan_release(&begun_); }
+  ~HandOver() { __tsan_acquire(&ended_); }
+  HandOver(const HandOver&) = delete;
+  HandOver& operator=(const HandOver&) = delete;
+
+  /// One task of the call. To live for as long as it runs, also where it throws.
+  class Task {
+   public:
+    explicit Task(HandOver& call) : call_(call) { __tsan_acquire(&call.begun_); }
+    ~Task() { __tsan_release(&call_.ended_); }
+    Task(const Task&) = delete;
+    Task& operator=(const Task&) = delete;
+
+   private:
+    HandOver& call_;
+  };
+
+ private:
+  char begun_ = 0;
+  char ended_ = 0;
+};
+
+#else
+
+struct HandOver {
+  struct Task {
+    explicit Task(const HandOver&) {}
+  };
+};
+
+#endif
+
+}  // namespace
+
+void runWithThreads(int threads, const std::function<void()>& work) {
+  if (threads == 0) {
+    work();
+    return;
+  }
+  HandOver call;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    const HandOver::Task task(call);
+    work();
+  });
+}
+
+void runRanges(std::size_t count, std::size_t size, const RangeBody& body) {
+  HandOver call;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count, size),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        const HandOver::Task task(call);
+        body(range.begin(), range.end());
+      },
+      tbb::simple_partitioner());
+}
+
+void runBoth(const std::function<void()>& first, const std::function<void()>& second) {
+  HandOver call;
+  tbb::parallel_invoke(
+      [&] {
+        const HandOver::Task task(call);
+        first();
+      },
+      [&] {
+        const HandOver::Task task(call);
+        second();
+      });
+}
+
+}  // namespace tufa::base
