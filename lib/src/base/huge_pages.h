@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
+
+#include "base/job.h"
 
 namespace tufa::base {
 
@@ -10,12 +13,23 @@ namespace tufa::base {
 /// request.
 void adviseHugePages(void* begin, std::size_t bytes);
 
-/// Sizes a vector whose elements a parallel loop will write for the first time.
+/// Room for so many elements, written for the first time one after another.
 template <class T>
-void resizeLarge(std::vector<T>& vector, std::size_t count) {
+void reserveLarge(std::vector<T>& vector, std::size_t count) {
   vector.reserve(count);
   adviseHugePages(vector.data(), count * sizeof(T));
-  vector.resize(count);
+}
+
+/// Sizes a vector whose elements a parallel loop will write for the first time. Clearing much
+/// memory takes long: looks in between whether to stop.
+template <class T>
+void resizeLarge(std::vector<T>& vector, std::size_t count, Job& job) {
+  constexpr std::size_t kAtOnce = (std::size_t{4} << 20) / sizeof(T) + 1;
+  reserveLarge(vector, count);
+  while (vector.size() < count) {
+    vector.resize(std::min(count, vector.size() + kAtOnce));
+    job.look(0, 1);
+  }
 }
 
 }  // namespace tufa::base

@@ -52,7 +52,7 @@ void BlockPlaces<TreeT>::build(const TreeT& tree, const IsoChoice& iso, base::Jo
   }
   regionTable_.build(origins);
   looseTable_.build({});
-  base::resizeLarge(places_, regions.size() * Region::NUM_VALUES);
+  base::resizeLarge(places_, regions.size() * Region::NUM_VALUES, job);
   job.forRanges(regions.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       BlockRef* places = &places_[i * Region::NUM_VALUES];

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/bits.h"
+#include "base/huge_pages.h"
 #include "blocks/tile_contacts.h"
 
 namespace tufa::blocks {
@@ -65,15 +66,15 @@ Blocks<TreeT>::Blocks(const TreeT& tree, const IsoChoice& iso, NonFinite nonFini
     : tree_(&tree), iso_(iso) {
   std::vector<const Leaf*> leaves;
   tree.getNodes(leaves);
-  origins_.resize(leaves.size());
-  values_.resize(leaves.size());
-  masks_.resize(leaves.size());
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    origins_[i] = leaves[i]->origin();
-    masks_[i] = &leaves[i]->getValueMask();
-  }
+  base::resizeLarge(origins_, leaves.size(), job);
+  base::resizeLarge(values_, leaves.size(), job);
+  base::resizeLarge(masks_, leaves.size(), job);
   job.forRanges(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) values_[i] = leaves[i]->buffer().data();
+    for (std::size_t i = begin; i < end; ++i) {
+      origins_[i] = leaves[i]->origin();
+      masks_[i] = &leaves[i]->getValueMask();
+      values_[i] = leaves[i]->buffer().data();
+    }
   });
   readSigns(job);
   readTiles();
@@ -108,7 +109,7 @@ std::uint64_t Blocks<TreeT>::active(BlockRef block, int x) const {
 
 template <class TreeT>
 void Blocks<TreeT>::readSigns(base::Job& job) {
-  inside_.resize(values_.size());
+  base::resizeLarge(inside_, values_.size(), job);
   const Value limit = threshold<Value>(iso_);
   std::mutex mutex;
   std::size_t firstBad = values_.size();

@@ -1,8 +1,10 @@
 #include "components/topology.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "base/bits.h"
+#include "base/huge_pages.h"
 #include "blocks/samples.h"
 #include "components/ambiguity.h"
 
@@ -137,9 +139,11 @@ class TopologyBuilder {
 
  private:
   using Accessor = typename blocks::Blocks<TreeT>::Accessor;
+  using Cuts = std::array<BlockBits, 3>;  ///< the cut edges of a block along each axis
 
   void findSurfaceBlocks() {
-    std::vector<BlockBits> cells(blocks_.count());
+    std::vector<BlockBits> cells;
+    base::resizeLarge(cells, blocks_.count(), job_);
     std::vector<std::uint8_t> found(blocks_.count());
     job_.forRanges(blocks_.count(), 64, [&](std::size_t begin, std::size_t end) {
       Accessor accessor(blocks_.tree());
@@ -150,8 +154,8 @@ class TopologyBuilder {
       }
     });
     topology_.surfaceBlockOf.assign(blocks_.count(), kNoSurfaceBlock);
-    topology_.blocks.reserve(
-        static_cast<std::size_t>(std::count(found.begin(), found.end(), std::uint8_t{1})));
+    base::reserveLarge(topology_.blocks, static_cast<std::size_t>(std::count(
+                                             found.begin(), found.end(), std::uint8_t{1})));
     for (std::size_t i = 0; i < blocks_.count(); ++i) {
       job_.lookAtTimes(i);
       if (found[i] == 0) continue;
@@ -187,17 +191,22 @@ class TopologyBuilder {
   void chooseSpecialBlocks(bool dataEnds, bool blocksEnd) {
     const bool cut = dataEnds || blocksEnd;
     const std::size_t count = topology_.blocks.size();
-    std::vector<std::array<BlockBits, 3>> cuts(cut ? count : 0);
+    std::vector<std::unique_ptr<Cuts>> cuts(cut ? count : 0);  // most blocks have none
     std::vector<std::uint8_t> special(count, 0);
     std::vector<std::uint8_t> hasCut(cut ? count : 0, 0);
     forBlocks([&](SurfaceBlock& block, std::size_t i, Accessor& accessor) {
       const CornerWords corners = blocks_.cornerWords(block.neighbours);
       block.quadCount = countCrossedEdges(corners);
       special[i] = mayHaveSeveralComponents(corners) ? 1 : 0;
-      if (dataEnds && findCutEdges(block, corners, accessor, cuts[i])) hasCut[i] = 1;
-      if (blocksEnd && cutAtMissing(block, corners, cuts[i])) hasCut[i] = 1;
+      Cuts own{};
+      bool any = dataEnds && findCutEdges(block, corners, accessor, own);
+      any |= blocksEnd && cutAtMissing(block, corners, own);
+      if (!any) return;
+      hasCut[i] = 1;
+      cuts[i] = std::make_unique<Cuts>(own);
     });
     for (std::size_t i = 0; i < count; ++i) {
+      job_.lookAtTimes(i);
       SurfaceBlock& block = topology_.blocks[i];
       for (int corner = 0; cut && corner < kCorners; ++corner) {
         const SurfaceBlockIndex above =
@@ -207,9 +216,9 @@ class TopologyBuilder {
       if (special[i] == 0) continue;
       block.special = static_cast<std::int32_t>(topology_.specials.size());
       topology_.specials.emplace_back();
-      if (!cut) continue;
-      topology_.specials.back().cut = cuts[i];
-      for (const BlockBits& bits : cuts[i]) {
+      if (!cut || cuts[i] == nullptr) continue;
+      topology_.specials.back().cut = *cuts[i];
+      for (const BlockBits& bits : *cuts[i]) {
         topology_.cutEdges += countAll(bits);
         block.quadCount -= static_cast<std::uint32_t>(countAll(bits));
       }

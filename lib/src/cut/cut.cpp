@@ -1,6 +1,6 @@
 #include "cut/cut.h"
 
-#include "base/bits.h"
+#include "base/huge_pages.h"
 
 namespace tufa::cut {
 
@@ -26,7 +26,8 @@ class Numbering {
     for (std::size_t i = 0; i < count; ++i) first[i + 1] += first[i];
     cut_.clusters.resize(first[count]);
     numberUpper();
-    cut_.vertexOf.resize(topology_.vertexCount);
+    job_.look(0, 1);
+    base::resizeLarge(cut_.vertexOf, topology_.vertexCount, job_);
     forBlocks([&](std::size_t i) { numberBlock(i, first[i]); });
     return std::move(cut_);
   }

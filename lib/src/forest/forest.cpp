@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/huge_pages.h"
 #include "forest/block_forest.h"
 #include "forest/upper_levels.h"
 
@@ -22,8 +23,9 @@ LevelPatches buildBlocks(const Base<TreeT>& base, std::vector<BlockForest>& bloc
   LevelPatches top;
   top.level.safe.resize(count);
   top.level.cells.resize(count);
-  std::vector<BlockTop> tops(count);
-  blocks.resize(count);
+  std::vector<BlockTop> tops;
+  base::resizeLarge(tops, count, job);
+  base::resizeLarge(blocks, count, job);
   job.forRanges(count, 32, [&](std::size_t begin, std::size_t end) {
     BlockForestBuilder<TreeT> builder(base);
     for (std::size_t i = begin; i < end; ++i) {
@@ -35,6 +37,12 @@ LevelPatches buildBlocks(const Base<TreeT>& base, std::vector<BlockForest>& bloc
     }
   });
   top.level.first.reserve(count + 1);
+  std::size_t clusters = 0;
+  for (const BlockTop& own : tops) clusters += own.clusters.size();
+  base::reserveLarge(top.level.clusters, clusters);
+  base::reserveLarge(top.patches, clusters);
+  job.look(0, 1);
+  top.level.indices.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     job.lookAtTimes(i);
     const auto first = static_cast<std::uint32_t>(top.level.clusters.size());

@@ -51,10 +51,11 @@ Outcome tryCell(const LevelPatches& below, const ChildCells& cells, const base::
 }
 
 // The cells above those of a level, in the order of their first child, and their children.
-std::vector<ChildCells> findCells(Level& below, Level& above) {
+std::vector<ChildCells> findCells(Level& below, Level& above, base::Job& job) {
   std::vector<ChildCells> children;
   below.parentCells.resize(below.cells.size());
   for (std::uint32_t i = 0; i < below.cells.size(); ++i) {
+    job.lookAtTimes(i);
     const openvdb::Coord& cell = below.cells[i];
     const openvdb::Coord parent(cell[0] >> 1, cell[1] >> 1, cell[2] >> 1);
     const auto [entry, fresh] =
@@ -75,7 +76,7 @@ LevelPatches buildLevelAbove(LevelPatches& below, const base::Affine& affine, ba
   LevelPatches above;
   Level& level = above.level;
   level.level = below.level.level + 1;
-  const std::vector<ChildCells> children = findCells(below.level, level);
+  const std::vector<ChildCells> children = findCells(below.level, level, job);
   std::vector<Outcome> outcomes(level.cells.size());
   job.forRanges(outcomes.size(), 16, [&](std::size_t begin, std::size_t end) {
     PatchJoiner joiner;
@@ -87,6 +88,7 @@ LevelPatches buildLevelAbove(LevelPatches& below, const base::Affine& affine, ba
   level.first.reserve(outcomes.size() + 1);
   level.first.push_back(0);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    job.lookAtTimes(i);
     Outcome& outcome = outcomes[i];
     level.safe[i] = outcome.safe ? 1 : 0;
     const auto first = static_cast<std::uint32_t>(level.clusters.size());

@@ -145,7 +145,7 @@ mend::Source Level0<TreeT>::source(base::Job& job) const {
 
 template <class TreeT>
 void Level0<TreeT>::repair(base::Job& job) {
-  report_.movedVertices = unfoldLonePieces(mesh_, source(job));
+  report_.movedVertices = unfoldLonePieces(mesh_, source(job), job);
   // Rounding moves each of two polygons.
   const double margin = 2 * kMostRounding * affine_.leastHeight();
   suspects_ = polygons::findSuspects(quads(), mesh_, margin, job);

@@ -17,15 +17,17 @@ constexpr std::size_t kSides = 6;
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
 // The quads of which all vertices have three quads.
-std::vector<std::uint32_t> findCandidates(const Mesh& mesh) {
+std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
   std::vector<std::uint8_t> quadsAt(mesh.positions.size());
-  for (const Quad& quad : mesh.quads) {
-    for (const VertexIndex vertex : quad.vertices) {
+  for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+    job.lookAtTimes(i);
+    for (const VertexIndex vertex : mesh.quads[i].vertices) {
       quadsAt[vertex] = static_cast<std::uint8_t>(std::min<int>(quadsAt[vertex] + 1, kThree + 1));
     }
   }
   std::vector<std::uint32_t> candidates;
   for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
+    job.lookAtTimes(i);
     const auto& v = mesh.quads[i].vertices;
     if (std::all_of(v.begin(), v.end(), [&](VertexIndex at) { return quadsAt[at] == kThree; })) {
       candidates.push_back(i);
@@ -35,8 +37,8 @@ std::vector<std::uint32_t> findCandidates(const Mesh& mesh) {
 }
 
 // Closed pieces of six quads; each in the order of the mesh.
-std::vector<std::array<std::uint32_t, kSides>> findPieces(const Mesh& mesh) {
-  const std::vector<std::uint32_t> candidates = findCandidates(mesh);
+std::vector<std::array<std::uint32_t, kSides>> findPieces(const Mesh& mesh, base::Job& job) {
+  const std::vector<std::uint32_t> candidates = findCandidates(mesh, job);
   std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around;
   for (const std::uint32_t quad : candidates) {
     for (const VertexIndex vertex : mesh.quads[quad].vertices) around[vertex].push_back(quad);
@@ -74,8 +76,8 @@ double volumeOf(const Mesh& mesh, const std::array<std::uint32_t, kSides>& piece
 
 }  // namespace
 
-std::size_t unfoldLonePieces(Mesh& mesh, const mend::Source& source) {
-  const auto pieces = findPieces(mesh);
+std::size_t unfoldLonePieces(Mesh& mesh, const mend::Source& source, base::Job& job) {
+  const auto pieces = findPieces(mesh, job);
   std::vector<VertexIndex> vertices;
   for (const auto& piece : pieces) {
     for (const std::uint32_t quad : piece) {

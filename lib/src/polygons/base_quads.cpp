@@ -148,7 +148,7 @@ LatticeCrossing crossingOf(const QuadContext<TreeT>& context, const SurfaceBlock
 template <class TreeT>
 void connectQuads(const QuadContext<TreeT>& context, Mesh& mesh, base::Job& job) {
   const Topology& topology = context.topology;
-  base::resizeLarge(mesh.quads, topology.quadCount);
+  base::resizeLarge(mesh.quads, topology.quadCount, job);
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     VertexTable<TreeT> table(context.blocks, topology);
     for (std::size_t i = begin; i < end; ++i) {

@@ -29,8 +29,8 @@ creases::VertexSides placeVertices(const blocks::Blocks<TreeT>& blocks,
                                    bool normals, Mesh& mesh, base::Job& job) {
   creases::VertexSides sides(topology.vertexCount);
   std::mutex mutex;
-  base::resizeLarge(mesh.positions, topology.vertexCount);
-  if (normals) base::resizeLarge(mesh.normals, topology.vertexCount);
+  base::resizeLarge(mesh.positions, topology.vertexCount, job);
+  if (normals) base::resizeLarge(mesh.normals, topology.vertexCount, job);
   job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
     typename blocks::Blocks<TreeT>::Accessor accessor(blocks.tree());
     BlockVertices work(scale);

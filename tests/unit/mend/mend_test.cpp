@@ -187,7 +187,8 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   ASSERT_EQ(good.quads.size(), 12U);
   Mesh mesh = good;
   const mend::Source source = sourceOf(good);
-  EXPECT_EQ(level0::unfoldLonePieces(mesh, source), 0U);
+  base::Job job(0, {});
+  EXPECT_EQ(level0::unfoldLonePieces(mesh, source, job), 0U);
   // One of them mirrored at a plane through it.
   std::size_t mirrored = 0;
   for (Position& p : mesh.positions) {
@@ -197,7 +198,7 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   }
   ASSERT_EQ(mirrored, 8U);
   EXPECT_FALSE(check(mesh).outward);
-  EXPECT_EQ(level0::unfoldLonePieces(mesh, source), 8U);
+  EXPECT_EQ(level0::unfoldLonePieces(mesh, source, job), 8U);
   EXPECT_EQ(mesh.positions, good.positions);
 }
 
