@@ -32,8 +32,10 @@ Mesh contourGrid(const openvdb::Grid<TreeT>& grid, const ContourOptions& options
     const forest::Forest forest = forest::buildForest(base, rule.maxLevel, job);
     job.beginStage("cut", 0.95);
     const certify::Repair repair{level0.suspects(), level0.source(job)};
-    certify::AdaptiveMesh adaptive = certify::adapt(
-        base, forest, rule, {options.repair ? &repair : nullptr, cut::maySimplify(options)}, job);
+    const certify::BaseSurface<TreeT> surface(base, forest.levels[0], job);
+    certify::AdaptiveMesh adaptive =
+        certify::adapt(base, forest, surface, rule,
+                       {options.repair ? &repair : nullptr, cut::maySimplify(options)}, job);
     report.certificate =
         certify::certificateOf(adaptive, level0.affine().voxelSize(), options.keepLeaves);
     report.intersectionsFound += adaptive.mended.pairsFound;

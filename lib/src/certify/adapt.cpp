@@ -126,19 +126,25 @@ Measured collapseRest(const forest::Base<TreeT>& base, Measured mesh, cut::CutRu
 }
 
 // The share of base vertices and quads that a mesh stands for; the others count as without error.
-double presentShare(const Mesh& base, const cut::Cut& cut, const std::vector<std::uint8_t>& used) {
+double presentShare(const Mesh& base, const cut::Cut& cut, const std::vector<std::uint8_t>& used,
+                    base::Job& job) {
   const auto isUsed = [&](VertexIndex vertex) { return used[cut.vertexOf[vertex]] != 0; };
   std::size_t count = 0;
+  if (std::all_of(used.begin(), used.end(), [](std::uint8_t is) { return is != 0; })) return 1;
   for (std::size_t i = 0; i < base.positions.size(); ++i) {
+    job.lookAtTimes(i);
     count += isUsed(static_cast<VertexIndex>(i)) ? 1 : 0;
   }
-  for (const Quad& quad : base.quads) count += isUsed(quad.vertices[0]) ? 1 : 0;
+  for (std::size_t i = 0; i < base.quads.size(); ++i) {
+    job.lookAtTimes(i);
+    count += isUsed(base.quads[i].vertices[0]) ? 1 : 0;
+  }
   const std::size_t all = base.positions.size() + base.quads.size();
   return count == 0 ? 1.0 : static_cast<double>(count) / static_cast<double>(all);
 }
 
 template <class TreeT>
-AdaptiveMesh finish(const forest::Base<TreeT>& base, const forest::Forest& forest,
+AdaptiveMesh finish(const forest::Base<TreeT>& base, const BaseSurface<TreeT>& surface,
                     const cut::CutRule& rule, Measured mesh, AdaptiveMesh adaptive,
                     base::Job& job) {
   adaptive.tolerance = rule.tolerance;
@@ -147,7 +153,7 @@ AdaptiveMesh finish(const forest::Base<TreeT>& base, const forest::Forest& fores
   if (!mesh.deviation.coarse.empty() || !mesh.deviation.farPoints.empty()) {
     // Cells that may not be split are off by more; what was kept from the meshes before is not in
     // this one's worst.
-    Certifier<TreeT> again(base, forest.levels[0], rule, job);
+    Certifier<TreeT> again(base, surface, rule, job);
     adaptive.largestError = again.measure(mesh.cut, mesh.made, mesh.altered).worst;
   }
   adaptive.mended = std::move(mesh.mended);
@@ -158,7 +164,7 @@ AdaptiveMesh finish(const forest::Base<TreeT>& base, const forest::Forest& fores
                             mesh.made.triangleSources.end());
   adaptive.mesh = std::move(mesh.made.mesh);
   const std::vector<std::uint8_t> used = removeUnused(adaptive.mesh, adaptive.baseVertices);
-  adaptive.meanError /= presentShare(base.mesh, mesh.cut, used);
+  adaptive.meanError /= presentShare(base.mesh, mesh.cut, used, job);
   return adaptive;
 }
 
@@ -166,8 +172,8 @@ AdaptiveMesh finish(const forest::Base<TreeT>& base, const forest::Forest& fores
 
 template <class TreeT>
 AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                   const cut::CutRule& rule, const AdaptOptions& options, base::Job& job,
-                   Measured* kept) {
+                   const BaseSurface<TreeT>& surface, const cut::CutRule& rule,
+                   const AdaptOptions& options, base::Job& job, Measured* kept) {
   AdaptiveMesh adaptive;
   cut::CutRule cutRule = rule, last = rule;
   if (options.simplify) cutRule.tolerance *= kCutShare;
@@ -176,23 +182,23 @@ AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest
         kMostTolerance, toleranceFor(options.goal.triangles, forest, base.topology, rule, job));
     last.tolerance = std::max(kFirstShare * cutRule.tolerance, kLeastTolerance);
   }
-  Certifier<TreeT> certifier(base, forest.levels[0], cutRule, job);
+  Certifier<TreeT> certifier(base, surface, cutRule, job);
   Measured mesh = cutAndMeasure(base, forest, cutRule, options.repair, certifier, adaptive, job);
   mesh = collapseRest(base, std::move(mesh), last, options, certifier, adaptive.dropped, job);
   if (kept != nullptr) *kept = mesh;
-  return finish(base, forest, last, std::move(mesh), std::move(adaptive), job);
+  return finish(base, surface, last, std::move(mesh), std::move(adaptive), job);
 }
 
 template <class TreeT>
-AdaptiveMesh coarsen(const forest::Base<TreeT>& base, const forest::Forest& forest,
+AdaptiveMesh coarsen(const forest::Base<TreeT>& base, const BaseSurface<TreeT>& surface,
                      const cut::CutRule& rule, const AdaptOptions& options, base::Job& job,
                      Measured& kept) {
   AdaptiveMesh adaptive;
   cut::CutRule last = rule;
-  Certifier<TreeT> certifier(base, forest.levels[0], last, job);
+  Certifier<TreeT> certifier(base, surface, last, job);
   kept = collapseRest(base, std::move(kept), last, options, certifier, adaptive.dropped, job);
   adaptive.rounds = 1;
-  return finish(base, forest, last, kept, std::move(adaptive), job);
+  return finish(base, surface, last, kept, std::move(adaptive), job);
 }
 
 Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves) {
@@ -212,12 +218,16 @@ Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLea
 }
 
 template AdaptiveMesh adapt(const forest::Base<openvdb::FloatTree>&, const forest::Forest&,
-                            const cut::CutRule&, const AdaptOptions&, base::Job&, Measured*);
-template AdaptiveMesh coarsen(const forest::Base<openvdb::FloatTree>&, const forest::Forest&,
-                              const cut::CutRule&, const AdaptOptions&, base::Job&, Measured&);
+                            const BaseSurface<openvdb::FloatTree>&, const cut::CutRule&,
+                            const AdaptOptions&, base::Job&, Measured*);
+template AdaptiveMesh coarsen(const forest::Base<openvdb::FloatTree>&,
+                              const BaseSurface<openvdb::FloatTree>&, const cut::CutRule&,
+                              const AdaptOptions&, base::Job&, Measured&);
 template AdaptiveMesh adapt(const forest::Base<openvdb::DoubleTree>&, const forest::Forest&,
-                            const cut::CutRule&, const AdaptOptions&, base::Job&, Measured*);
-template AdaptiveMesh coarsen(const forest::Base<openvdb::DoubleTree>&, const forest::Forest&,
-                              const cut::CutRule&, const AdaptOptions&, base::Job&, Measured&);
+                            const BaseSurface<openvdb::DoubleTree>&, const cut::CutRule&,
+                            const AdaptOptions&, base::Job&, Measured*);
+template AdaptiveMesh coarsen(const forest::Base<openvdb::DoubleTree>&,
+                              const BaseSurface<openvdb::DoubleTree>&, const cut::CutRule&,
+                              const AdaptOptions&, base::Job&, Measured&);
 
 }  // namespace tufa::certify

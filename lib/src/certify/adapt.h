@@ -40,15 +40,16 @@ struct AdaptiveMesh {
 /// on from.
 template <class TreeT>
 [[nodiscard]] AdaptiveMesh adapt(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                                 const cut::CutRule& rule, const AdaptOptions& options,
-                                 base::Job& job, Measured* kept = nullptr);
+                                 const BaseSurface<TreeT>& surface, const cut::CutRule& rule,
+                                 const AdaptOptions& options, base::Job& job,
+                                 Measured* kept = nullptr);
 
 /// Collapses edges of a mesh that keeps a finer rule until this one, or the number of triangles,
 /// allows no more. `kept` is that mesh and becomes the new one. The result tells no leaves.
 template <class TreeT>
-[[nodiscard]] AdaptiveMesh coarsen(const forest::Base<TreeT>& base, const forest::Forest& forest,
-                                   const cut::CutRule& rule, const AdaptOptions& options,
-                                   base::Job& job, Measured& kept);
+[[nodiscard]] AdaptiveMesh coarsen(const forest::Base<TreeT>& base,
+                                   const BaseSurface<TreeT>& surface, const cut::CutRule& rule,
+                                   const AdaptOptions& options, base::Job& job, Measured& kept);
 
 /// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if
 /// they are to be kept.

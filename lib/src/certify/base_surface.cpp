@@ -1,10 +1,13 @@
 #include "certify/base_surface.h"
 
 #include <algorithm>
+#include <array>
+#include <bitset>
 #include <cmath>
 
 #include "base/bits.h"
 #include "base/flat_triangle.h"
+#include "base/huge_pages.h"
 
 namespace tufa::certify {
 
@@ -47,12 +50,34 @@ class BlockCache {
   std::array<Entry, 8> entries_;
 };
 
+// The cells around one, by their distance.
+using Offsets = std::array<std::array<int, 3>, kSide * kSide * kSide>;
+
+Offsets makeOffsets() {
+  Offsets offsets;
+  for (int i = 0; i < kSide * kSide * kSide; ++i) {
+    offsets[i] = {i / (kSide * kSide) - kAround, i / kSide % kSide - kAround, i % kSide - kAround};
+  }
+  const auto squared = [](const std::array<int, 3>& o) {
+    return o[0] * o[0] + o[1] * o[1] + o[2] * o[2];
+  };
+  std::stable_sort(offsets.begin(), offsets.end(),
+                   [&](const auto& a, const auto& b) { return squared(a) < squared(b); });
+  return offsets;
+}
+
+const Offsets& nearestFirst() {
+  static const Offsets offsets = makeOffsets();
+  return offsets;
+}
+
 }  // namespace
 
 template <class TreeT>
 BaseSurface<TreeT>::BaseSurface(const forest::Base<TreeT>& base, const forest::Level& blockCells,
                                 base::Job& job)
-    : base_(base), blockCells_(blockCells), edges_(base.topology.blocks.size()) {
+    : base_(base), blockCells_(blockCells) {
+  base::resizeLarge(edges_, base.topology.blocks.size(), job);
   job.forRanges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = base_.topology.blocks[i];
@@ -98,6 +123,19 @@ void BaseSurface<TreeT>::searchCell(std::uint32_t block, int cell, const Vec3d& 
 }
 
 template <class TreeT>
+typename BaseSurface<TreeT>::Near BaseSurface<TreeT>::vertexInCell(const Vec3d& point,
+                                                                   const Vec3d& facing) const {
+  const Vec3d at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
+  const Coord cell = base_.affine.origin() + Coord::floor(at);
+  const std::uint32_t block = blockCells_.find(Coord(cell[0] >> 3, cell[1] >> 3, cell[2] >> 3));
+  Near near;
+  if (block == forest::kNone) return near;
+  const int local = blocks::cellIndex(cell[0] & 7, cell[1] & 7, cell[2] & 7);
+  if (base_.topology.blocks[block].cells.get(local)) searchCell(block, local, point, facing, near);
+  return near;
+}
+
+template <class TreeT>
 typename BaseSurface<TreeT>::Near BaseSurface<TreeT>::nearestVertex(const Vec3d& point,
                                                                     const Vec3d& facing,
                                                                     int reach) const {
@@ -140,8 +178,9 @@ double BaseSurface<TreeT>::distanceToQuad(const Vec3d& point, std::size_t quad) 
 }
 
 template <class TreeT>
+template <class IsKnown>
 double BaseSurface<TreeT>::distanceAtCell(std::uint32_t cellBlock, int cellNumber,
-                                          const Vec3d& point) const {
+                                          const Vec3d& point, const IsKnown& isKnown) const {
   double best = std::numeric_limits<double>::infinity();
   const std::array<int, 3> cell = {cellNumber >> 6, (cellNumber >> 3) & 7, cellNumber & 7};
   for (int edge = 0; edge < components::kEdges; ++edge) {
@@ -155,7 +194,7 @@ double BaseSurface<TreeT>::distanceAtCell(std::uint32_t cellBlock, int cellNumbe
     }
     const int bit = (y & 7) * 8 + (z & 7);
     const std::uint64_t crossed = edges_[block].crossed[axis][x & 7];
-    if (((crossed >> bit) & 1) == 0) continue;
+    if (((crossed >> bit) & 1) == 0 || isKnown(corner, axis)) continue;
     const std::size_t index =
         base_.topology.blocks[block].firstQuad + edges_[block].before[axis][x & 7] +
         static_cast<std::size_t>(base::countBits(crossed & base::bitsBelow(bit)));
@@ -167,24 +206,52 @@ double BaseSurface<TreeT>::distanceAtCell(std::uint32_t cellBlock, int cellNumbe
 template <class TreeT>
 double BaseSurface<TreeT>::distance(const Vec3d& point, const Vec3d& facing, int reach,
                                     double enough) const {
-  const Near near = nearestVertex(point, facing, reach);
+  const auto distanceAt = [&](const Near& near) {
+    return distanceAtCell(near.block, near.cell, point, [](int, int) { return false; });
+  };
+  // Mostly the surface passes the cell of the point itself.
+  Near near = vertexInCell(point, facing);
+  if (near.block != forest::kNone) {
+    const double own = distanceAt(near);
+    if (own <= enough) return own;
+  }
+  near = nearestVertex(point, facing, reach);
   if (near.block == forest::kNone) return std::numeric_limits<double>::infinity();
-  double best = distanceAtCell(near.block, near.cell, point);
-  if (best <= enough) return best;
+  const double best = distanceAt(near);
   // Beside a crease the nearest polygon may not be at the nearest vertex.
+  return best <= enough ? best : std::min(best, distanceAround(point, facing, enough));
+}
+
+// To the polygons around all vertices near the point that do not face away.
+template <class TreeT>
+double BaseSurface<TreeT>::distanceAround(const Vec3d& point, const Vec3d& facing,
+                                          double enough) const {
+  double best = std::numeric_limits<double>::infinity();
   const Vec3d at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + Coord::floor(at);
   BlockCache blocks(blockCells_);
-  for (int i = 0; i < kSide * kSide * kSide && best > enough; ++i) {
-    const Coord cell = middle.offsetBy(i / (kSide * kSide) - kAround, i / kSide % kSide - kAround,
-                                       i % kSide - kAround);
+  // Polygons lie around up to four of the cells.
+  std::bitset<std::size_t{3} * (kSide + 1) * (kSide + 1) * (kSide + 1)> known;
+  for (const std::array<int, 3>& offset : nearestFirst()) {
+    if (best <= enough) break;
+    const Coord cell = middle.offsetBy(offset[0], offset[1], offset[2]);
     const std::uint32_t block = blocks.at(cell);
     if (block == forest::kNone) continue;
     const int local = blocks::cellIndex(cell[0] & 7, cell[1] & 7, cell[2] & 7);
     if (!base_.topology.blocks[block].cells.get(local)) continue;
     Near facingIt;
     searchCell(block, local, point, facing, facingIt);
-    if (facingIt.block != forest::kNone) best = std::min(best, distanceAtCell(block, local, point));
+    if (facingIt.block == forest::kNone) continue;
+    best = std::min(best, distanceAtCell(block, local, point, [&](int corner, int axis) {
+                      std::size_t place = static_cast<std::size_t>(axis);
+                      for (int i = 0; i < 3; ++i) {
+                        const int along = offset[i] + kAround + ((corner >> (2 - i)) & 1);
+                        place = place * (kSide + 1) + static_cast<std::size_t>(along);
+                      }
+                      const bool was = known[place];
+                      known[place] = true;
+                      return was;
+                    }));
   }
   return best;
 }

@@ -15,9 +15,10 @@ class BaseSurface {
   BaseSurface(const forest::Base<TreeT>& base, const forest::Level& blockCells, base::Job& job);
 
   /// An upper bound of the distance from `point` to the base mesh, exact if the nearest vertex has
-  /// the nearest polygon: to the polygons around the nearest base vertex that does not face away
-  /// from `facing`; if that is more than `enough`, to those around all near vertices. Looks `reach`
-  /// cells far; infinite if there is no such vertex. World units.
+  /// the nearest polygon: to the polygons around a base vertex in the point's own cell that does
+  /// not face away from `facing`; if that is more than `enough`, to those around the nearest such
+  /// vertex, then to those around all near ones. Looks `reach` cells far; infinite if there is no
+  /// such vertex. World units.
   [[nodiscard]] double distance(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
                                 int reach, double enough) const;
   /// The distance from `point` to one base quad.
@@ -37,8 +38,13 @@ class BaseSurface {
 
   void searchCell(std::uint32_t block, int cell, const openvdb::Vec3d& point,
                   const openvdb::Vec3d& facing, Near& near) const;
+  // To the polygons around a cell. isKnown(corner, axis) leaves those of an edge of the cell out.
+  template <class IsKnown>
   [[nodiscard]] double distanceAtCell(std::uint32_t cellBlock, int cellNumber,
-                                      const openvdb::Vec3d& point) const;
+                                      const openvdb::Vec3d& point, const IsKnown& isKnown) const;
+  [[nodiscard]] double distanceAround(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
+                                      double enough) const;
+  [[nodiscard]] Near vertexInCell(const openvdb::Vec3d& point, const openvdb::Vec3d& facing) const;
   [[nodiscard]] Near nearestVertex(const openvdb::Vec3d& point, const openvdb::Vec3d& facing,
                                    int reach) const;
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include <limits>
+#include "base/huge_pages.h"
 
 namespace tufa::certify {
 
@@ -35,15 +37,13 @@ double toleranceAt(const cut::CutRule& rule, const base::Affine& affine, const V
 }
 
 template <class TreeT>
-Certifier<TreeT>::Certifier(const forest::Base<TreeT>& base, const forest::Level& blockCells,
+Certifier<TreeT>::Certifier(const forest::Base<TreeT>& base, const BaseSurface<TreeT>& surface,
                             const cut::CutRule& rule, base::Job& job)
-    : base_(base),
-      surface_(base, blockCells, job),
-      rule_(rule),
-      job_(job),
-      vertexErrors_(base.mesh.positions.size()),
-      wandered_(base.mesh.positions.size() + base.mesh.quads.size()),
-      quadErrors_(base.mesh.quads.size()) {}
+    : base_(base), surface_(surface), rule_(rule), job_(job) {
+  base::resizeLarge(vertexErrors_, base.mesh.positions.size(), job);
+  base::resizeLarge(quadErrors_, base.mesh.quads.size(), job);
+  base::resizeLarge(wandered_, base.mesh.positions.size() + base.mesh.quads.size(), job);
+}
 
 template <class TreeT>
 Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& made,
@@ -80,7 +80,9 @@ Deviation Certifier<TreeT>::measure(const Cut& cut, const polygons::CutMesh& mad
     std::sort(vertices->begin(), vertices->end());
     vertices->erase(std::unique(vertices->begin(), vertices->end()), vertices->end());
   }
+  job_.look(0, 1);
   positions_ = made.mesh.positions;
+  if (vertexOf_.empty()) base::resizeLarge(vertexOf_, cut.vertexOf.size(), job_);
   vertexOf_ = cut.vertexOf;
   alteredKept_ = altered_;
   return total;
@@ -116,11 +118,13 @@ void Certifier<TreeT>::collectPieces() {
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& v = mesh.triangles[i].vertices;
+    job_.lookAtTimes(i);
     if (isFine(v[0]) && isFine(v[1]) && isFine(v[2])) continue;
     take({v[0], v[1], v[2], v[0]}, made_->triangleSources[i]);
   }
   for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
     const auto& v = mesh.quads[i].vertices;
+    job_.lookAtTimes(i);
     if (std::all_of(v.begin(), v.end(), [&](VertexIndex vertex) { return isFine(vertex); }))
       continue;
     take({v[0], v[1], v[2], v[3]}, made_->quadSources[i]);
@@ -148,6 +152,7 @@ void Certifier<TreeT>::findChanges() {
   touched_ = changed_;
   if (positions_.empty()) return;
   for (std::size_t i = 0; i < vertexOf_.size(); ++i) {
+    job_.lookAtTimes(i);
     const VertexIndex vertex = cut_->vertexOf[i], before = vertexOf_[i];
     if (altered_[vertex] != 0 || alteredKept_[before] != 0 ||
         !(positions[vertex] == positions_[before])) {
@@ -226,11 +231,13 @@ void Certifier<TreeT>::measureVertex(std::size_t index, Part& part) {
   float& error = vertexErrors_[index];
   if (isFine(vertex)) {
     error = 0;
-  } else if (touched_[vertex] != 0 || wandered_[index] != 0) {
-    error =
-        distanceAround(&vertex, 1, vectorOf(base_.mesh.positions[index]), wandered_[index], part);
+    return;
   }
-  noteFar(index, vectorOf(base_.mesh.positions[index]), static_cast<double>(error), part);
+  const Vec3d point = vectorOf(base_.mesh.positions[index]);
+  if (touched_[vertex] != 0 || wandered_[index] != 0) {
+    error = distanceAround(&vertex, 1, point, wandered_[index], part);
+  }
+  noteFar(index, point, static_cast<double>(error), part);
   part.sum += static_cast<double>(error);
 }
 
@@ -246,16 +253,17 @@ void Certifier<TreeT>::measureQuad(std::size_t index, Part& part) {
   }
   if (!ignored_.empty() && ignored_[index] != 0) return;
   float& error = quadErrors_[index];
-  std::uint8_t& wandered = wandered_[base_.mesh.positions.size() + index];
-  const Vec3d middle =
-      (vectorOf(base_.mesh.positions[v[0]]) + vectorOf(base_.mesh.positions[v[2]])) * 0.5;
   if (fine) {
     error = 0;
-  } else if (touched || wandered != 0) {
-    error = distanceAround(around.data(), 4, middle, wandered, part);
+    return;
   }
-  if (error > 0)
-    noteFar(base_.mesh.positions.size() + index, middle, static_cast<double>(error), part);
+  const std::size_t number = base_.mesh.positions.size() + index;
+  const Vec3d middle =
+      (vectorOf(base_.mesh.positions[v[0]]) + vectorOf(base_.mesh.positions[v[2]])) * 0.5;
+  if (touched || wandered_[number] != 0) {
+    error = distanceAround(around.data(), 4, middle, wandered_[number], part);
+  }
+  if (error > 0) noteFar(number, middle, static_cast<double>(error), part);
   part.sum += static_cast<double>(error);
 }
 

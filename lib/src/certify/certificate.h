@@ -38,7 +38,8 @@ struct Deviation {
 template <class TreeT>
 class Certifier {
  public:
-  Certifier(const forest::Base<TreeT>& base, const forest::Level& blockCells,
+  /// `surface` is that of the base mesh.
+  Certifier(const forest::Base<TreeT>& base, const BaseSurface<TreeT>& surface,
             const cut::CutRule& rule, base::Job& job);
   /// From now on. Rules differ in their tolerance only.
   void setRule(const cut::CutRule& rule) { rule_ = rule; }
@@ -109,7 +110,7 @@ class Certifier {
   void forChunks(std::size_t count, const Body& body, Deviation& total, double& sum);
 
   const forest::Base<TreeT>& base_;
-  BaseSurface<TreeT> surface_;
+  const BaseSurface<TreeT>& surface_;
   cut::CutRule rule_;
   std::vector<std::uint8_t> ignored_;
   base::Job& job_;

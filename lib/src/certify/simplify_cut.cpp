@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/huge_pages.h"
 #include "simplify/collapse.h"
 
 namespace tufa::certify {
@@ -17,14 +18,17 @@ constexpr std::uint8_t kJoined = std::numeric_limits<std::uint8_t>::max();
 // What a vertex may move in all is tested at points only; the rest is for what lies between them.
 constexpr double kFirstShare = 0.9;
 // A vertex that was faulty gets this share of its freedom, when it is faulty again the square of
-// it, and so on. After so many rounds it gets none, and after so many nothing is collapsed anew,
-// and what made it faulty is undone.
+// it, and so on. After so many rounds what made it faulty is undone: the last collapse behind it,
+// when it is faulty again the last two, and so on; and after so many more, nothing is collapsed
+// anew any more.
 constexpr float kLess = 0.6F;
 constexpr int kSoftRounds = 5;
-constexpr int kFirmRounds = 12;
+constexpr int kUndoRounds = 16;
+constexpr int kMostStrikes = 30;
 // After so many further rounds its neighbours are undone, too, then theirs, at most so far at once.
 constexpr int kRoundsPerRing = 4;
 constexpr int kMostRings = 8;
+constexpr std::size_t kGrain = 4096;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
 
@@ -168,20 +172,24 @@ std::vector<std::uint8_t> widen(const Mesh& mesh, std::vector<std::uint8_t> mark
   return marks;
 }
 
-// Marks the later half of the collapses behind each faulty vertex and, so many rings wide, its
-// neighbours; as many rings as it takes. False if there are no such collapses.
+// Marks the last collapses behind each faulty vertex and, so many rings wide, its neighbours; as
+// many rings as it takes. How many is doubled each time, which `strikes` of the vertices before the
+// collapse count. False if there are no such collapses.
 bool undo(const simplify::Collapsed& collapsed, const Mesh& mesh, std::vector<std::uint8_t> faulty,
-          int rings, std::vector<std::uint8_t>& undone) {
+          int rings, std::vector<std::uint8_t>& strikes, std::vector<std::uint8_t>& undone) {
   undone.assign(collapsed.steps.size(), 0);
   faulty = widen(mesh, std::move(faulty), rings);
   for (int wider = 0; wider < kMostRings; ++wider, faulty = widen(mesh, std::move(faulty), 1)) {
-    bool any = false;
-    std::vector<std::uint32_t> left(collapsed.members.size());
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      left[i] = faulty[i] != 0 ? collapsed.members[i] / 2 : 0;
+    std::vector<std::uint64_t> left(collapsed.members.size());
+    for (std::size_t i = 0; i < strikes.size(); ++i) {
+      const VertexIndex vertex = collapsed.vertexOf[i];
+      if (faulty[vertex] == 0) continue;
+      left[vertex] = std::max(left[vertex], std::uint64_t{1} << strikes[i]);
+      strikes[i] = static_cast<std::uint8_t>(std::min(strikes[i] + 1, kMostStrikes));
     }
+    bool any = false;
     for (std::size_t i = collapsed.steps.size(); i-- > 0;) {
-      std::uint32_t& count = left[collapsed.vertexOf[collapsed.steps[i].keep]];
+      std::uint64_t& count = left[collapsed.vertexOf[collapsed.steps[i].keep]];
       if (count == 0) continue;
       --count;
       undone[i] = 1;
@@ -192,32 +200,28 @@ bool undo(const simplify::Collapsed& collapsed, const Mesh& mesh, std::vector<st
   return false;
 }
 
-// Takes freedom from what went into faulty vertices: all, or shares that are squared. False if none
+// Lets what is undone not be collapsed again in another way.
+void keepUndone(const simplify::Collapsed& collapsed, simplify::Bounds& bounds) {
+  bounds.firm.resize(bounds.allowed.size(), 0);
+  for (std::size_t i = 0; i < bounds.undone.size(); ++i) {
+    if (bounds.undone[i] == 0) continue;
+    bounds.firm[collapsed.steps[i].keep] = 1;
+    bounds.firm[collapsed.steps[i].drop] = 1;
+  }
+}
+
+// Takes shares of freedom, which are squared, from what went into faulty vertices. False if none
 // was left.
 bool takeFreedom(const simplify::Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
-                 std::vector<float>* shares, std::vector<float>& allowed) {
+                 std::vector<float>& shares, std::vector<float>& allowed) {
   bool any = false;
   for (std::size_t i = 0; i < allowed.size(); ++i) {
     if (faulty[collapsed.vertexOf[i]] == 0 || !(allowed[i] > 0)) continue;
     any = true;
-    if (shares == nullptr) {
-      allowed[i] = 0;
-      continue;
-    }
-    allowed[i] *= (*shares)[i];
-    (*shares)[i] *= (*shares)[i];
+    allowed[i] *= shares[i];
+    shares[i] *= shares[i];
   }
   return any;
-}
-
-// Takes all freedom from what went into faulty vertices or, where none is left, into their
-// neighbours.
-bool freeze(const simplify::Collapsed& collapsed, const Mesh& mesh,
-            std::vector<std::uint8_t> faulty, std::vector<float>& allowed) {
-  for (int ring = 0; ring < kMostRings; ++ring, faulty = widen(mesh, std::move(faulty), 1)) {
-    if (takeFreedom(collapsed, faulty, nullptr, allowed)) return true;
-  }
-  return false;
 }
 
 // Lets no edges be turned at what went into faulty vertices. Whether one had been turned there.
@@ -234,15 +238,22 @@ bool stiffen(const simplify::Collapsed& collapsed, const std::vector<std::uint8_
   return any;
 }
 
-// The mesh after a collapse of `from`, told in the terms of the base mesh.
-Measured compose(const Measured& from, const simplify::Collapsed& collapsed, base::Job& job) {
-  Measured mesh;
+// Makes `mesh` what `from` is after a collapse, told in the terms of the base mesh.
+void compose(const Measured& from, const simplify::Collapsed& collapsed, Measured& mesh,
+             base::Job& job) {
+  // The largest part is written over.
+  std::vector<VertexIndex> baseVertices = std::move(mesh.cut.vertexOf);
+  mesh = {};
+  mesh.cut.vertexOf = std::move(baseVertices);
   const std::vector<VertexIndex>& vertexOf = collapsed.vertexOf;
-  mesh.cut.vertexOf.resize(from.cut.vertexOf.size());
-  for (std::size_t i = 0; i < from.cut.vertexOf.size(); ++i) {
-    job.lookAtTimes(i);
-    mesh.cut.vertexOf[i] = vertexOf[from.cut.vertexOf[i]];
+  if (mesh.cut.vertexOf.empty()) {
+    base::resizeLarge(mesh.cut.vertexOf, from.cut.vertexOf.size(), job);
   }
+  job.forRanges(from.cut.vertexOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      mesh.cut.vertexOf[i] = vertexOf[from.cut.vertexOf[i]];
+    }
+  });
   mesh.cut.clusters.resize(collapsed.mesh.positions.size());
   for (std::size_t i = 0; i < vertexOf.size(); ++i) {
     mesh.cut.clusters[vertexOf[i]] = from.cut.clusters[i];
@@ -263,7 +274,6 @@ Measured compose(const Measured& from, const simplify::Collapsed& collapsed, bas
         .push_back(sourceOf(collapsed.sources[i]));
   }
   mesh.made.mesh = collapsed.mesh;
-  return mesh;
 }
 
 // Marks the vertices around which something is not as in the collapse before, and those that could
@@ -304,6 +314,8 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
   }
   bounds.turning = bounds.allowed;
   std::vector<float> shares(bounds.allowed.size(), kLess);
+  std::vector<std::uint8_t> strikes(bounds.allowed.size(), 0);
+  std::vector<std::uint64_t> farBefore;
   simplify::Collapsed collapsed;
   Measured result;
   int undoRounds = 0;
@@ -315,23 +327,27 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     collapsed = std::move(next);
     rule.tolerance = tolerance * collapsed.looseness;
     certifier.setRule(rule);
-    result = compose(mesh, collapsed, job);
+    compose(mesh, collapsed, result, job);
     const std::size_t count = result.made.mesh.triangleCount();
     if (round == 1 && goal.giveUp > 0 && count >= goal.giveUp) return result;
     mendAndMeasure(certifier, repair, result, job, fresh);
     for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);
-    const bool soft = round < kSoftRounds;
+    // Points that stay too far although they are samples are not helped by more rounds.
+    const std::vector<std::uint64_t>& far = result.deviation.farPoints;
+    const bool same = !far.empty() && far == farBefore && result.deviation.protruding.empty();
+    const bool soft = round < kSoftRounds && !same;
+    farBefore = far;
     const std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, goal.triangles > 0);
     bool any = soft && !result.deviation.farPoints.empty();
     if (soft) {
-      any |= takeFreedom(collapsed, faulty, &shares, bounds.allowed);
-    } else if (round < kFirmRounds) {
-      any = freeze(collapsed, result.made.mesh, faulty, bounds.allowed);
+      any |= takeFreedom(collapsed, faulty, shares, bounds.allowed);
     }
     bounds.undone.clear();
     if (!any) {
-      bounds.onlyRepeat = true;
-      any = undo(collapsed, result.made.mesh, faulty, undoRounds++ / kRoundsPerRing, bounds.undone);
+      any = undo(collapsed, result.made.mesh, faulty, undoRounds / kRoundsPerRing, strikes,
+                 bounds.undone);
+      keepUndone(collapsed, bounds);
+      bounds.onlyRepeat = ++undoRounds > kUndoRounds;
     }
     any |= stiffen(collapsed, faulty, bounds.turning);
     bounds.before = &collapsed;

@@ -105,6 +105,7 @@ class RegionMaker {
         seams_(findSeams(level0.quads(), mesh_, inChunks(level0.meshBeforeRepair()), cells_, chunks,
                          job)),
         seamBase_(withMesh(seams_.mesh)),
+        surface_(seamBase_, forest_.levels[0], job),
         forbidden_(forbidOthers(forest_, chunks)),
         beyond_(findBeyond()) {
     for (const double tolerance : options.tolerances) {
@@ -123,12 +124,11 @@ class RegionMaker {
     const cut::CutRule rule = ruleFor(options_.tolerances[level]);
     const bool last = level + 1 == options_.tolerances.size();
     cut::CellFlags forbidden = forbidden_;
-    Certifier regular(seamBase_, forest_.levels[0], rule, job_);
+    Certifier regular(seamBase_, surface_, rule, job_);
     regular.setIgnored(beyond_);
     std::optional<Certifier> transition;
     if (!last) {
-      transition.emplace(seamBase_, forest_.levels[0], ruleFor(options_.tolerances[level + 1]),
-                         job_);
+      transition.emplace(seamBase_, surface_, ruleFor(options_.tolerances[level + 1]), job_);
       transition->setIgnored(beyond_);
     }
     for (int round = 0;; ++round) {
@@ -298,7 +298,7 @@ class RegionMaker {
 
   // What was kept from the meshes before does not count here.
   [[nodiscard]] std::vector<float> errorsOf(const SeamedCut& mesh, const cut::CutRule& rule) {
-    Certifier certifier(seamBase_, forest_.levels[0], rule, job_);
+    Certifier certifier(seamBase_, surface_, rule, job_);
     certifier.setIgnored(beyond_);
     (void)certifier.measure(mesh.cut, mesh.made, mesh.altered);
     return certifier.errorsAtVertices();
@@ -314,6 +314,7 @@ class RegionMaker {
   forest::Forest forest_;
   Seams seams_;
   forest::Base<TreeT> seamBase_;  ///< with the seams' vertices
+  certify::BaseSurface<TreeT> surface_;
   std::vector<SeamLines> lines_;  ///< of each level
   cut::CellFlags forbidden_;
   std::vector<std::uint8_t> beyond_;

@@ -146,6 +146,7 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
   job.beginStage("forest", kForestEnd);
   const forest::Forest forest = forest::buildForest(base, rule.maxLevel, job);
   const certify::Repair repair{level0.suspects(), level0.source(job)};
+  const certify::BaseSurface<TreeT> surface(base, forest.levels[0], job);
   chain.sharedSeconds = secondsSince(start);
 
   const bool collapses = cut::maySimplify(contour);
@@ -161,8 +162,8 @@ LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
                                     options.allowTopologyChange};
     rule.tolerance = target.triangles > 0 && i > 0 ? rule.tolerance : target.tolerance;
     certify::AdaptiveMesh adaptive = i > 0 && collapses
-                                         ? coarsen(base, forest, rule, how, job, kept)
-                                         : adapt(base, forest, rule, how, job, &kept);
+                                         ? coarsen(base, surface, rule, how, job, kept)
+                                         : adapt(base, forest, surface, rule, how, job, &kept);
     rule.tolerance = adaptive.tolerance;
     const std::size_t triangles = adaptive.mesh.triangleCount();
     const bool coarser = i == 0 || triangles < most;

@@ -20,6 +20,12 @@ using openvdb::Vec3d;
 constexpr double kLengthShare = 1e-4;
 // Cosine of the angle up to which a sample's normal and a triangle's belong to one side.
 constexpr double kOneSide = 0.9;
+// What lies above the triangle it was on, no farther than this share of the freedom, squared,
+// stays.
+constexpr double kSurelyNear = 0.25;
+// A sample whose squared distance to a triangle is at most this share of that to the corner belongs
+// there.
+constexpr double kNearShare = 0.05;
 // Edges are collapsed with this share of the freedom first: what would cost more waits.
 constexpr double kFirstFreedom = 0.4;
 // Freedom for a number of triangles grows by this factor at a time, by the larger one where that
@@ -52,17 +58,17 @@ class Collapser {
   void run(base::Job& job) {
     const std::size_t all = mesh_.triangleCount();
     if (bounds_.before != nullptr) {
-      repeat(*bounds_.before);
+      repeat(*bounds_.before, job);
     } else {
-      attachFrom(0);
+      attachFrom(0, job);
     }
     if (bounds_.onlyRepeat) return;
     if (bounds_.before == nullptr && bounds_.triangles == 0) looseness_ = kFirstFreedom;
     for (bool anew = bounds_.before == nullptr;; anew = true) {
       const std::size_t start = mesh_.triangleCount();
       tooFar_ = false;
-      proposeAll(anew);
-      constexpr std::size_t kBetweenLooks = 4096;
+      proposeAll(anew, job);
+      constexpr std::size_t kBetweenLooks = 512;
       EdgeQueue::Entry best{};
       for (std::size_t steps = 0; mesh_.triangleCount() > bounds_.triangles && queue_.pop(best);
            ++steps) {
@@ -119,7 +125,7 @@ class Collapser {
     for (std::uint32_t polygon = 0; polygon < given_.quads.size(); ++polygon) {
       const std::size_t t = std::size_t{6} * polygon;
       const bool first = mesh_.isAlive(t), second = mesh_.isAlive(t + 3);
-      if (first && second && turned[t / 3] == 0 && turned[t / 3 + 1] == 0) {
+      if (first && second && turned[t / 3] == 0 && turned[t / 3 + 1] == 0 && !isOfFour(t)) {
         out.mesh.quads.emplace_back(corner(t), corner(t + 1), corner(t + 2), corner(t + 5));
         out.sources.push_back(polygon);
         continue;
@@ -141,9 +147,9 @@ class Collapser {
   struct Edge {
     VertexIndex a, b;
     Vec3d point;   ///< that takes the place of both
-    double error;  ///< sum of squared distances to its planes
-    double planes;
-    PlaneSum sum;  ///< of both, seen from the point
+    Vec3d offset;  ///< from where `sum` is seen to the point
+    double error;  ///< sum of squared distances of the point to the planes
+    PlaneSum sum;  ///< the planes of both
   };
 
   // Turns edges of the result, and marks triangles that were turned. What is kept for a next
@@ -159,8 +165,19 @@ class Collapser {
     return turnNeedles(mesh_, bounds_, allowed, sampleTriangles_);
   }
 
+  // Whether the quad of two triangles is half of four that are a closed surface. Two quads would
+  // have the same corners.
+  [[nodiscard]] bool isOfFour(std::size_t t) const {
+    return mesh_.degree(mesh_.corner(t)) == 3 && mesh_.degree(mesh_.corner(t + 1)) == 3 &&
+           mesh_.degree(mesh_.corner(t + 2)) == 3;
+  }
+
   [[nodiscard]] double allowedAt(VertexIndex a, VertexIndex b) const {
     return looseness_ * static_cast<double>(std::min(allowed_[a], allowed_[b]));
+  }
+
+  [[nodiscard]] bool isFirm(VertexIndex vertex) const {
+    return !bounds_.firm.empty() && bounds_.firm[vertex] != 0;
   }
 
   [[nodiscard]] Normal normalOf(VertexIndex vertex) const {
@@ -172,13 +189,14 @@ class Collapser {
   // Collapses again what was collapsed before, in the same order, except where a new sample or less
   // freedom forbids it, or the mesh around is no longer as it was then. What is around may then be
   // collapsed in another way.
-  void repeat(const Collapsed& before) {
+  void repeat(const Collapsed& before, base::Job& job) {
     looseness_ = before.looseness;
     changed_.assign(mesh_.vertexCount(), 0);
     const std::size_t known = before.sampleTriangles.size();
-    attachFrom(known);
+    attachFrom(known, job);
     steps_.reserve(before.steps.size());
     for (std::size_t i = 0; i < before.steps.size(); ++i) {
+      job.lookAtTimes(i);
       const Step& step = before.steps[i];
       const bool undone = !bounds_.undone.empty() && bounds_.undone[i] != 0;
       if (!undone && repeatStep(step)) continue;
@@ -205,7 +223,7 @@ class Collapser {
       });
     }
     if (!same) return false;
-    Edge edge{step.keep, step.drop, step.point, 0, 0, {}};
+    Edge edge{step.keep, step.drop, step.point, Vec3d(0.0), 0, {}};
     edge.sum = joined(edge.a, edge.b, edge.point);
     auto reach = static_cast<double>(step.reach);
     if (sampled) {
@@ -218,8 +236,9 @@ class Collapser {
   }
 
   // Puts the samples from `first` on onto their triangles.
-  void attachFrom(std::size_t first) {
+  void attachFrom(std::size_t first, base::Job& job) {
     for (std::size_t i = first; i < bounds_.samples.size(); ++i) {
+      job.lookAtTimes(i);
       const auto sample = static_cast<std::uint32_t>(i);
       attach(sample, locate(sample));
     }
@@ -236,38 +255,46 @@ class Collapser {
     const Vec3d at = vectorOf(bounds_.samples[sample].point);
     std::uint32_t nearest = kNone;
     double least = std::numeric_limits<double>::infinity();
-    const auto look = [&](const auto& vertices) {
-      for (const VertexIndex vertex : vertices) {
-        mesh_.forTriangles(mesh_.rootOf(vertex), [&](std::uint32_t t, VertexIndex, VertexIndex) {
-          const double squared =
-              FlatTriangle(mesh_.point(mesh_.corner(t)), mesh_.point(mesh_.corner(t + 1)),
-                           mesh_.point(mesh_.corner(t + 2)))
-                  .squaredDistance(at);
-          if (squared >= least) return;
-          least = squared;
-          nearest = t;
-        });
-      }
+    const auto look = [&](std::uint32_t t) {
+      const Vec3d &a = mesh_.point(mesh_.corner(t)), &b = mesh_.point(mesh_.corner(t + 1)),
+                  &c = mesh_.point(mesh_.corner(t + 2));
+      const double squared = FlatTriangle(a, b, c).squaredDistance(at);
+      if (squared >= least) return;
+      least = squared;
+      nearest = t;
     };
-    polygon < quads ? look(given_.quads[polygon].vertices)
-                    : look(given_.triangles[polygon - quads].vertices);
+    const auto lookAround = [&](VertexIndex vertex) {
+      mesh_.forTriangles(mesh_.rootOf(vertex),
+                         [&](std::uint32_t t, VertexIndex, VertexIndex) { look(t); });
+    };
+    const auto lookFrom = [&](const auto& vertices) {
+      // Mostly it is at the corner that is nearest.
+      const auto squaredTo = [&](VertexIndex v) {
+        return (mesh_.point(mesh_.rootOf(v)) - at).lengthSqr();
+      };
+      const VertexIndex corner = *std::min_element(
+          vertices.begin(), vertices.end(),
+          [&](VertexIndex v, VertexIndex w) { return squaredTo(v) < squaredTo(w); });
+      lookAround(corner);
+      if (least <= kNearShare * squaredTo(corner)) return;
+      std::for_each(vertices.begin(), vertices.end(), lookAround);
+    };
+    polygon < quads ? lookFrom(given_.quads[polygon].vertices)
+                    : lookFrom(given_.triangles[polygon - quads].vertices);
     return nearest;
   }
 
   // Proposes all edges, or those where something is not as in the result before.
-  void proposeAll(bool anew) {
-    const auto isNear = [&](VertexIndex vertex) {
-      bool near = anew || changed_[vertex] != 0;
-      if (near) return true;
-      mesh_.forTriangles(
-          vertex, [&](std::uint32_t, VertexIndex x, VertexIndex) { near |= changed_[x] != 0; });
-      return near;
-    };
+  void proposeAll(bool anew, base::Job& job) {
+    std::vector<std::uint8_t> near;
+    if (!anew) near = mesh_.widened(changed_);
+    std::size_t count = 0;
     for (const VertexIndex a : mesh_.byPlace()) {
+      job.lookAtTimes(count++);
       if (!mesh_.isRoot(a)) continue;
       mesh_.collectNeighbours(a, around_);
       for (const VertexIndex b : around_) {
-        if (mesh_.isBefore(a, b) && (isNear(a) || isNear(b))) propose(a, b);
+        if (mesh_.isBefore(a, b) && (anew || near[a] != 0 || near[b] != 0)) propose(a, b);
       }
     }
   }
@@ -279,21 +306,22 @@ class Collapser {
     return planes;
   }
 
+  // What would become of an edge; its sum is seen from the middle of the edge still.
   [[nodiscard]] Edge solve(VertexIndex a, VertexIndex b) const {
     const Vec3d &pa = mesh_.point(a), &pb = mesh_.point(b);
     const Vec3d middle = (pa + pb) * 0.5;
     const PlaneSum planes = joined(a, b, middle);
     Vec3d offset = planes.least();
     if (!(offset.lengthSqr() <= (pa - pb).lengthSqr())) offset = Vec3d(0.0);
-    return {a, b, middle + offset, planes.at(offset), planes.count, planes.seenFrom(offset)};
+    return {a, b, middle + offset, offset, planes.at(offset), planes};
   }
 
   void propose(VertexIndex a, VertexIndex b) {
     if (mesh_.isBefore(b, a)) std::swap(a, b);
     const double allowed = allowedAt(a, b);
-    if (!(allowed > 0)) return;
+    if (!(allowed > 0) || isFirm(a) || isFirm(b)) return;
     const Edge edge = solve(a, b);
-    if (edge.error > allowed * allowed * edge.planes) {
+    if (edge.error > allowed * allowed * edge.sum.count) {
       tooFar_ = true;
       return;
     }
@@ -302,14 +330,14 @@ class Collapser {
   }
 
   bool canCollapse(const Edge& edge, double& reach) {
-    reach = edge.planes > 0 ? std::sqrt(edge.error / edge.planes) : 0;
-    return mesh_.mayCollapse(edge.a, edge.b) &&
-           ring_.collect(mesh_, edge.a, edge.b, edge.point, edge.sum.normals) &&
-           ring_.staysUnfolded(mesh_) && staysNear(edge, reach);
-  }
-
-  bool staysNear(const Edge& edge, double& reach) {
-    const bool near = samplesStayNear(edge, reach) && ringStaysNear(edge, reach);
+    reach = edge.sum.count > 0 ? std::sqrt(edge.error / edge.sum.count) : 0;
+    if (!mesh_.mayCollapse(edge.a, edge.b) ||
+        !ring_.collect(mesh_, edge.a, edge.b, edge.point, edge.sum.normals)) {
+      return false;
+    }
+    bool near = samplesStayNear(edge, reach);
+    if (near && !ring_.staysUnfolded(mesh_)) return false;
+    near = near && ringStaysNear(edge, reach);
     tooFar_ |= !near;
     return near;
   }
@@ -321,19 +349,20 @@ class Collapser {
     // What failed once lies at the front and mostly fails again.
     for (const std::uint32_t t : ring_.star()) {
       const std::uint32_t i = firstSample_[t / 3];
-      if (i != kNone && ring_.nearest(vectorOf(bounds_.samples[i].point)).second > enough) {
-        return false;
-      }
+      if (i != kNone && !ring_.isNear(vectorOf(bounds_.samples[i].point), enough)) return false;
     }
     attached_.clear();
     sides_.assign(ring_.shapes().size(), Sides::None);
     nearestSample_ = kNone;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+    std::size_t next = 0;
     for (const std::uint32_t t : ring_.star()) {
+      const bool stays = next < ring_.triangles().size() && ring_.triangles()[next] == t;
+      const std::size_t first = stays ? next++ : 0;
       std::uint32_t before = kNone;
       for (std::uint32_t i = firstSample_[t / 3]; i != kNone; before = i, i = nextSample_[i]) {
         const Vec3d at = vectorOf(bounds_.samples[i].point);
-        const auto [triangle, squared] = ring_.nearest(at);
+        const auto [triangle, squared] = ring_.nearest(at, first, kSurelyNear * enough);
         if (squared > enough) {
           if (before != kNone) {
             nextSample_[before] = nextSample_[i];
@@ -402,7 +431,7 @@ class Collapser {
   // Collapses the edge; `moved`: the samples go where samplesStayNear() said.
   void join(const Edge& edge, double reach, bool moved) {
     steps_.push_back({edge.a, edge.b, edge.point, static_cast<float>(reach)});
-    planes_[edge.a] = edge.sum;
+    planes_[edge.a] = edge.sum.seenFrom(edge.offset);
     allowed_[edge.a] = std::min(allowed_[edge.a], allowed_[edge.b]);
     mesh_.collapse(edge.a, edge.b, edge.point);
     if (moved) {

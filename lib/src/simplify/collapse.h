@@ -54,6 +54,7 @@ struct Bounds {
   /// collapsed is collapsed again where that is still allowed.
   const Collapsed* before = nullptr;
   std::vector<std::uint8_t> undone;  ///< of its steps, those not to be made again; empty: none
+  std::vector<std::uint8_t> firm;    ///< vertices that no new steps are made with; empty: none
   bool onlyRepeat = false;           ///< make no new steps
   std::vector<float> turning;        ///< as `allowed`, where edges are turned; empty: none are
 };

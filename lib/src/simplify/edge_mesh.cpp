@@ -64,6 +64,18 @@ void EdgeMesh::collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& o
   std::sort(out.begin(), out.end(), [&](VertexIndex a, VertexIndex b) { return isBefore(a, b); });
 }
 
+std::vector<std::uint8_t> EdgeMesh::widened(const std::vector<std::uint8_t>& marks) const {
+  std::vector<std::uint8_t> wider = marks;
+  for (std::size_t t = 0; t < corners_.size(); t += 3) {
+    if (!isAlive(t)) continue;
+    const VertexIndex* v = &corners_[t];
+    if (marks[v[0]] != 0 || marks[v[1]] != 0 || marks[v[2]] != 0) {
+      for (int i = 0; i < 3; ++i) wider[v[i]] = 1;
+    }
+  }
+  return wider;
+}
+
 bool EdgeMesh::mayCollapse(VertexIndex a, VertexIndex b) {
   if (mark_ > kNone - 2) {
     std::fill(marks_.begin(), marks_.end(), 0);

@@ -49,6 +49,9 @@ class EdgeMesh {
   /// Neighbours of a vertex off the boundary, by place.
   void collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const;
 
+  /// The marks of vertices, and of all that share a triangle with a marked one.
+  [[nodiscard]] std::vector<std::uint8_t> widened(const std::vector<std::uint8_t>& marks) const;
+
   /// Whether the topology stays the same without the edge: the link condition for an edge off the
   /// boundary, and no vertex left with two triangles.
   [[nodiscard]] bool mayCollapse(VertexIndex a, VertexIndex b);

@@ -115,8 +115,22 @@ Vec3d Ring::normalAcross(const EdgeMesh& mesh, VertexIndex x, VertexIndex y, con
   return normal;
 }
 
-std::pair<std::size_t, double> Ring::nearest(const Vec3d& point) const {
+bool Ring::isNear(const Vec3d& point, double enough) const {
+  for (const base::FlatTriangle& shape : shapes_) {
+    double squared = 0;
+    if (shape.isAbove(point, squared) && squared <= enough) return true;
+  }
+  return std::any_of(shapes_.begin(), shapes_.end(), [&](const base::FlatTriangle& shape) {
+    return shape.squaredDistance(point) <= enough;
+  });
+}
+
+std::pair<std::size_t, double> Ring::nearest(const Vec3d& point, std::size_t first,
+                                             double enough) const {
   std::pair<std::size_t, double> best{0, std::numeric_limits<double>::infinity()};
+  if (double squared = 0; shapes_[first].isAbove(point, squared) && squared <= enough) {
+    return {first, squared};
+  }
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
     double squared = 0;
     if (shapes_[i].isAbove(point, squared) && squared < best.second) best = {i, squared};

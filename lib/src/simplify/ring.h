@@ -23,8 +23,12 @@ class Ring {
   /// No triangle is folded back over a neighbour, in the ring or outside, or none further than one
   /// is now.
   [[nodiscard]] bool staysUnfolded(const EdgeMesh& mesh) const;
-  /// The number of the triangle that is nearest to the point, and its squared distance.
-  [[nodiscard]] std::pair<std::size_t, double> nearest(const openvdb::Vec3d& point) const;
+  /// Whether the squared distance of the point is at most `enough`.
+  [[nodiscard]] bool isNear(const openvdb::Vec3d& point, double enough) const;
+  /// The number of the triangle that is nearest to the point, and its squared distance. The one
+  /// looked at `first` is as good if the point lies above it and within `enough`, squared.
+  [[nodiscard]] std::pair<std::size_t, double> nearest(const openvdb::Vec3d& point,
+                                                       std::size_t first, double enough) const;
 
   /// All triangles around the edge as it is.
   [[nodiscard]] const std::vector<std::uint32_t>& star() const { return star_; }

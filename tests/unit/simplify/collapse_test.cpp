@@ -195,6 +195,19 @@ Problem pyramid() {
   return problem;
 }
 
+// Four triangles that are a closed surface may come from two quads with the same corners.
+TEST(Collapse, GivesATetrahedronAsTriangles) {
+  Problem problem;
+  problem.mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  problem.mesh.normals.resize(4);
+  problem.mesh.quads = {{0, 2, 1, 3}, {3, 1, 2, 0}};
+  problem.planes.resize(4);
+  problem.bounds.allowed.assign(4, 0);
+  const Mesh mesh = solve(problem).mesh;
+  EXPECT_TRUE(test::inspect(mesh).manifold());
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+}
+
 TEST(Collapse, TurnsAnEdgeThatMakesANeedle) {
   const Problem problem = pyramid();
   const Collapsed turned = solve(problem);
