@@ -26,8 +26,11 @@ constexpr double kSurelyNear = 0.25;
 // A sample whose squared distance to a triangle is at most this share of that to the corner belongs
 // there.
 constexpr double kNearShare = 0.05;
-// Edges are collapsed with this share of the freedom first: what would cost more waits.
-constexpr double kFirstFreedom = 0.4;
+// Edges are collapsed with this share of the freedom first: what would cost more waits. Then with
+// so many times more, up to all of it. Meshes of so few triangles go in smaller steps.
+constexpr double kFirstFreedom = 0.4, kMoreFreedom = 2.5;
+constexpr std::size_t kFewTriangles = 30000;
+constexpr double kFirstFreedomOfFew = 0.3, kMoreFreedomOfFew = 1.5;
 // Freedom for a number of triangles grows by this factor at a time, by the larger one where that
 // gave less than this share of the triangles, up to so much.
 constexpr double kLooser = 1.25;
@@ -57,13 +60,15 @@ class Collapser {
 
   void run(base::Job& job) {
     const std::size_t all = mesh_.triangleCount();
+    const bool few = all < kFewTriangles;
     if (bounds_.before != nullptr) {
       repeat(*bounds_.before, job);
     } else {
       attachFrom(0, job);
     }
     if (bounds_.onlyRepeat) return;
-    if (bounds_.before == nullptr && bounds_.triangles == 0) looseness_ = kFirstFreedom;
+    if (bounds_.before == nullptr && bounds_.triangles == 0)
+      looseness_ = few ? kFirstFreedomOfFew : kFirstFreedom;
     for (bool anew = bounds_.before == nullptr;; anew = true) {
       const std::size_t start = mesh_.triangleCount();
       tooFar_ = false;
@@ -81,7 +86,7 @@ class Collapser {
       const std::size_t left = mesh_.triangleCount();
       if (bounds_.triangles == 0) {
         if (looseness_ >= 1) return;
-        looseness_ = 1;
+        looseness_ = std::min(1.0, looseness_ * (few ? kMoreFreedomOfFew : kMoreFreedom));
         continue;
       }
       if (left <= bounds_.triangles) return;
