@@ -8,6 +8,7 @@
 #include "simplify/edge_mesh.h"
 #include "simplify/edge_queue.h"
 #include "simplify/ring.h"
+#include "simplify/sample_lists.h"
 #include "simplify/turn_needles.h"
 
 namespace tufa::simplify {
@@ -23,9 +24,6 @@ constexpr double kOneSide = 0.9;
 // What lies above the triangle it was on, no farther than this share of the freedom, squared,
 // stays.
 constexpr double kSurelyNear = 0.25;
-// A sample whose squared distance to a triangle is at most this share of that to the corner belongs
-// there.
-constexpr double kNearShare = 0.05;
 // Edges are collapsed with this share of the freedom first: what would cost more waits. Then with
 // so many times more, up to all of it. Meshes of so few triangles go in smaller steps.
 constexpr double kFirstFreedom = 0.4, kMoreFreedom = 2.5;
@@ -50,9 +48,7 @@ class Collapser {
         allowed_(bounds.allowed),
         joined_(mesh.positions.size(), 0),
         version_(mesh.positions.size(), 0),
-        firstSample_(mesh_.cornerCount() / 3, kNone),
-        nextSample_(bounds.samples.size()),
-        sampleTriangles_(bounds.samples.size()) {
+        samples_(mesh_.cornerCount() / 3, bounds.samples.size()) {
     for (std::uint32_t i = 0; i < mesh_.vertexCount(); ++i) {
       if (mesh_.isOnBoundary(i)) allowed_[i] = 0;
     }
@@ -101,7 +97,7 @@ class Collapser {
     Collapsed out;
     out.looseness = looseness_;
     const std::vector<std::uint8_t> turned = turnThin();
-    out.sampleTriangles = std::move(sampleTriangles_);
+    out.sampleTriangles = samples_.triangles();
     out.steps = std::move(steps_);
     const auto vertices = static_cast<std::uint32_t>(mesh_.vertexCount());
     std::vector<VertexIndex> numbers(vertices, kNone);
@@ -167,7 +163,7 @@ class Collapser {
       own = std::min(own, looseness_ * static_cast<double>(bounds_.turning[i]));
       if (mesh_.isRoot(i) && mesh_.isOnBoundary(i)) own = 0;
     }
-    return turnNeedles(mesh_, bounds_, allowed, sampleTriangles_);
+    return turnNeedles(mesh_, bounds_, allowed, samples_);
   }
 
   // Whether the quad of two triangles is half of four that are a closed surface. Two quads would
@@ -212,7 +208,7 @@ class Collapser {
       const std::uint32_t t = before.sampleTriangles[i];
       const bool same = mesh_.isAlive(t) && changed_[mesh_.corner(t)] == 0 &&
                         changed_[mesh_.corner(t + 1)] == 0 && changed_[mesh_.corner(t + 2)] == 0;
-      attach(i, same ? t : locate(i));
+      samples_.attach(i, same ? t : locate(i));
     }
   }
 
@@ -224,7 +220,7 @@ class Collapser {
     for (const VertexIndex own : {step.keep, step.drop}) {
       mesh_.forTriangles(own, [&](std::uint32_t t, VertexIndex x, VertexIndex) {
         same &= changed_[x] == 0;
-        sampled |= firstSample_[t / 3] != kNone;
+        sampled |= samples_.front(t) != kNone;
       });
     }
     if (!same) return false;
@@ -232,8 +228,7 @@ class Collapser {
     edge.sum = joined(edge.a, edge.b, edge.point);
     auto reach = static_cast<double>(step.reach);
     if (sampled) {
-      // Always keeps its shape, as it did so before.
-      (void)ring_.collect(mesh_, edge.a, edge.b, edge.point, edge.sum.normals);
+      if (!ring_.collect(mesh_, edge.a, edge.b, edge.point, edge.sum.normals)) return false;
       if (!samplesStayNear(edge, reach)) return false;
     }
     join(edge, reach, sampled);
@@ -245,48 +240,11 @@ class Collapser {
     for (std::size_t i = first; i < bounds_.samples.size(); ++i) {
       job.lookAtTimes(i);
       const auto sample = static_cast<std::uint32_t>(i);
-      attach(sample, locate(sample));
+      samples_.attach(sample, locate(sample));
     }
   }
-  void attach(std::uint32_t sample, std::uint32_t t) {
-    sampleTriangles_[sample] = t;
-    nextSample_[sample] = firstSample_[t / 3];
-    firstSample_[t / 3] = sample;
-  }
-  // The first corner of the triangle that a sample is nearest to, of those around the corners of
-  // its polygon.
   [[nodiscard]] std::uint32_t locate(std::uint32_t sample) const {
-    const std::size_t polygon = bounds_.samples[sample].polygon, quads = given_.quads.size();
-    const Vec3d at = vectorOf(bounds_.samples[sample].point);
-    std::uint32_t nearest = kNone;
-    double least = std::numeric_limits<double>::infinity();
-    const auto look = [&](std::uint32_t t) {
-      const Vec3d &a = mesh_.point(mesh_.corner(t)), &b = mesh_.point(mesh_.corner(t + 1)),
-                  &c = mesh_.point(mesh_.corner(t + 2));
-      const double squared = FlatTriangle(a, b, c).squaredDistance(at);
-      if (squared >= least) return;
-      least = squared;
-      nearest = t;
-    };
-    const auto lookAround = [&](VertexIndex vertex) {
-      mesh_.forTriangles(mesh_.rootOf(vertex),
-                         [&](std::uint32_t t, VertexIndex, VertexIndex) { look(t); });
-    };
-    const auto lookFrom = [&](const auto& vertices) {
-      // Mostly it is at the corner that is nearest.
-      const auto squaredTo = [&](VertexIndex v) {
-        return (mesh_.point(mesh_.rootOf(v)) - at).lengthSqr();
-      };
-      const VertexIndex corner = *std::min_element(
-          vertices.begin(), vertices.end(),
-          [&](VertexIndex v, VertexIndex w) { return squaredTo(v) < squaredTo(w); });
-      lookAround(corner);
-      if (least <= kNearShare * squaredTo(corner)) return;
-      std::for_each(vertices.begin(), vertices.end(), lookAround);
-    };
-    polygon < quads ? lookFrom(given_.quads[polygon].vertices)
-                    : lookFrom(given_.triangles[polygon - quads].vertices);
-    return nearest;
+    return locateSample(mesh_, given_, bounds_.samples[sample]);
   }
 
   // Proposes all edges, or those where something is not as in the result before.
@@ -353,7 +311,7 @@ class Collapser {
     const double allowed = allowedAt(edge.a, edge.b), enough = allowed * allowed;
     // What failed once lies at the front and mostly fails again.
     for (const std::uint32_t t : ring_.star()) {
-      const std::uint32_t i = firstSample_[t / 3];
+      const std::uint32_t i = samples_.front(t);
       if (i != kNone && !ring_.isNear(vectorOf(bounds_.samples[i].point), enough)) return false;
     }
     attached_.clear();
@@ -365,14 +323,11 @@ class Collapser {
       const bool stays = next < ring_.triangles().size() && ring_.triangles()[next] == t;
       const std::size_t first = stays ? next++ : 0;
       std::uint32_t before = kNone;
-      for (std::uint32_t i = firstSample_[t / 3]; i != kNone; before = i, i = nextSample_[i]) {
+      for (std::uint32_t i = samples_.front(t); i != kNone; before = i, i = samples_.after(i)) {
         const Vec3d at = vectorOf(bounds_.samples[i].point);
         const auto [triangle, squared] = ring_.nearest(at, first, kSurelyNear * enough);
         if (squared > enough) {
-          if (before != kNone) {
-            nextSample_[before] = nextSample_[i];
-            attach(i, t);
-          }
+          if (before != kNone) samples_.moveToFront(i, before, t);
           return false;
         }
         farthest = std::max(farthest, squared);
@@ -440,8 +395,8 @@ class Collapser {
     allowed_[edge.a] = std::min(allowed_[edge.a], allowed_[edge.b]);
     mesh_.collapse(edge.a, edge.b, edge.point);
     if (moved) {
-      for (const std::uint32_t t : ring_.star()) firstSample_[t / 3] = kNone;
-      for (const auto& [sample, t] : attached_) attach(sample, t);
+      for (const std::uint32_t t : ring_.star()) samples_.clear(t);
+      for (const auto& [sample, t] : attached_) samples_.attach(sample, t);
     }
     joined_[edge.a] = 1;
     ++version_[edge.a];
@@ -464,8 +419,7 @@ class Collapser {
   EdgeQueue queue_;
   std::vector<Step> steps_;
   std::vector<VertexIndex> around_;
-  std::vector<std::uint32_t> firstSample_, nextSample_;  // the samples of each triangle, as lists
-  std::vector<std::uint32_t> sampleTriangles_;           // where each sample is
+  SampleLists samples_;
   // Of the edge at hand: what it would become, where the samples go, and what they say.
   Ring ring_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> attached_;

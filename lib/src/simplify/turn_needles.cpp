@@ -25,15 +25,12 @@ constexpr int kSweeps = 3;
 class Turner {
  public:
   Turner(EdgeMesh& mesh, const Bounds& bounds, const std::vector<double>& allowed,
-         std::vector<std::uint32_t> sampleTriangles)
+         SampleLists samples)
       : mesh_(mesh),
         bounds_(bounds),
         allowed_(allowed),
-        first_(mesh.cornerCount() / 3, kNone),
-        next_(sampleTriangles.size()),
-        turned_(first_.size(), 0) {
-    for (std::uint32_t i = 0; i < sampleTriangles.size(); ++i) attach(i, sampleTriangles[i]);
-  }
+        samples_(std::move(samples)),
+        turned_(mesh.cornerCount() / 3, 0) {}
 
   bool sweep() {
     bool any = false;
@@ -121,7 +118,7 @@ class Turner {
     const double allowed = allowedAt(pair);
     const std::array<FlatTriangle, 2> now = shapesOf(pair);
     for (const std::uint32_t t : {pair.t, pair.u}) {
-      for (std::uint32_t i = first_[t / 3]; i != kNone; i = next_[i]) {
+      for (std::uint32_t i = samples_.front(t); i != kNone; i = samples_.after(i)) {
         if (nearest(now, i).second > allowed * allowed) return false;
       }
     }
@@ -141,35 +138,32 @@ class Turner {
     return two < one ? std::pair(1, two) : std::pair(0, one);
   }
 
-  void attach(std::uint32_t sample, std::uint32_t t) {
-    next_[sample] = first_[t / 3];
-    first_[t / 3] = sample;
-  }
   void moveSamples(const Pair& pair) {
     std::vector<std::uint32_t> samples;
     for (const std::uint32_t t : {pair.t, pair.u}) {
-      for (std::uint32_t i = first_[t / 3]; i != kNone; i = next_[i]) samples.push_back(i);
-      first_[t / 3] = kNone;
+      for (std::uint32_t i = samples_.front(t); i != kNone; i = samples_.after(i)) {
+        samples.push_back(i);
+      }
+      samples_.clear(t);
     }
     const std::array<FlatTriangle, 2> now = shapesOf(pair);
     for (const std::uint32_t i : samples) {
-      attach(i, nearest(now, i).first == 0 ? pair.t : pair.u);
+      samples_.attach(i, nearest(now, i).first == 0 ? pair.t : pair.u);
     }
   }
 
   EdgeMesh& mesh_;
   const Bounds& bounds_;
   const std::vector<double>& allowed_;
-  std::vector<std::uint32_t> first_, next_;  // the samples of each triangle, as lists
+  SampleLists samples_;
   std::vector<std::uint8_t> turned_;
 };
 
 }  // namespace
 
 std::vector<std::uint8_t> turnNeedles(EdgeMesh& mesh, const Bounds& bounds,
-                                      const std::vector<double>& allowed,
-                                      std::vector<std::uint32_t> sampleTriangles) {
-  Turner turner(mesh, bounds, allowed, std::move(sampleTriangles));
+                                      const std::vector<double>& allowed, SampleLists samples) {
+  Turner turner(mesh, bounds, allowed, std::move(samples));
   for (int i = 0; i < kSweeps && turner.sweep(); ++i) {
   }
   return std::move(turner).turned();

@@ -5,6 +5,7 @@
 
 #include "simplify/collapse.h"
 #include "simplify/edge_mesh.h"
+#include "simplify/sample_lists.h"
 
 namespace tufa::simplify {
 
@@ -12,10 +13,10 @@ namespace tufa::simplify {
 /// neither the topology, nor a direction, nor what is near a sample suffers. Looks at triangles as
 /// they lie in the mesh, a few times over.
 ///
-/// `allowed` tells for each vertex how far the surface may move there, 0: not at all.
-/// `sampleTriangles` is where each sample is. Returns a mark for each triangle, 1 if it was turned.
+/// `allowed` tells for each vertex how far the surface may move there, 0: not at all. Returns a
+/// mark for each triangle, 1 if it was turned.
 [[nodiscard]] std::vector<std::uint8_t> turnNeedles(EdgeMesh& mesh, const Bounds& bounds,
                                                     const std::vector<double>& allowed,
-                                                    std::vector<std::uint32_t> sampleTriangles);
+                                                    SampleLists samples);
 
 }  // namespace tufa::simplify
