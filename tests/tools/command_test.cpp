@@ -325,8 +325,11 @@ TEST_F(Command, NamesTheEdgeOfTheDataAndCapsIt) {
 TEST_F(Command, StopsWhenAsked) {
   if (!std::filesystem::exists("/proc/self/status")) GTEST_SKIP() << "no /proc to look into";
   ASSERT_EQ(run("make sphere --voxel 0.004 -o s.vdb").exitCode, 0);
+  // Once it is no longer the shell, whose handlers go, and has its own.
   const std::string interrupt =
-      "& until grep -q '^SigCgt:.*[2367abef]$' /proc/$!/status; do :; done; kill -INT $!; wait $!";
+      "& until [ \"$(grep -c -e '^Name:.tufa$' -e '^SigCgt:.*[2367abef]$' /proc/$!/status)\" = 2 "
+      "]; "
+      "do :; done; kill -INT $!; wait $!";
   for (const char* arguments : {"make gyroid --voxel 0.0015 -o g.vdb",
                                 "mesh s.vdb -o m.ply --check", "mesh s.vdb -o m.stl --json"}) {
     const Outcome outcome = run(arguments, interrupt);
