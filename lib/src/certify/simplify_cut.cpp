@@ -23,7 +23,7 @@ constexpr double kFirstShare = 0.9;
 // anew any more.
 constexpr float kLess = 0.6F;
 constexpr int kSoftRounds = 5;
-constexpr int kUndoRounds = 16;
+constexpr int kUndoRounds = 6;
 constexpr int kMostStrikes = 30;
 // After so many further rounds its neighbours are undone, too, then theirs, at most so far at once.
 constexpr int kRoundsPerRing = 4;
@@ -344,8 +344,8 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     }
     bounds.undone.clear();
     if (!any) {
-      any = undo(collapsed, result.made.mesh, faulty, undoRounds / kRoundsPerRing, strikes,
-                 bounds.undone);
+      const int rings = std::max(0, undoRounds - kUndoRounds) / kRoundsPerRing;
+      any = undo(collapsed, result.made.mesh, faulty, rings, strikes, bounds.undone);
       keepUndone(collapsed, bounds);
       bounds.onlyRepeat = ++undoRounds > kUndoRounds;
     }
