@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tufa/check.h>
 #include <tufa/chunks.h>
 #include <tufa/shapes.h>
 #include <cmath>
@@ -115,6 +116,28 @@ openvdb::FloatGrid::Ptr shapeOf(Shape kind, double voxelSize) {
   ShapeOptions options;
   options.voxelSize = voxelSize;
   return makeShape(kind, options);
+}
+
+// With creases through the chunks' faces, and thin ridges beside them.
+TEST(ChunkPairs, NoneAreLeft) {
+  for (const Shape kind : {Shape::Terrain, Shape::Bracket}) {
+    ChunkOptions options;
+    options.chunkSize = 16;
+    const Made made = makeChunks(*shapeOf(kind, 0.04), options);
+    std::size_t left = 0;
+    for (const ChunkEntry& entry : made.index.chunks) {
+      for (const ChunkLevelEntry& level : entry.levels) left += level.intersectionsLeft;
+    }
+    EXPECT_EQ(left, 0u);
+    std::mt19937 random(5);
+    for (int round = 0; round < 3; ++round) {
+      std::vector<std::size_t> lods = randomLods(made, random);
+      restrictLods(made.index, lods);
+      const CheckReport report = check(assembleChunks(made.chunks, lods));
+      EXPECT_TRUE(report.watertight());
+      EXPECT_EQ(report.selfIntersectingPairs, 0u);
+    }
+  }
 }
 
 class ChunkMixtures : public ::testing::TestWithParam<std::tuple<Shape, double, int>> {};

@@ -28,6 +28,10 @@ class Affine {
   [[nodiscard]] Position toWorld(const Position& p) const {
     return {p.x + world_[0], p.y + world_[1], p.z + world_[2]};
   }
+  /// Inverse of toWorld().
+  [[nodiscard]] Position fromWorld(const Position& p) const {
+    return {p.x - world_[0], p.y - world_[1], p.z - world_[2]};
+  }
   /// Inverse of position(): lattice coordinates counted from `cell`.
   [[nodiscard]] openvdb::Vec3d latticePoint(const Position& p, const openvdb::Coord& cell) const {
     openvdb::Vec3d at;

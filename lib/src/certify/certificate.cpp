@@ -267,6 +267,22 @@ void Certifier<TreeT>::measureQuad(std::size_t index, Part& part) {
   part.sum += static_cast<double>(error);
 }
 
+// The distance of a point of a polygon that comes from a base quad. Where the mesh is folded its
+// normals lead nowhere, and those of that quad's vertices are followed.
+template <class TreeT>
+double Certifier<TreeT>::distanceBelow(const Vec3d& point, const Vec3d& outward,
+                                       std::uint32_t source) const {
+  const double enough = toleranceAt(point) * base_.affine.voxelSize();
+  double least =
+      std::min(distanceToBase(point, outward, enough), surface_.distanceToQuad(point, source));
+  for (const VertexIndex vertex : base_.mesh.quads[source].vertices) {
+    if (least <= enough) break;
+    const Normal& n = base_.mesh.normals[vertex];
+    least = std::min(least, distanceToBase(point, Vec3d(n.x, n.y, n.z), enough));
+  }
+  return least;
+}
+
 template <class TreeT>
 void Certifier<TreeT>::measureCorner(VertexIndex vertex, Part& part) {
   if (changed_[vertex] == 0 || isFine(vertex)) return;
@@ -275,9 +291,8 @@ void Certifier<TreeT>::measureCorner(VertexIndex vertex, Part& part) {
   if (ref.level == 0 && made_->mesh.positions[vertex] == base_.mesh.positions[ref.cluster]) return;
   const Vec3d point = vectorOf(made_->mesh.positions[vertex]);
   const Piece& piece = pieces_[around_[firstAround_[vertex]]];
-  const double distance = std::min(distanceToBase(point, facing(&vertex, 1)),
-                                   surface_.distanceToQuad(point, piece.source));
-  const double voxels = distance / base_.affine.voxelSize();
+  const double voxels =
+      distanceBelow(point, facing(&vertex, 1), piece.source) / base_.affine.voxelSize();
   cornerErrors_[vertex] = static_cast<float>(voxels);
   note(point, voxels, &vertex, 1, part);
 }
@@ -300,10 +315,9 @@ void Certifier<TreeT>::measurePiece(std::size_t index, Part& part) {
       // The middles of small triangles that fill the large one.
       const double s = (i + 1.0 / 3) / steps, t = (j + 1.0 / 3) / steps;
       const Vec3d point = a + (b - a) * s + (c - a) * t;
-      const double distance =
-          std::min(distanceToBase(point, outward), surface_.distanceToQuad(point, piece.source));
-      note(point, distance / voxel, v.data(), 4, part);
-      pieceErrors_[index] = std::max(pieceErrors_[index], static_cast<float>(distance / voxel));
+      const double voxels = distanceBelow(point, outward, piece.source) / voxel;
+      note(point, voxels, v.data(), 4, part);
+      pieceErrors_[index] = std::max(pieceErrors_[index], static_cast<float>(voxels));
     }
   }
 }

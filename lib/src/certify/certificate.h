@@ -101,10 +101,8 @@ class Certifier {
   [[nodiscard]] openvdb::Vec3d facing(const VertexIndex* vertices, int count) const;
   void noteFar(std::uint64_t index, const openvdb::Vec3d& point, double voxels, Part& part) const;
   [[nodiscard]] double toleranceAt(const openvdb::Vec3d& point) const;
-  [[nodiscard]] double distanceToBase(const openvdb::Vec3d& point,
-                                      const openvdb::Vec3d& facing) const {
-    return distanceToBase(point, facing, toleranceAt(point) * base_.affine.voxelSize());
-  }
+  [[nodiscard]] double distanceBelow(const openvdb::Vec3d& point, const openvdb::Vec3d& outward,
+                                     std::uint32_t source) const;
   [[nodiscard]] static int reachOf(double voxels);
   template <class Body>
   void forChunks(std::size_t count, const Body& body, Deviation& total, double& sum);

@@ -5,9 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
+#include "chunks/face_segments.h"
 #include "components/case_table.h"
 
 namespace tufa::chunks {
@@ -272,22 +272,23 @@ class Face {
   void uncross() {
     while (true) {
       collect();
+      std::vector<std::size_t> crossed;
+      forCrossings(segments_, [&](std::size_t i, std::size_t j) {
+        crossed.push_back(i);
+        crossed.push_back(j);
+      });
+      std::sort(crossed.begin(), crossed.end());
+      crossed.erase(std::unique(crossed.begin(), crossed.end()), crossed.end());
       bool any = false;
-      for (const auto& [a, b] : crossingPairs()) {
-        any |= splitOnce(a);
-        any |= splitOnce(b);
+      for (const std::size_t i : crossed) {
+        const FaceSegment& segment = segments_[i];
+        any |= lines_[segment.line].split(segment.from, segment.to);
       }
       if (!any) return;
     }
   }
 
  private:
-  struct Segment {
-    std::size_t line, from, to;
-    std::array<double, 2> a, b;  // on the face
-    bool split = false;
-  };
-
   void collect() {
     segments_.clear();
     const auto axes = components::otherAxes(lines_[begin_].curve().axis);
@@ -303,50 +304,12 @@ class Face {
             {line, from, to, place(lines_[line].seamAt(from)), place(lines_[line].seamAt(to))});
       });
     }
-    std::sort(segments_.begin(), segments_.end(), [](const Segment& s, const Segment& t) {
-      return std::tuple(std::min(s.a[0], s.b[0]), s.line, s.from) <
-             std::tuple(std::min(t.a[0], t.b[0]), t.line, t.from);
-    });
-  }
-
-  // Segments of which one at least can be split further.
-  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> crossingPairs() const {
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (std::size_t i = 0; i < segments_.size(); ++i) {
-      const Segment& s = segments_[i];
-      const double right = std::max(s.a[0], s.b[0]);
-      for (std::size_t j = i + 1; j < segments_.size(); ++j) {
-        const Segment& t = segments_[j];
-        if (std::min(t.a[0], t.b[0]) > right) break;
-        if (s.to - s.from < 2 && t.to - t.from < 2) continue;
-        if (cross(s, t)) pairs.emplace_back(i, j);
-      }
-    }
-    return pairs;
-  }
-
-  // Whether two segments meet elsewhere than in a common end.
-  static bool cross(const Segment& s, const Segment& t) {
-    if (s.a == t.a || s.a == t.b || s.b == t.a || s.b == t.b) return false;
-    const auto side = [](const auto& a, const auto& b, const auto& c) {
-      return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    };
-    const double sa = side(s.a, s.b, t.a), sb = side(s.a, s.b, t.b);
-    const double ta = side(t.a, t.b, s.a), tb = side(t.a, t.b, s.b);
-    return sa * sb <= 0 && ta * tb <= 0 && !(sa == 0 && sb == 0);
-  }
-
-  bool splitOnce(std::size_t index) {
-    Segment& segment = segments_[index];
-    if (segment.split) return false;
-    segment.split = true;
-    return lines_[segment.line].split(segment.from, segment.to);
   }
 
   const Seams& seams_;
   std::vector<Line>& lines_;
   std::size_t begin_, end_;
-  std::vector<Segment> segments_;
+  std::vector<FaceSegment> segments_;
 };
 
 }  // namespace

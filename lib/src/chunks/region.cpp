@@ -142,7 +142,11 @@ class RegionMaker {
         if (splitFar(meshes.transition, *transition, forbidden)) continue;
       }
       if (options_.repair) {
-        if (mendBoth(meshes, last, forbidden) && round < kMostRounds) continue;
+        mendBoth(meshes, last, Movable::Clusters);
+        if (splitPairs(meshes, forbidden) && round < kMostRounds) continue;
+        if (!meshes.pairs.empty() || !meshes.transitionPairs.empty()) {
+          mendBoth(meshes, last, Movable::All);
+        }
         bool split = splitFar(meshes.regular, regular, forbidden);
         if (!last) split |= splitFar(meshes.transition, *transition, forbidden);
         if (split) continue;
@@ -155,6 +159,9 @@ class RegionMaker {
 
  private:
   using Certifier = certify::Certifier<TreeT>;
+  // What may move so that no polygons meet: vertices that stand for larger cells, or all but those
+  // on seams, which other chunks have too.
+  enum class Movable : std::uint8_t { Clusters, All };
 
   [[nodiscard]] Mesh inChunks(Mesh mesh) {
     keepInChunks(mesh.positions, cells_, chunks_, level0_.affine(), job_);
@@ -226,35 +233,55 @@ class RegionMaker {
     return suspects;
   }
 
-  // Moves clusters and turns quads until no polygons meet, where that can be. Gives the pairs left.
-  std::vector<mend::PolygonPair> mend(SeamedCut& mesh) {
+  [[nodiscard]] bool isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const {
+    const cut::ClusterRef& ref = mesh.cut.clusters[vertex];
+    if (ref.level != 0) return false;
+    return movable == Movable::Clusters || mesh.isOnSeam(vertex) ||
+           !chunks_.own.isInside(chunks_.chunkOf(cells_[ref.cluster]));
+  }
+
+  // Moves vertices and turns quads until no polygons meet, where that can be, as they will be
+  // written. Gives the pairs left.
+  std::vector<mend::PolygonPair> mend(SeamedCut& mesh, Movable movable) {
+    std::vector<Position>& positions = mesh.made.mesh.positions;
+    for (Position& p : positions) {
+      p = base_.affine.toWorld(p);
+      if (options_.singlePrecision) p = base::toSingle(p);
+    }
     mend::Source source;
+    source.singlePrecision = options_.singlePrecision;
     source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
       std::vector<Position> points;
       for (const VertexIndex vertex : vertices) points.push_back(mesh.made.mesh.positions[vertex]);
       return points;
     };
-    source.isFixed = [&](VertexIndex vertex) { return mesh.cut.clusters[vertex].level == 0; };
+    source.isFixed = [&](VertexIndex vertex) { return isFixed(mesh, vertex, movable); };
     source.voxelSize = base_.affine.voxelSize();
     source.toTheFloor = false;
-    return mend::mend(mesh.made.mesh, suspectsOf(mesh), source, job_).left;
+    mend::MendReport report = mend::mend(mesh.made.mesh, suspectsOf(mesh), source, job_);
+    for (Position& p : positions) p = base_.affine.fromWorld(p);
+    return std::move(report.left);
   }
 
-  // Mends both meshes of a level, which share their clusters, in turn. Splits cells where that does
-  // not help; returns whether it did.
-  bool mendBoth(LevelMeshes& meshes, bool last, cut::CellFlags& forbidden) {
-    meshes.pairs = mend(meshes.regular);
-    if (last) return splitPairs(meshes.regular, meshes.pairs, forbidden);
-    std::vector<mend::PolygonPair> pairs;
+  // Mends both meshes of a level, which share all but their strips, in turn.
+  void mendBoth(LevelMeshes& meshes, bool last, Movable movable) {
+    meshes.pairs = mend(meshes.regular, movable);
+    if (last) return;
     for (int turn = 0; turn < kMostTurns; ++turn) {
-      if (!takeClusters(meshes.regular, meshes.transition) && turn > 0) break;
-      pairs = mend(meshes.transition);
-      if (!takeClusters(meshes.transition, meshes.regular)) break;
-      meshes.pairs = mend(meshes.regular);
+      if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
+      meshes.transitionPairs = mend(meshes.transition, movable);
+      if (!takeShared(meshes.transition, meshes.regular)) return;
+      meshes.pairs = mend(meshes.regular, movable);
     }
-    if (takeClusters(meshes.regular, meshes.transition)) pairs = findPairs(meshes.transition);
+    if (takeShared(meshes.regular, meshes.transition)) {
+      meshes.transitionPairs = findPairs(meshes.transition);
+    }
+  }
+
+  // Splits the cells of polygons that meet; returns whether there are any.
+  bool splitPairs(const LevelMeshes& meshes, cut::CellFlags& forbidden) {
     bool split = splitPairs(meshes.regular, meshes.pairs, forbidden);
-    split |= splitPairs(meshes.transition, pairs, forbidden);
+    split |= splitPairs(meshes.transition, meshes.transitionPairs, forbidden);
     return split;
   }
 
@@ -263,17 +290,18 @@ class RegionMaker {
     return mend::findPairs(surface, suspectsOf(mesh), job_);
   }
 
-  // Moves the clusters of one mesh to where another of the same cut has them. Returns whether that
-  // changed anything.
-  static bool takeClusters(const SeamedCut& from, SeamedCut& to) {
-    bool any = false;
-    for (VertexIndex i = 0; i < from.clusterCount; ++i) {
-      Position& position = to.made.mesh.positions[i];
-      if (position == from.made.mesh.positions[i]) continue;
-      position = from.made.mesh.positions[i];
-      any = true;
+  // Makes of one mesh, but for seams and strips, what another of the same cut is. Returns whether
+  // that changed anything.
+  static bool takeShared(const SeamedCut& from, SeamedCut& to) {
+    const Mesh& mesh = from.made.mesh;
+    Mesh& own = to.made.mesh;
+    const auto end = mesh.positions.begin() + static_cast<std::ptrdiff_t>(from.clusterCount);
+    if (std::equal(mesh.positions.begin(), end, own.positions.begin()) && mesh.quads == own.quads) {
+      return false;
     }
-    return any;
+    std::copy(mesh.positions.begin(), end, own.positions.begin());
+    own.quads = mesh.quads;
+    return true;
   }
 
   bool splitPairs(const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,

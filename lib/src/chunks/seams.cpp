@@ -9,7 +9,9 @@
 #include <tuple>
 #include <utility>
 
+#include "chunks/flatness.h"
 #include "chunks/seam_crossings.h"
+#include "chunks/untangle.h"
 
 namespace tufa::chunks {
 namespace {
@@ -22,8 +24,6 @@ using openvdb::Vec3d;
 constexpr double kMargin = 1e-3;
 // A curve's corner is worth a vertex if it is farther off than this, in voxels.
 constexpr double kCorner = 0.02;
-// So many steps around an arc are looked at: no farther than the margin around the chunks is sound.
-constexpr int kRings = 5;
 // Vertices nearer to each other than this, in voxels, may become one by rounding.
 constexpr double kClose = 4e-3;
 
@@ -55,7 +55,8 @@ class SeamFinder {
     linkArcs(crossings);
     insertCorners();
     traceCurves();
-    measureFlatness();
+    untangle(havensOf(crossings), seams_);
+    measureFlatness(base_, before_, affine_, seams_);
     makeMesh();
     return std::move(seams_);
   }
@@ -169,18 +170,34 @@ class SeamFinder {
         if (way.lengthSqr() < kClose * kClose) close.insert(close.end(), {order[i], order[k]});
       }
     }
-    const auto crossingPlace = [](const SeamCrossing& crossing, const Coord& from) {
-      Vec3d at = (crossing.start - from).asVec3d();
-      at[crossing.axis] += crossing.along;
-      return at;
-    };
-    for (const SeamIndex arc : close) {
-      SeamVertex& vertex = seams_.vertices[arc];
-      const auto [a, b] = quadsOf_[arc];
-      vertex.offset =
-          (crossingPlace(crossings[a], vertex.cell) + crossingPlace(crossings[b], vertex.cell)) *
-          0.5;
+    for (const SeamIndex arc : close) seams_.vertices[arc].offset = middleOf(arc, crossings);
+  }
+
+  // The middle of an arc's own stretch of curve, between two crossings, seen from its cell.
+  [[nodiscard]] Vec3d middleOf(SeamIndex arc, const std::vector<SeamCrossing>& crossings) const {
+    const Coord& cell = seams_.vertices[arc].cell;
+    const auto [a, b] = quadsOf_[arc];
+    return (placeFrom(cell, crossings[a]) + placeFrom(cell, crossings[b])) * 0.5;
+  }
+  static Vec3d placeFrom(const Coord& cell, const SeamCrossing& crossing) {
+    Vec3d at = (crossing.start - cell).asVec3d();
+    at[crossing.axis] += crossing.along;
+    return at;
+  }
+
+  // Where the vertex of each arc can go if curves cross: to the middle of its stretch, that of a
+  // corner to the crossing between two stretches.
+  [[nodiscard]] std::vector<Vec3d> havensOf(const std::vector<SeamCrossing>& crossings) const {
+    std::vector<Vec3d> havens(seams_.arcs.size());
+    for (SeamIndex i = 0; i < havens.size(); ++i) {
+      if (i < quadsOf_.size()) {
+        havens[i] = middleOf(i, crossings);
+        continue;
+      }
+      const auto quad = std::lower_bound(quads_.begin(), quads_.end(), seams_.arcs[i].quad);
+      havens[i] = placeFrom(seams_.vertices[i].cell, crossings[quad - quads_.begin()]);
     }
+    return havens;
   }
 
   [[nodiscard]] Normal meanNormal(const SeamCrossing& a, const SeamCrossing& b) const {
@@ -354,64 +371,6 @@ class SeamFinder {
                 return std::tuple(a.axis, a.chunk, placeOf(a.arcs.front())) <
                        std::tuple(b.axis, b.chunk, placeOf(b.arcs.front()));
               });
-  }
-
-  // Looks around each arc in the base mesh. What is looked at lies within a few cells of the face.
-  void measureFlatness() {
-    std::vector<std::pair<VertexIndex, VertexIndex>> edges;
-    std::vector<std::uint8_t> near(base_.positions.size(), 0);
-    for (const Arc& arc : seams_.arcs) near[arc.below] = near[arc.above] = 1;
-    // Marks grow by a ring at a time, edges are kept where both ends are marked.
-    for (int ring = 0; ring < kRings; ++ring) {
-      std::vector<std::uint8_t> wider = near;
-      for (const Quad& quad : base_.quads) {
-        const auto& v = quad.vertices;
-        for (int i = 0; i < 4; ++i) {
-          if (near[v[i]] != 0) wider[v[(i + 1) % 4]] = wider[v[(i + 3) % 4]] = 1;
-        }
-      }
-      near = std::move(wider);
-    }
-    for (const Quad& quad : base_.quads) {
-      const auto& v = quad.vertices;
-      for (int i = 0; i < 4; ++i) {
-        const VertexIndex a = v[i], b = v[(i + 1) % 4];
-        if (near[a] != 0 && near[b] != 0) edges.insert(edges.end(), {{a, b}, {b, a}});
-      }
-    }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    std::vector<std::uint32_t> seen(base_.positions.size(), ~std::uint32_t{0});
-    for (SeamIndex i = 0; i < seams_.arcs.size(); ++i) {
-      Arc& arc = seams_.arcs[i];
-      const SeamVertex& vertex = seams_.vertices[i];
-      const Position at =
-          affine_.position(vertex.cell, vertex.offset[0], vertex.offset[1], vertex.offset[2]);
-      const Vec3d point(at.x, at.y, at.z);
-      const Vec3d normal(vertex.normal.x, vertex.normal.y, vertex.normal.z);
-      std::vector<VertexIndex> found = {arc.below, arc.above};
-      std::size_t begin = 0;
-      double worst = 0;
-      seen[arc.below] = seen[arc.above] = i;
-      for (int ring = 0; ring <= kRings; ++ring) {
-        const std::size_t end = found.size();
-        for (; begin < end; ++begin) {
-          const VertexIndex from = found[begin];
-          const Position& p = before_.positions[from];
-          worst = std::max(worst, std::abs(normal.dot(Vec3d(p.x, p.y, p.z) - point)));
-          if (ring == kRings) continue;
-          auto edge = std::lower_bound(edges.begin(), edges.end(), std::pair(from, VertexIndex{0}));
-          for (; edge != edges.end() && edge->first == from; ++edge) {
-            if (seen[edge->second] == i) continue;
-            seen[edge->second] = i;
-            found.push_back(edge->second);
-          }
-        }
-        for (std::size_t k = 0; k < arc.flatness.size(); ++k) {
-          if (ring == std::min(1 << k, kRings)) arc.flatness[k] = static_cast<float>(worst);
-        }
-      }
-    }
   }
 
   [[nodiscard]] std::tuple<Coord, double, double, double> placeOf(SeamIndex arc) const {

@@ -45,8 +45,9 @@ void ChunkSplitter::addLevel(const LevelMeshes& meshes, const SeamLines& lines,
   sortPieces(meshes.regular, regular);
   if (next != nullptr) sortPieces(meshes.transition, transition);
   clusterNumbers_.assign(meshes.regular.clusterCount, kNoNumber);
-  std::vector<std::int32_t> chunkOfPolygon(meshes.regular.made.mesh.quads.size() +
-                                           meshes.regular.made.mesh.triangles.size());
+  std::vector<std::int32_t> chunkOfPolygon(
+      meshes.regular.made.mesh.quads.size() + meshes.regular.made.mesh.triangles.size(),
+      ChunkCells::kNotOwn);
   for (std::int32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
     MadeChunk& made = made_[chunk];
     fillLevel(meshes, chunk, regular[chunk], transition[chunk], lines,
@@ -54,8 +55,10 @@ void ChunkSplitter::addLevel(const LevelMeshes& meshes, const SeamLines& lines,
     made.pairsLeft.push_back(0);
     for (const Piece& piece : regular[chunk]) chunkOfPolygon[piece.polygon] = chunk;
   }
-  for (const mend::PolygonPair& pair : meshes.pairs)
-    ++made_[chunkOfPolygon[pair.a]].pairsLeft.back();
+  for (const auto& [a, b] : meshes.pairs) {
+    const std::int32_t chunk = std::max(chunkOfPolygon[a], chunkOfPolygon[b]);
+    if (chunk != ChunkCells::kNotOwn) ++made_[chunk].pairsLeft.back();
+  }
 }
 
 std::vector<MadeChunk> ChunkSplitter::takeChunks() {

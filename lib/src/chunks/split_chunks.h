@@ -19,9 +19,10 @@ namespace tufa::chunks {
 struct LevelMeshes {
   SeamedCut regular;
   SeamedCut transition;
-  std::vector<float> regularErrors;      ///< at each vertex, voxels
-  std::vector<float> transitionErrors;   ///< at each vertex, voxels
-  std::vector<mend::PolygonPair> pairs;  ///< of the regular mesh that meet
+  std::vector<float> regularErrors;                ///< at each vertex, voxels
+  std::vector<float> transitionErrors;             ///< at each vertex, voxels
+  std::vector<mend::PolygonPair> pairs;            ///< of the regular mesh that meet
+  std::vector<mend::PolygonPair> transitionPairs;  ///< of the transition mesh that meet
 };
 
 /// A chunk, and for each of its levels the number of pairs of its polygons that meet.

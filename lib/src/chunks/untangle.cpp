@@ -1,0 +1,74 @@
+#include "chunks/untangle.h"
+
+#include <cstdint>
+#include <iterator>
+
+#include "chunks/face_segments.h"
+#include "components/case_table.h"
+
+namespace tufa::chunks {
+namespace {
+
+using openvdb::Vec3d;
+
+// The vertices of a curve in order.
+std::vector<SeamIndex> verticesOf(const SeamCurve& curve) {
+  std::vector<SeamIndex> vertices;
+  if (curve.begin != kNoSeam) vertices.push_back(curve.begin);
+  vertices.insert(vertices.end(), curve.arcs.begin(), curve.arcs.end());
+  if (curve.end != kNoSeam) vertices.push_back(curve.end);
+  if (curve.closed) vertices.push_back(curve.arcs.front());
+  return vertices;
+}
+
+// The segments of curves on one face, seen from its first vertex.
+std::vector<FaceSegment> segmentsOf(const Seams& seams, const std::vector<SeamCurve>& curves,
+                                    std::size_t begin, std::size_t end) {
+  const auto axes = components::otherAxes(curves[begin].axis);
+  const openvdb::Coord& corner = seams.vertices[curves[begin].arcs.front()].cell;
+  const auto place = [&](SeamIndex index) -> std::array<double, 2> {
+    const SeamVertex& vertex = seams.vertices[index];
+    const Vec3d at = (vertex.cell - corner).asVec3d() + vertex.offset;
+    return {at[axes[0]], at[axes[1]]};
+  };
+  std::vector<FaceSegment> segments;
+  for (std::size_t line = begin; line < end; ++line) {
+    const std::vector<SeamIndex> vertices = verticesOf(curves[line]);
+    for (std::size_t i = 1; i < vertices.size(); ++i) {
+      segments.push_back(
+          {line, vertices[i - 1], vertices[i], place(vertices[i - 1]), place(vertices[i])});
+    }
+  }
+  return segments;
+}
+
+}  // namespace
+
+void untangle(const std::vector<Vec3d>& havens, Seams& seams) {
+  const std::vector<SeamCurve>& curves = seams.curves;
+  for (std::size_t begin = 0, end = 0; begin < curves.size(); begin = end) {
+    while (end < curves.size() && curves[end].axis == curves[begin].axis &&
+           curves[end].chunk == curves[begin].chunk) {
+      ++end;
+    }
+    for (bool any = true; any;) {
+      any = false;
+      std::vector<FaceSegment> segments = segmentsOf(seams, curves, begin, end);
+      const auto move = [&](std::size_t vertex) {
+        // A point on a chunk edge lies on several faces, and not every chunk sees all of them.
+        if (vertex >= seams.arcs.size()) return;
+        Vec3d& offset = seams.vertices[vertex].offset;
+        any |= offset != havens[vertex];
+        offset = havens[vertex];
+      };
+      forCrossings(segments, [&](std::size_t i, std::size_t j) {
+        for (const std::size_t k : {i, j}) {
+          move(segments[k].from);
+          move(segments[k].to);
+        }
+      });
+    }
+  }
+}
+
+}  // namespace tufa::chunks
