@@ -157,6 +157,31 @@ INSTANTIATE_TEST_SUITE_P(Noise, ChunkMixtures,
                          ::testing::Combine(::testing::Values(Shape::Noise),
                                             ::testing::Values(0.05), ::testing::Values(16, 32)));
 
+TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
+  ChunkOptions options;
+  options.chunkSize = 32;
+  const Made near = makeChunks(*grid, options);
+  EXPECT_EQ(near.index.origin, Position(0, 0, 0));
+  // A million voxels away, where floats hold no place to a thousandth of a voxel.
+  grid->setTransform(grid->transform().copy());
+  grid->transform().postTranslate(openvdb::Vec3d(4e4, 0, 0));
+  const Made far = makeChunks(*grid, options);
+  EXPECT_NEAR(far.index.origin.x, 4e4, 10);
+  std::mt19937 random(3);
+  std::vector<std::size_t> lods = randomLods(near, random);
+  restrictLods(near.index, lods);
+  const Mesh nearby = assembleChunks(near.chunks, lods), away = assembleChunks(far.chunks, lods);
+  const CheckReport report = check(away);
+  EXPECT_TRUE(report.watertight());
+  EXPECT_EQ(report.selfIntersectingPairs, 0u);
+  EXPECT_EQ(report.eulerCharacteristic, check(nearby).eulerCharacteristic);
+  // Rounding alone may part them.
+  EXPECT_NEAR(static_cast<double>(away.triangles.size()),
+              static_cast<double>(nearby.triangles.size()),
+              0.01 * static_cast<double>(nearby.triangles.size()));
+}
+
 TEST(ChunkMasks, OccurAll) {
   ChunkOptions options;
   options.chunkSize = 8;

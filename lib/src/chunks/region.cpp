@@ -92,8 +92,8 @@ cut::CellFlags forbidOthers(const forest::Forest& forest, const ChunkCells& chun
 template <class TreeT>
 class RegionMaker {
  public:
-  RegionMaker(const level0::Level0<TreeT>& level0, const ChunkCells& chunks,
-              const RegionOptions& options, base::Job& job)
+  RegionMaker(const level0::Level0<TreeT>& level0, const openvdb::math::Transform& transform,
+              const ChunkCells& chunks, const RegionOptions& options, base::Job& job)
       : level0_(level0),
         chunks_(chunks),
         options_(options),
@@ -104,6 +104,7 @@ class RegionMaker {
         forest_(forest::buildForest(base_, options.rule.maxLevel, job)),
         seams_(findSeams(level0.quads(), mesh_, inChunks(level0.meshBeforeRepair()), cells_, chunks,
                          job)),
+        seamPositions_(worldPositions(seams_, transform, options.singlePrecision)),
         seamBase_(withMesh(seams_.mesh)),
         surface_(seamBase_, forest_.levels[0], job),
         forbidden_(forbidOthers(forest_, chunks)),
@@ -118,6 +119,7 @@ class RegionMaker {
 
   [[nodiscard]] const std::vector<Coord>& cells() const { return cells_; }
   [[nodiscard]] const Seams& seams() const { return seams_; }
+  [[nodiscard]] const std::vector<Position>& seamPositions() const { return seamPositions_; }
   [[nodiscard]] const SeamLines& lines(std::size_t level) const { return lines_[level]; }
 
   LevelMeshes makeLevel(std::size_t level) {
@@ -244,8 +246,9 @@ class RegionMaker {
   // written. Gives the pairs left.
   std::vector<mend::PolygonPair> mend(SeamedCut& mesh, Movable movable) {
     std::vector<Position>& positions = mesh.made.mesh.positions;
-    for (Position& p : positions) {
-      p = base_.affine.toWorld(p);
+    for (VertexIndex i = 0; i < positions.size(); ++i) {
+      Position& p = positions[i];
+      p = mesh.isOnSeam(i) ? seamPositions_[mesh.seamAt(i)] : base_.affine.toWorld(p);
       if (options_.singlePrecision) p = base::toSingle(p);
     }
     mend::Source source;
@@ -341,7 +344,8 @@ class RegionMaker {
   forest::Base<TreeT> base_;
   forest::Forest forest_;
   Seams seams_;
-  forest::Base<TreeT> seamBase_;  ///< with the seams' vertices
+  std::vector<Position> seamPositions_;  ///< in the world
+  forest::Base<TreeT> seamBase_;         ///< with the seams' vertices
   certify::BaseSurface<TreeT> surface_;
   std::vector<SeamLines> lines_;  ///< of each level
   cut::CellFlags forbidden_;
@@ -356,9 +360,9 @@ std::vector<MadeChunk> makeRegion(const level0::Level0<TreeT>& level0,
                                   const ChunkCells& chunks, const RegionOptions& options,
                                   base::Job& job) {
   if (level0.mesh().positions.empty()) return {};
-  RegionMaker<TreeT> maker(level0, chunks, options, job);
-  ChunkSplitter splitter(maker.cells(), maker.seams(), chunks, level0.affine(), transform,
-                         options.singlePrecision);
+  RegionMaker<TreeT> maker(level0, transform, chunks, options, job);
+  ChunkSplitter splitter(maker.cells(), maker.seams(), maker.seamPositions(), chunks,
+                         level0.affine(), options.singlePrecision);
   for (std::size_t level = 0; level < options.tolerances.size(); ++level) {
     const bool last = level + 1 == options.tolerances.size();
     splitter.addLevel(maker.makeLevel(level), maker.lines(level),

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/single_precision.h"
 #include "chunks/flatness.h"
 #include "chunks/seam_crossings.h"
 #include "chunks/untangle.h"
@@ -421,6 +422,18 @@ Seams findSeams(const polygons::QuadContext<TreeT>& context, const Mesh& base, c
   SeamFinder finder(base, before, vertexCells, chunks, context.affine);
   const std::vector<std::uint32_t> parted = finder.findParted(job);
   return finder.find(seamCrossings(context, parted, job));
+}
+
+std::vector<Position> worldPositions(const Seams& seams, const openvdb::math::Transform& transform,
+                                     bool singlePrecision) {
+  std::vector<Position> positions;
+  positions.reserve(seams.vertices.size());
+  for (const SeamVertex& vertex : seams.vertices) {
+    const Vec3d world = transform.indexToWorld(vertex.cell.asVec3d() + vertex.offset);
+    const Position place(world[0], world[1], world[2]);
+    positions.push_back(singlePrecision ? base::toSingle(place) : place);
+  }
+  return positions;
 }
 
 template Seams findSeams(const polygons::QuadContext<openvdb::FloatTree>&, const Mesh&, const Mesh&,

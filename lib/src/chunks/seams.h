@@ -71,4 +71,10 @@ template <class TreeT>
                               const Mesh& before, const std::vector<openvdb::Coord>& vertexCells,
                               const ChunkCells& chunks, base::Job& job);
 
+/// The world positions of the seams' vertices as they are written. Straight from the lattice, so
+/// that they do not depend on the region.
+[[nodiscard]] std::vector<Position> worldPositions(const Seams& seams,
+                                                   const openvdb::math::Transform& transform,
+                                                   bool singlePrecision);
+
 }  // namespace tufa::chunks

@@ -23,12 +23,12 @@ std::array<VertexIndex, 4> cornersOf(const Mesh& mesh, std::uint32_t polygon, in
 }  // namespace
 
 ChunkSplitter::ChunkSplitter(const std::vector<openvdb::Coord>& vertexCells, const Seams& seams,
-                             const ChunkCells& chunks, const base::Affine& affine,
-                             const openvdb::math::Transform& transform, bool singlePrecision)
+                             const std::vector<Position>& seamPositions, const ChunkCells& chunks,
+                             const base::Affine& affine, bool singlePrecision)
     : seams_(seams),
+      seamPositions_(seamPositions),
       chunks_(chunks),
       affine_(affine),
-      transform_(transform),
       singlePrecision_(singlePrecision),
       made_(static_cast<std::size_t>(chunks.count())),
       seamNumbers_(seams.vertices.size(), kNoNumber) {
@@ -181,18 +181,10 @@ VertexIndex ChunkSplitter::numberOfSeam(SeamIndex seam, ChunkLevel& level) {
   if (number == kNoNumber) {
     number = static_cast<VertexIndex>(level.positions.size());
     numberedSeams_.push_back(seam);
-    level.positions.push_back(placeOf(seam));
+    level.positions.push_back(seamPositions_[seam]);
     level.normals.push_back(seams_.vertices[seam].normal);
   }
   return number;
-}
-
-// Straight from the lattice, so that it does not depend on the region.
-Position ChunkSplitter::placeOf(SeamIndex seam) const {
-  const SeamVertex& vertex = seams_.vertices[seam];
-  const openvdb::Vec3d world = transform_.indexToWorld(vertex.cell.asVec3d() + vertex.offset);
-  const Position place(world[0], world[1], world[2]);
-  return singlePrecision_ ? base::toSingle(place) : place;
 }
 
 }  // namespace tufa::chunks

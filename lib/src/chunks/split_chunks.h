@@ -34,10 +34,11 @@ struct MadeChunk {
 /// Hands the meshes of a region's levels out to its chunks.
 class ChunkSplitter {
  public:
-  /// The cell of each base vertex, and what must outlive this object.
+  /// The cell of each base vertex, the seams and where they are in the world; and what must outlive
+  /// this object.
   ChunkSplitter(const std::vector<openvdb::Coord>& vertexCells, const Seams& seams,
-                const ChunkCells& chunks, const base::Affine& affine,
-                const openvdb::math::Transform& transform, bool singlePrecision);
+                const std::vector<Position>& seamPositions, const ChunkCells& chunks,
+                const base::Affine& affine, bool singlePrecision);
 
   /// Levels come finest first. `next` are the lines of the next level, null for the last.
   void addLevel(const LevelMeshes& meshes, const SeamLines& lines, const SeamLines* next);
@@ -61,12 +62,11 @@ class ChunkSplitter {
                 ChunkLevel& level);
   [[nodiscard]] VertexIndex numberOf(const SeamedCut& mesh, VertexIndex vertex, ChunkLevel& level);
   [[nodiscard]] VertexIndex numberOfSeam(SeamIndex seam, ChunkLevel& level);
-  [[nodiscard]] Position placeOf(SeamIndex seam) const;
 
   const Seams& seams_;
+  const std::vector<Position>& seamPositions_;
   const ChunkCells& chunks_;
   const base::Affine& affine_;
-  const openvdb::math::Transform& transform_;
   bool singlePrecision_;
   std::vector<std::int32_t> chunkOf_;  // of each base vertex
   std::vector<MadeChunk> made_;        // by chunk number

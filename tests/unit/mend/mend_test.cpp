@@ -127,6 +127,35 @@ TEST(Mend, ReportsWhatItCannotMendWithoutTheFloor) {
   EXPECT_EQ(report.left[0], (mend::PolygonPair{0, 1}));
 }
 
+TEST(Mend, FansAQuadWhereNothingElseHelps) {
+  // A sheet with a thin one standing in it, which the quad's crossing lies above.
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0},    {4, 0, 0},    {4, 4, 0},   {0, 4, 0},
+                    {1.9, 2, -1}, {2.1, 2, -1}, {2.1, 2, 1}, {1.9, 2, 1}};
+  mesh.normals.assign(4, Normal(0, 0, 1));
+  mesh.normals.insert(mesh.normals.end(), 4, Normal(0, 1, 0));
+  mesh.quads = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+  const Mesh before = mesh;
+  mend::Source source = sourceOf(before);
+  source.crossings = [](const std::vector<mend::PolygonIndex>& quads) {
+    std::vector<Position> points;
+    for (const mend::PolygonIndex quad : quads) points.emplace_back(2, 2, quad == 0 ? 2 : 0);
+    return points;
+  };
+  base::Job job(0, {});
+  const mend::MendReport report = mend::mend(mesh, allPolygons(mesh), source, job);
+  EXPECT_EQ(report.fannedQuads, 1U);
+  EXPECT_TRUE(report.left.empty());
+  EXPECT_TRUE(allPairs(mesh).empty());
+  ASSERT_EQ(mesh.quads.size(), 1U);
+  EXPECT_EQ(mesh.quads[0], before.quads[1]);
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  ASSERT_EQ(mesh.positions.size(), 9U);
+  EXPECT_EQ(mesh.positions[8], Position(2, 2, 2));
+  ASSERT_EQ(mesh.normals.size(), 9U);
+  EXPECT_EQ(mesh.normals[8], Normal(0, 0, 1));
+}
+
 TEST(Mend, TakesAllPairsOutOfEveryShape) {
   for (const Shape shape :
        {Shape::Sphere, Shape::Torus, Shape::Box, Shape::Bracket, Shape::Gyroid, Shape::Terrain}) {
