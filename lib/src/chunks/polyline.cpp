@@ -21,6 +21,8 @@ constexpr std::size_t kLeastOfLoop = 3;
 constexpr double kLongest = 1.5;
 // What an arc more adds to the length that a segment may have.
 constexpr double kGrowth = 0.5;
+// How much of the way to a side that faces the other way a line may go.
+constexpr double kClearShare = 1.0 / 3;
 
 // One curve on its way to a polyline. Nodes are its points in order: the one on the chunk edge at
 // its begin, if any, the arcs, the one at its end.
@@ -42,6 +44,7 @@ class Line {
     for (const SeamIndex arc : curve.arcs) add(arc);
     if (curve.end != kNoSeam) add(curve.end);
     chosen_.assign(points_.size(), 0);
+    keepClear();
     limitRuns();
     chooseFirst();
     refineAll();
@@ -101,6 +104,15 @@ class Line {
   }
 
  private:
+  // The sides of a thin wall or gap keep apart.
+  void keepClear() {
+    for (std::size_t i = 0; i < curve_.arcs.size(); ++i) {
+      const double clearance = static_cast<double>(seams_.arcs[curve_.arcs[i]].clearance);
+      double& allowed = allowed_[firstArc_ + i];
+      allowed = std::min(allowed, kClearShare * clearance);
+    }
+  }
+
   // Clusters are small where the surface is not flat, on the face or beside it. Segments are not
   // much longer than clusters may be: long ones would make folded strips. Away from such places
   // they grow with the distance.
@@ -321,16 +333,8 @@ SeamLines simplifySeams(const Seams& seams, const base::Affine& affine,
   std::vector<Line> lines;
   lines.reserve(seams.curves.size());
   for (const SeamCurve& curve : seams.curves) lines.emplace_back(seams, curve, affine, allowed);
-  for (std::size_t begin = 0; begin < lines.size();) {
-    const SeamCurve& first = lines[begin].curve();
-    std::size_t end = begin;
-    while (end < lines.size() && lines[end].curve().axis == first.axis &&
-           lines[end].curve().chunk == first.chunk) {
-      ++end;
-    }
-    Face(seams, lines, begin, end).uncross();
-    begin = end;
-  }
+  forFaces(seams.curves,
+           [&](std::size_t begin, std::size_t end) { Face(seams, lines, begin, end).uncross(); });
   for (const Line& line : lines) line.assign(result);
   return result;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/single_precision.h"
+#include "chunks/clearance.h"
 #include "chunks/flatness.h"
 #include "chunks/seam_crossings.h"
 #include "chunks/untangle.h"
@@ -58,6 +59,7 @@ class SeamFinder {
     traceCurves();
     untangle(havensOf(crossings), seams_);
     measureFlatness(base_, before_, affine_, seams_);
+    measureClearance(affine_, seams_);
     makeMesh();
     return std::move(seams_);
   }

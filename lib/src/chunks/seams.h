@@ -5,6 +5,7 @@
 #include <tufa/mesh.h>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/affine.h"
@@ -38,6 +39,9 @@ struct Arc {
   /// How far base vertices beside the arc lie off the plane through it, in world units: those up to
   /// 1, 2, 4 and 5 steps away.
   std::array<float, 4> flatness{};
+  /// How far it is, in world units, to where the surface passes the same face and faces the other
+  /// way; infinite if that is nowhere within eight cells.
+  float clearance = std::numeric_limits<float>::infinity();
 };
 
 /// A curve in which the surface passes the face between two chunks: arcs one behind the other. The
@@ -50,6 +54,18 @@ struct SeamCurve {
   SeamIndex end = kNoSeam;      ///< vertex on a chunk edge behind the last arc, if any
   bool closed = false;          ///< the last arc is followed by the first
 };
+
+/// Calls body(begin, end) for the curves of each face, which are one behind the other.
+template <class Body>
+void forFaces(const std::vector<SeamCurve>& curves, const Body& body) {
+  for (std::size_t begin = 0, end = 0; begin < curves.size(); begin = end) {
+    while (end < curves.size() && curves[end].axis == curves[begin].axis &&
+           curves[end].chunk == curves[begin].chunk) {
+      ++end;
+    }
+    body(begin, end);
+  }
+}
 
 /// Where the base mesh of some chunks is parted along their faces. A vertex stands for each arc,
 /// and one for each point in which the surface crosses a chunk edge.

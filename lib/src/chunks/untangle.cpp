@@ -46,11 +46,7 @@ std::vector<FaceSegment> segmentsOf(const Seams& seams, const std::vector<SeamCu
 
 void untangle(const std::vector<Vec3d>& havens, Seams& seams) {
   const std::vector<SeamCurve>& curves = seams.curves;
-  for (std::size_t begin = 0, end = 0; begin < curves.size(); begin = end) {
-    while (end < curves.size() && curves[end].axis == curves[begin].axis &&
-           curves[end].chunk == curves[begin].chunk) {
-      ++end;
-    }
+  forFaces(curves, [&](std::size_t begin, std::size_t end) {
     for (bool any = true; any;) {
       any = false;
       std::vector<FaceSegment> segments = segmentsOf(seams, curves, begin, end);
@@ -68,7 +64,7 @@ void untangle(const std::vector<Vec3d>& havens, Seams& seams) {
         }
       });
     }
-  }
+  });
 }
 
 }  // namespace tufa::chunks
