@@ -125,11 +125,13 @@ class RegionMaker {
   LevelMeshes makeLevel(std::size_t level) {
     const cut::CutRule rule = ruleFor(options_.tolerances[level]);
     const bool last = level + 1 == options_.tolerances.size();
+    // Where the next level has the same lines, there is but one mesh.
+    const bool alone = last || lines_[level + 1] == lines_[level];
     cut::CellFlags forbidden = forbidden_;
     Certifier regular(seamBase_, surface_, rule, job_);
     regular.setIgnored(beyond_);
     std::optional<Certifier> transition;
-    if (!last) {
+    if (!alone) {
       transition.emplace(seamBase_, surface_, ruleFor(options_.tolerances[level + 1]), job_);
       transition->setIgnored(beyond_);
     }
@@ -139,22 +141,28 @@ class RegionMaker {
       LevelMeshes meshes;
       meshes.regular = mesh(cut, lines_[level]);
       if (splitFar(meshes.regular, regular, forbidden)) continue;
-      if (!last) {
+      if (!alone) {
         meshes.transition = mesh(cut, lines_[level + 1]);
         if (splitFar(meshes.transition, *transition, forbidden)) continue;
       }
       if (options_.repair) {
-        mendBoth(meshes, last, Movable::Clusters);
+        mendBoth(meshes, alone, Movable::Clusters);
         if (splitPairs(meshes, forbidden) && round < kMostRounds) continue;
         if (!meshes.pairs.empty() || !meshes.transitionPairs.empty()) {
-          mendBoth(meshes, last, Movable::All);
+          mendBoth(meshes, alone, Movable::All);
         }
         bool split = splitFar(meshes.regular, regular, forbidden);
-        if (!last) split |= splitFar(meshes.transition, *transition, forbidden);
+        if (!alone) split |= splitFar(meshes.transition, *transition, forbidden);
         if (split) continue;
       }
       meshes.regularErrors = errorsOf(meshes.regular, rule);
-      if (!last) meshes.transitionErrors = errorsOf(meshes.transition, rule);
+      if (!alone) {
+        meshes.transitionErrors = errorsOf(meshes.transition, rule);
+      } else if (!last) {
+        meshes.transition = meshes.regular;
+        meshes.transitionErrors = meshes.regularErrors;
+        meshes.transitionPairs = meshes.pairs;
+      }
       return meshes;
     }
   }
@@ -210,7 +218,24 @@ class RegionMaker {
                                options_.rule.minLevel, forbidden);
   }
 
-  // Polygons of which each pair that meets has one.
+  // Polygons of which each pair that meets has one: those of strips and of the pairs that another
+  // mesh with the same clusters has.
+  [[nodiscard]] static std::vector<mend::PolygonIndex> suspectsOf(
+      const SeamedCut& mesh, const std::vector<mend::PolygonPair>& shared) {
+    const Mesh& own = mesh.made.mesh;
+    const auto count = static_cast<mend::PolygonIndex>(own.quads.size() + own.triangles.size());
+    const auto firstStrip = count - static_cast<mend::PolygonIndex>(mesh.strips.size());
+    std::vector<mend::PolygonIndex> suspects;
+    for (const auto& [a, b] : shared) {
+      if (a < firstStrip && b < firstStrip) suspects.push_back(a);
+    }
+    std::sort(suspects.begin(), suspects.end());
+    suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
+    for (mend::PolygonIndex i = firstStrip; i < count; ++i) suspects.push_back(i);
+    return suspects;
+  }
+
+  // The same of a mesh of which nothing is known.
   [[nodiscard]] std::vector<mend::PolygonIndex> suspectsOf(const SeamedCut& mesh) const {
     std::vector<std::uint8_t> altered(mesh.cut.clusters.size(), 0);
     for (const VertexIndex vertex : mesh.altered) altered[vertex] = 1;
@@ -244,7 +269,8 @@ class RegionMaker {
 
   // Moves vertices and turns quads until no polygons meet, where that can be, as they will be
   // written. Gives the pairs left.
-  std::vector<mend::PolygonPair> mend(SeamedCut& mesh, Movable movable) {
+  std::vector<mend::PolygonPair> mend(SeamedCut& mesh, Movable movable,
+                                      const std::vector<mend::PolygonIndex>& suspects) {
     std::vector<Position>& positions = mesh.made.mesh.positions;
     for (VertexIndex i = 0; i < positions.size(); ++i) {
       Position& p = positions[i];
@@ -261,23 +287,27 @@ class RegionMaker {
     source.isFixed = [&](VertexIndex vertex) { return isFixed(mesh, vertex, movable); };
     source.voxelSize = base_.affine.voxelSize();
     source.toTheFloor = false;
-    mend::MendReport report = mend::mend(mesh.made.mesh, suspectsOf(mesh), source, job_);
+    mend::MendReport report = mend::mend(mesh.made.mesh, suspects, source, job_);
     for (Position& p : positions) p = base_.affine.fromWorld(p);
     return std::move(report.left);
   }
 
-  // Mends both meshes of a level, which share all but their strips, in turn.
-  void mendBoth(LevelMeshes& meshes, bool last, Movable movable) {
-    meshes.pairs = mend(meshes.regular, movable);
-    if (last) return;
+  // Mends both meshes of a level, which share all but their strips, in turn; or the regular one
+  // `alone`.
+  void mendBoth(LevelMeshes& meshes, bool alone, Movable movable) {
+    meshes.pairs = mend(meshes.regular, movable, suspectsOf(meshes.regular));
+    if (alone) return;
     for (int turn = 0; turn < kMostTurns; ++turn) {
       if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
-      meshes.transitionPairs = mend(meshes.transition, movable);
+      meshes.transitionPairs =
+          mend(meshes.transition, movable, suspectsOf(meshes.transition, meshes.pairs));
       if (!takeShared(meshes.transition, meshes.regular)) return;
-      meshes.pairs = mend(meshes.regular, movable);
+      meshes.pairs = mend(meshes.regular, movable, suspectsOf(meshes.regular));
     }
     if (takeShared(meshes.regular, meshes.transition)) {
-      meshes.transitionPairs = findPairs(meshes.transition);
+      const mend::Surface surface(meshes.transition.made.mesh, job_);
+      meshes.transitionPairs =
+          mend::findPairs(surface, suspectsOf(meshes.transition, meshes.pairs), job_);
     }
   }
 
@@ -286,11 +316,6 @@ class RegionMaker {
     bool split = splitPairs(meshes.regular, meshes.pairs, forbidden);
     split |= splitPairs(meshes.transition, meshes.transitionPairs, forbidden);
     return split;
-  }
-
-  [[nodiscard]] std::vector<mend::PolygonPair> findPairs(SeamedCut& mesh) {
-    const mend::Surface surface(mesh.made.mesh, job_);
-    return mend::findPairs(surface, suspectsOf(mesh), job_);
   }
 
   // Makes of one mesh, but for seams and strips, what another of the same cut is. Returns whether
