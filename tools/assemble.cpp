@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "number.h"
 #include "progress_bar.h"
 #include "report.h"
 #include "volume.h"
@@ -42,9 +43,9 @@ struct AssembleRun {
 
 template <class Number>
 Number readNumber(const std::string& word, const std::string& lods) {
-  Number number{};
-  if (!CLI::detail::lexical_cast(word, number)) refuse(lods);
-  return number;
+  const std::optional<Number> number = numberIn<Number>(word);
+  if (!number) refuse(lods);
+  return *number;
 }
 
 Lods randomLods(const ChunkIndex& index, std::uint64_t seed) {

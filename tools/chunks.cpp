@@ -18,6 +18,7 @@
 #include "assemble.h"
 #include "commands.h"
 #include "console.h"
+#include "number.h"
 #include "progress_bar.h"
 #include "volume.h"
 
@@ -50,12 +51,11 @@ struct ChunksRun {
 
 openvdb::Coord readIndex(const std::string& text) {
   const std::vector<std::string> words = CLI::detail::split(text, ',');
-  openvdb::Coord index;
-  bool good = words.size() == 3;
-  for (int axis = 0; good && axis < 3; ++axis) {
-    good = CLI::detail::lexical_cast(words[static_cast<std::size_t>(axis)], index[axis]);
+  std::vector<std::int32_t> index;
+  for (const std::string& word : words) {
+    if (const auto number = numberIn<std::int32_t>(word)) index.push_back(*number);
   }
-  if (good) return index;
+  if (words.size() == 3 && index.size() == 3) return {index[0], index[1], index[2]};
   throw Error(ErrorCode::InvalidArgument,
               "--only wants indices of chunks such as 0,-1,2, not \"" + text + "\"");
 }

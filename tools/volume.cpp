@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "console.h"
 #include "crash_guard.h"
+#include "number.h"
 
 namespace tufa::tools {
 namespace {
@@ -76,14 +77,14 @@ double readTolerance(const std::string& option, const std::string& text,
                      const openvdb::GridBase& grid) {
   const bool world = !text.empty() && text.back() == 'w';
   const std::string number = world ? text.substr(0, text.size() - 1) : text;
-  double value = 0;
-  if (!CLI::detail::lexical_cast(number, value) || !(value >= 0)) {
+  const std::optional<double> value = numberIn<double>(number);
+  if (!value || !(*value >= 0)) {
     throw Error(ErrorCode::InvalidArgument,
                 option +
                     " must be a number of voxels, or of world units with the suffix w, not \"" +
                     text + "\"");
   }
-  return world ? value / std::cbrt(grid.transform().voxelVolume()) : value;
+  return world ? *value / std::cbrt(grid.transform().voxelVolume()) : *value;
 }
 
 void addContourOptions(CLI::App& app, ContourOptions& options) {

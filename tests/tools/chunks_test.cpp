@@ -131,9 +131,9 @@ TEST_F(ChunksCommand, RefusesWhatItCannotDo) {
   expectFailure("chunks --assemble d --lods all:0 -o m.ply", 3, "chunks.json");
   expectFailure("chunks --assemble d --lods all:0 -o m.xyz", 2, "ending");
   ASSERT_EQ(run("chunks s.vdb -o d --chunk 16 --levels 2").exitCode, 0);
-  for (const char* lods : {"all:2", "all:-1", "all", "some", "random:x", "camera:1,2"}) {
-    expectFailure(std::string("chunks --assemble d -o m.ply --lods ") + lods, 2,
-                  std::string(lods).rfind("all:", 0) == 0 ? "no level" : "--lods is");
+  expectFailure("chunks --assemble d -o m.ply --lods all:2", 2, "no level 2");
+  for (const std::string lods : {"all:-1", "all:1x", "all", "some", "random:x", "camera:1,2"}) {
+    expectFailure("chunks --assemble d -o m.ply --lods " + lods, 2, "--lods is");
   }
 }
 
