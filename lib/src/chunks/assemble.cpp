@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/vertex_welder.h"
+#include "chunks/stitch.h"
 
 namespace tufa {
 namespace {
@@ -42,25 +43,9 @@ class Weld {
     if (a != b && b != c && c != a) mesh_.triangles.emplace_back(a, b, c);
   }
 
-  /// A polygon of four corners, of which neighbours may be the same.
-  void addPolygon(const std::array<VertexIndex, 4>& corners) {
-    const auto& [a, b, c, d] = corners;
-    if (squaredDistance(a, c) <= squaredDistance(b, d)) {
-      addTriangle(a, b, c);
-      addTriangle(a, c, d);
-    } else {
-      addTriangle(b, c, d);
-      addTriangle(b, d, a);
-    }
-  }
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
 
  private:
-  [[nodiscard]] double squaredDistance(VertexIndex a, VertexIndex b) const {
-    const Position& p = mesh_.positions[a];
-    const Position& q = mesh_.positions[b];
-    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
-  }
-
   Mesh& mesh_;
   base::VertexWelder welder_;
 };
@@ -92,21 +77,30 @@ class LevelVertices {
   std::vector<VertexIndex> places_;
 };
 
-/// The strip between the tiles of one level and the line of another, arc by arc.
+/// Whether a vertex comes up again where others have come up in between.
+bool comesAgain(const ChunkSeam& seam) {
+  std::vector<VertexIndex> runs = seam.tiles;
+  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  if (seam.closed && runs.size() > 1 && runs.front() == runs.back()) runs.pop_back();
+  std::sort(runs.begin(), runs.end());
+  return std::adjacent_find(runs.begin(), runs.end()) != runs.end();
+}
+
+/// The strip between the tiles of one level and the line of another.
 void addStrip(const ChunkSeam& seam, LevelVertices& tiles, const ChunkSeam& coarse,
               LevelVertices& line, Weld& weld) {
-  const std::size_t arcs = seam.tiles.size();
-  for (std::size_t i = 0; i + (seam.closed ? 0 : 1) < arcs; ++i) {
-    const std::size_t next = (i + 1) % arcs;
-    weld.addPolygon({line[coarse.line[i]], tiles[seam.tiles[i]], tiles[seam.tiles[next]],
-                     line[coarse.line[next]]});
-  }
-  if (seam.closed || arcs == 0) return;
-  if (seam.begin != ChunkSeam::kNone) {
-    weld.addTriangle(tiles[seam.begin], tiles[seam.tiles.front()], line[coarse.line.front()]);
-  }
-  if (seam.end != ChunkSeam::kNone) {
-    weld.addTriangle(line[coarse.line.back()], tiles[seam.tiles.back()], tiles[seam.end]);
+  if (seam.tiles.empty()) return;
+  ChunkSeam both;
+  both.closed = seam.closed;
+  for (const VertexIndex tile : seam.tiles) both.tiles.push_back(tiles[tile]);
+  for (const VertexIndex vertex : coarse.line) both.line.push_back(line[vertex]);
+  if (seam.begin != ChunkSeam::kNone) both.begin = tiles[seam.begin];
+  if (seam.end != ChunkSeam::kNone) both.end = tiles[seam.end];
+  const Mesh& mesh = weld.mesh();
+  for (const chunks::StripTriangle& strip :
+       chunks::stitch(both, comesAgain(both), mesh.positions, mesh.normals)) {
+    const auto& v = strip.triangle.vertices;
+    weld.addTriangle(v[0], v[1], v[2]);
   }
 }
 
