@@ -232,9 +232,8 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
     throw Error(ErrorCode::InvalidArgument,
                 std::string(option) + " is " + (assembling ? "not " : "only ") + "for --assemble");
   }
-  for (const char* option : {"--normals", "--simplify"}) {
-    if (command.count(option) == 0) continue;
-    throw Error(ErrorCode::InvalidArgument, std::string(option) + " is not for chunks");
+  if (command.count("--normals") != 0) {
+    throw Error(ErrorCode::InvalidArgument, "--normals is not for chunks");
   }
   if (assembling && arguments.assemble.lods.empty()) {
     throw Error(ErrorCode::InvalidArgument, "--assemble needs --lods");

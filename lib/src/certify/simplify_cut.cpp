@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "base/huge_pages.h"
 #include "simplify/collapse.h"
@@ -41,7 +42,8 @@ std::vector<simplify::PlaneSum> gatherPlanes(const forest::Base<TreeT>& base, co
     const Vec3d normal(n.x, n.y, n.z);
     if (normal.lengthSqr() > 0) planes[to].addPlane(offset, normal);
   };
-  for (std::size_t i = 0; i < base.mesh.positions.size(); ++i) {
+  // Positions behind those of the cells are fixed.
+  for (std::size_t i = 0; i < base.topology.vertexCount; ++i) {
     job.lookAtTimes(i);
     const auto vertex = static_cast<VertexIndex>(i);
     const VertexIndex to = mesh.cut.vertexOf[i];
@@ -133,6 +135,16 @@ class Samples {
   std::vector<simplify::Sample> samples_;
 };
 
+// The base vertices of a point by its number in Deviation::farPoints.
+template <class TreeT>
+std::span<const VertexIndex> verticesOfPoint(const forest::Base<TreeT>& base, std::uint64_t point,
+                                             VertexIndex& own) {
+  const std::size_t vertices = base.mesh.positions.size();
+  if (point >= vertices) return base.mesh.quads[point - vertices].vertices;
+  own = static_cast<VertexIndex>(point);
+  return {&own, 1};
+}
+
 // Marks vertices of polygons that protrude or meet and those around base points that are too far.
 // Of the latter, samples take care while that is `soft`; and where there is to be a number of
 // triangles, nothing is too far after that.
@@ -144,13 +156,9 @@ std::vector<std::uint8_t> findFaulty(const forest::Base<TreeT>& base, const Meas
   if (!soft && counted) return faulty;
   for (const VertexIndex vertex : mesh.deviation.protruding) faulty[vertex] = 1;
   if (soft) return faulty;
-  const std::size_t vertices = base.mesh.positions.size();
   for (const std::uint64_t point : mesh.deviation.farPoints) {
-    if (point < vertices) {
-      faulty[mesh.cut.vertexOf[point]] = 1;
-      continue;
-    }
-    for (const VertexIndex corner : base.mesh.quads[point - vertices].vertices) {
+    VertexIndex vertex = 0;
+    for (const VertexIndex corner : verticesOfPoint(base, point, vertex)) {
       faulty[mesh.cut.vertexOf[corner]] = 1;
     }
   }
@@ -170,6 +178,26 @@ std::vector<std::uint8_t> widen(const Mesh& mesh, std::vector<std::uint8_t> mark
     marks = std::move(wider);
   }
   return marks;
+}
+
+// Takes from what was found faulty all that is not beside something that was collapsed or turned:
+// the mesh was so before.
+template <class TreeT>
+void forgiveOthers(const forest::Base<TreeT>& base, const simplify::Collapsed& collapsed,
+                   Measured& mesh) {
+  std::vector<std::uint8_t> own(collapsed.members.size(), 0);
+  for (std::size_t i = 0; i < own.size(); ++i) own[i] = collapsed.members[i] > 1 ? 1 : 0;
+  for (const VertexIndex vertex : collapsed.turned) own[vertex] = 1;
+  own = widen(mesh.made.mesh, std::move(own), 1);
+  const auto isOther = [&](VertexIndex vertex) { return own[vertex] == 0; };
+  std::erase_if(mesh.meeting, isOther);
+  std::erase_if(mesh.deviation.protruding, isOther);
+  std::erase_if(mesh.deviation.farPoints, [&](std::uint64_t point) {
+    VertexIndex vertex = 0;
+    const auto vertices = verticesOfPoint(base, point, vertex);
+    return std::all_of(vertices.begin(), vertices.end(),
+                       [&](VertexIndex i) { return isOther(mesh.cut.vertexOf[i]); });
+  });
 }
 
 // Marks the last collapses behind each faulty vertex and, so many rings wide, its neighbours; as
@@ -239,8 +267,8 @@ bool stiffen(const simplify::Collapsed& collapsed, const std::vector<std::uint8_
 }
 
 // Makes `mesh` what `from` is after a collapse, told in the terms of the base mesh.
-void compose(const Measured& from, const simplify::Collapsed& collapsed, Measured& mesh,
-             base::Job& job) {
+void compose(const Measured& from, const simplify::Collapsed& collapsed, bool keepAltered,
+             Measured& mesh, base::Job& job) {
   // The largest part is written over.
   std::vector<VertexIndex> baseVertices = std::move(mesh.cut.vertexOf);
   mesh = {};
@@ -263,6 +291,9 @@ void compose(const Measured& from, const simplify::Collapsed& collapsed, Measure
   }
   for (const VertexIndex vertex : collapsed.turned) mesh.cut.clusters[vertex].level = kJoined;
   mesh.altered = collapsed.turned;
+  if (keepAltered) {
+    for (const VertexIndex vertex : from.altered) mesh.altered.push_back(vertexOf[vertex]);
+  }
   const std::size_t quadsBefore = from.made.mesh.quads.size();
   const auto sourceOf = [&](std::uint32_t polygon) {
     return polygon < quadsBefore ? from.made.quadSources[polygon]
@@ -312,6 +343,7 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     const double least = std::max(0.0, toleranceAt(rule, base.affine, vectorOf(p)));
     bounds.allowed.push_back(static_cast<float>(kFirstShare * least * base.affine.voxelSize()));
   }
+  for (const VertexIndex vertex : goal.fixed) bounds.allowed[vertex] = 0;
   bounds.turning = bounds.allowed;
   std::vector<float> shares(bounds.allowed.size(), kLess);
   std::vector<std::uint8_t> strikes(bounds.allowed.size(), 0);
@@ -327,10 +359,11 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     collapsed = std::move(next);
     rule.tolerance = tolerance * collapsed.looseness;
     certifier.setRule(rule);
-    compose(mesh, collapsed, result, job);
+    compose(mesh, collapsed, !goal.fixed.empty(), result, job);
     const std::size_t count = result.made.mesh.triangleCount();
     if (round == 1 && goal.giveUp > 0 && count >= goal.giveUp) return result;
     mendAndMeasure(certifier, repair, result, job, fresh);
+    if (!goal.fixed.empty()) forgiveOthers(base, collapsed, result);
     for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);
     // Points that stay too far although they are samples are not helped by more rounds.
     const std::vector<std::uint64_t>& far = result.deviation.farPoints;

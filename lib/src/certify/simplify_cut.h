@@ -12,6 +12,9 @@ struct Goal {
   /// If not 0: where the first collapse leaves so many triangles or more, that is the result,
   /// neither mended nor measured.
   std::size_t giveUp = 0;
+  /// Vertices that stay as they are, with all polygons between them. If there are any, those that
+  /// the mesh says are altered stay so.
+  std::vector<VertexIndex> fixed = {};
 };
 
 /// Collapses edges of a mesh as far as the rule's tolerance and the topology allow:

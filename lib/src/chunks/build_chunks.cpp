@@ -151,6 +151,7 @@ class ChunkBuilder {
     region_.rule.maxLevel = std::min(region_.rule.maxLevel, cells_.level);
     region_.rule.chunkLevel = cells_.level;
     region_.repair = contour.repair;
+    region_.simplify = cut::maySimplify(contour);
     job_.beginStage("index", kIndexEnd);
     const blocks::IsoChoice iso = blocks::chooseIsovalue(grid_, contour.isovalue, contour.inside);
     const blocks::Blocks<TreeT> blocks(grid_.tree(), iso, contour.nonFinite, job_);

@@ -8,6 +8,7 @@
 #include "base/single_precision.h"
 #include "certify/certificate.h"
 #include "certify/split_cells.h"
+#include "chunks/collapse_inside.h"
 #include "chunks/polyline.h"
 #include "chunks/seamed_cut.h"
 #include "chunks/seams.h"
@@ -29,6 +30,12 @@ constexpr int kMostTurns = 3;
 // After so many rounds no cells are split any more because polygons meet: where they still do, as
 // on white noise, smaller cells do not help.
 constexpr int kMostRounds = 12;
+// So often edges are collapsed inside the chunks, each time without what went wrong.
+constexpr int kMostTries = 2;
+// Cells are merged at this share of the tolerance where edges will be collapsed.
+constexpr double kCutShare = 0.5;
+// A collapse that leaves this share of the triangles is not worth its time.
+constexpr double kMostLeft = 0.95;
 
 // The cell of each base vertex.
 template <class TreeT>
@@ -124,11 +131,12 @@ class RegionMaker {
 
   LevelMeshes makeLevel(std::size_t level) {
     const cut::CutRule rule = ruleFor(options_.tolerances[level]);
+    const cut::CutRule cutRule = ruleFor((options_.simplify ? kCutShare : 1) * rule.tolerance);
     const bool last = level + 1 == options_.tolerances.size();
     // Where the next level has the same lines, there is but one mesh.
     const bool alone = last || lines_[level + 1] == lines_[level];
     cut::CellFlags forbidden = forbidden_;
-    Certifier regular(seamBase_, surface_, rule, job_);
+    Certifier regular(seamBase_, surface_, cutRule, job_);
     regular.setIgnored(beyond_);
     std::optional<Certifier> transition;
     if (!alone) {
@@ -136,7 +144,8 @@ class RegionMaker {
       transition->setIgnored(beyond_);
     }
     for (int round = 0;; ++round) {
-      const cut::CellFlags merged = cut::mergeCells(forest_, base_.topology, rule, forbidden, job_);
+      const cut::CellFlags merged =
+          cut::mergeCells(forest_, base_.topology, cutRule, forbidden, job_);
       const cut::Cut cut = cut::makeCut(forest_, base_.topology, merged, job_);
       LevelMeshes meshes;
       meshes.regular = mesh(cut, lines_[level]);
@@ -155,10 +164,9 @@ class RegionMaker {
         if (!alone) split |= splitFar(meshes.transition, *transition, forbidden);
         if (split) continue;
       }
-      meshes.regularErrors = errorsOf(meshes.regular, rule);
-      if (!alone) {
-        meshes.transitionErrors = errorsOf(meshes.transition, rule);
-      } else if (!last) {
+      measureErrors(meshes, alone, rule);
+      if (options_.simplify) collapse(meshes, alone, rule, regular);
+      if (alone && !last) {
         meshes.transition = meshes.regular;
         meshes.transitionErrors = meshes.regularErrors;
         meshes.transitionPairs = meshes.pairs;
@@ -334,14 +342,92 @@ class RegionMaker {
 
   bool splitPairs(const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
                   cut::CellFlags& forbidden) {
+    return certify::splitCells(verticesOf(mesh.made.mesh, pairs), mesh.cut, options_.rule.minLevel,
+                               forbidden);
+  }
+
+  void measureErrors(LevelMeshes& meshes, bool alone, const cut::CutRule& rule) {
+    meshes.regularErrors = errorsOf(meshes.regular, rule);
+    if (!alone) meshes.transitionErrors = errorsOf(meshes.transition, rule);
+  }
+
+  // Collapses edges inside the chunks. Where that makes a mesh worse it is tried again without what
+  // is around, and given up at last.
+  void collapse(LevelMeshes& meshes, bool alone, const cut::CutRule& rule, Certifier& certifier) {
+    const certify::Repair repair{level0_.suspects(), level0_.source(job_)};
+    std::vector<std::uint8_t> fixed(meshes.regular.cut.clusters.size(), 0);
+    for (const VertexIndex vertex : meshes.regular.altered) fixed[vertex] = 1;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      if (!chunks_.own.isInside(chunks_.chunkOf(cells_[i]))) {
+        fixed[meshes.regular.cut.vertexOf[i]] = 1;
+      }
+    }
+    for (int attempt = 0; attempt < kMostTries; ++attempt) {
+      certify::Goal goal;
+      goal.giveUp = static_cast<std::size_t>(
+          kMostLeft * static_cast<double>(meshes.regular.made.mesh.triangleCount()));
+      for (VertexIndex i = 0; i < fixed.size(); ++i) {
+        if (fixed[i] != 0) goal.fixed.push_back(i);
+      }
+      LevelMeshes next;
+      next.regular = collapseInside(seamBase_, meshes.regular, goal, rule,
+                                    options_.repair ? &repair : nullptr, certifier, job_);
+      if (next.regular.made.mesh.triangleCount() >= goal.giveUp) return;
+      chunks::keepInChunks(cells_, chunks_, base_.affine, next.regular);
+      if (!alone) {
+        next.transition = withInsideOf(meshes.transition, next.regular);
+      }
+      if (options_.repair) mendBoth(next, alone, Movable::Clusters);
+      measureErrors(next, alone, rule);
+      const std::vector<std::uint8_t> worse = findWorse(meshes, next, alone, rule.tolerance);
+      if (std::find(worse.begin(), worse.end(), 1) == worse.end()) {
+        meshes = std::move(next);
+        return;
+      }
+      for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (worse[next.regular.cut.vertexOf[i]] != 0) fixed[meshes.regular.cut.vertexOf[i]] = 1;
+      }
+    }
+  }
+
+  // Marks vertices of pairs, if there are more of them than before, and those of a larger error
+  // than was anywhere before.
+  [[nodiscard]] std::vector<std::uint8_t> findWorse(const LevelMeshes& before,
+                                                    const LevelMeshes& now, bool alone,
+                                                    double tolerance) const {
+    std::vector<std::uint8_t> worse(now.regular.cut.clusters.size(), 0);
+    const auto look = [&](const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
+                          const std::vector<mend::PolygonPair>& pairsBefore,
+                          const std::vector<float>& errors,
+                          const std::vector<float>& errorsBefore) {
+      if (pairs.size() > pairsBefore.size()) {
+        for (const VertexIndex vertex : verticesOf(mesh.made.mesh, pairs)) {
+          if (!mesh.isOnSeam(vertex)) worse[vertex] = 1;
+        }
+      }
+      const float most = std::max(static_cast<float>(tolerance),
+                                  *std::max_element(errorsBefore.begin(), errorsBefore.end()));
+      for (VertexIndex i = 0; i < mesh.clusterCount; ++i) {
+        if (errors[i] > most) worse[i] = 1;
+      }
+    };
+    look(now.regular, now.pairs, before.pairs, now.regularErrors, before.regularErrors);
+    if (!alone) {
+      look(now.transition, now.transitionPairs, before.transitionPairs, now.transitionErrors,
+           before.transitionErrors);
+    }
+    return worse;
+  }
+
+  static std::vector<VertexIndex> verticesOf(const Mesh& mesh,
+                                             const std::vector<mend::PolygonPair>& pairs) {
     std::vector<VertexIndex> vertices;
-    const Mesh& own = mesh.made.mesh;
     const auto add = [&](mend::PolygonIndex polygon) {
-      if (polygon < own.quads.size()) {
-        const auto& v = own.quads[polygon].vertices;
+      if (polygon < mesh.quads.size()) {
+        const auto& v = mesh.quads[polygon].vertices;
         vertices.insert(vertices.end(), v.begin(), v.end());
       } else {
-        const auto& v = own.triangles[polygon - own.quads.size()].vertices;
+        const auto& v = mesh.triangles[polygon - mesh.quads.size()].vertices;
         vertices.insert(vertices.end(), v.begin(), v.end());
       }
     };
@@ -349,7 +435,7 @@ class RegionMaker {
       add(pair.a);
       add(pair.b);
     }
-    return certify::splitCells(vertices, mesh.cut, options_.rule.minLevel, forbidden);
+    return vertices;
   }
 
   // What was kept from the meshes before does not count here.

@@ -18,6 +18,7 @@ struct RegionOptions {
   cut::CutRule rule;               ///< but for its tolerance
   std::vector<double> tolerances;  ///< of the levels, voxels
   bool repair = true;              ///< split cells until no two polygons meet
+  bool simplify = true;            ///< collapse edges inside the chunks
   bool singlePrecision = false;    ///< positions are rounded to floats
 };
 

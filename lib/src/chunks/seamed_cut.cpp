@@ -26,20 +26,6 @@ ChunkSeam sideOf(const SeamCurve& curve, bool above, const Seams& seams, const S
   return side;
 }
 
-// Moves the vertices of clusters off the faces of their chunks.
-void keepInChunks(const std::vector<openvdb::Coord>& vertexCells, const ChunkCells& chunks,
-                  const base::Affine& affine, SeamedCut& result) {
-  for (std::size_t i = 0; i < vertexCells.size(); ++i) {
-    const VertexIndex vertex = result.cut.vertexOf[i];
-    if (result.cut.clusters[vertex].level == 0) continue;
-    Position& position = result.made.mesh.positions[vertex];
-    const openvdb::Coord& cell = vertexCells[i];
-    const openvdb::Vec3d at = affine.latticePoint(position, cell);
-    const openvdb::Vec3d kept = chunks.keepInside(at, cell, cell);
-    if (kept != at) position = affine.position(cell, kept[0], kept[1], kept[2]);
-  }
-}
-
 // Which vertices of the chunks a strip may join.
 class Joints {
  public:
@@ -142,6 +128,19 @@ void partDiagonals(SeamedCut& result) {
 }
 
 }  // namespace
+
+void keepInChunks(const std::vector<openvdb::Coord>& vertexCells, const ChunkCells& chunks,
+                  const base::Affine& affine, SeamedCut& mesh) {
+  for (std::size_t i = 0; i < vertexCells.size(); ++i) {
+    const VertexIndex vertex = mesh.cut.vertexOf[i];
+    if (mesh.cut.clusters[vertex].level == 0) continue;
+    Position& position = mesh.made.mesh.positions[vertex];
+    const openvdb::Coord& cell = vertexCells[i];
+    const openvdb::Vec3d at = affine.latticePoint(position, cell);
+    const openvdb::Vec3d kept = chunks.keepInside(at, cell, cell);
+    if (kept != at) position = affine.position(cell, kept[0], kept[1], kept[2]);
+  }
+}
 
 SeamedCut meshWithSeams(const forest::Forest& forest, cut::Cut cut, const Seams& seams,
                         const SeamLines& lines, const std::vector<openvdb::Coord>& vertexCells,

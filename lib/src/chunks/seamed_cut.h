@@ -40,4 +40,8 @@ struct SeamedCut {
                                       const ChunkCells& chunks, const base::Affine& affine,
                                       base::Job& job);
 
+/// Moves the vertices of clusters off the faces of their chunks.
+void keepInChunks(const std::vector<openvdb::Coord>& vertexCells, const ChunkCells& chunks,
+                  const base::Affine& affine, SeamedCut& mesh);
+
 }  // namespace tufa::chunks
