@@ -29,6 +29,8 @@ constexpr int kMostStrikes = 30;
 // After so many further rounds its neighbours are undone, too, then theirs, at most so far at once.
 constexpr int kRoundsPerRing = 4;
 constexpr int kMostRings = 8;
+// Faults beside what stays may not be helped at all: after so many rounds they are left.
+constexpr int kRoundsBesideFixed = 8;
 constexpr std::size_t kGrain = 4096;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
@@ -384,7 +386,7 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     }
     any |= stiffen(collapsed, faulty, bounds.turning);
     bounds.before = &collapsed;
-    if (!any) return result;
+    if (!any || (!goal.fixed.empty() && round >= kRoundsBesideFixed)) return result;
   }
 }
 
