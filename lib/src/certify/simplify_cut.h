@@ -13,7 +13,8 @@ struct Goal {
   /// neither mended nor measured.
   std::size_t giveUp = 0;
   /// Vertices that stay as they are, with all polygons between them. If there are any, those that
-  /// the mesh says are altered stay so.
+  /// the mesh says are altered stay so, what was faulty before is no fault, and some faults may be
+  /// left.
   std::vector<VertexIndex> fixed = {};
 };
 
