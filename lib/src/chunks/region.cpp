@@ -391,7 +391,7 @@ class RegionMaker {
   }
 
   // Marks vertices of pairs, if there are more of them than before, and those of a larger error
-  // than was anywhere before.
+  // than the tolerance and all errors before.
   [[nodiscard]] std::vector<std::uint8_t> findWorse(const LevelMeshes& before,
                                                     const LevelMeshes& now, bool alone,
                                                     double tolerance) const {
