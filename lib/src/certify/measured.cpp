@@ -62,24 +62,6 @@ mend::MendReport mendCut(const Repair& repair, const cut::Cut& cut,
   return mend::mend(mesh, suspects, source, job);
 }
 
-// The vertices of some polygons, sorted.
-std::vector<VertexIndex> verticesOf(const Mesh& mesh,
-                                    const std::vector<mend::PolygonIndex>& polygons) {
-  std::vector<VertexIndex> vertices;
-  for (const mend::PolygonIndex polygon : polygons) {
-    if (polygon < mesh.quads.size()) {
-      const auto& v = mesh.quads[polygon].vertices;
-      vertices.insert(vertices.end(), v.begin(), v.end());
-    } else {
-      const auto& v = mesh.triangles[polygon - mesh.quads.size()].vertices;
-      vertices.insert(vertices.end(), v.begin(), v.end());
-    }
-  }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
-
 }  // namespace
 
 template <class TreeT>
@@ -89,16 +71,11 @@ void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured&
     mesh.suspects = suspectsOf(mesh.made, mesh.cut, repair->suspects);
     mesh.mended = mendCut(*repair, mesh.cut, withMarks(mesh.made.mesh, mesh.suspects, fresh),
                           mesh.made.mesh, job);
-    const std::vector<VertexIndex> mended = verticesOf(mesh.made.mesh, mesh.mended.changed);
+    const std::vector<VertexIndex> mended = mend::verticesOf(mesh.made.mesh, mesh.mended.changed);
     mesh.altered.insert(mesh.altered.end(), mended.begin(), mended.end());
   }
   mesh.deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
-  std::vector<mend::PolygonIndex> polygons;
-  for (const auto& [a, b] : mesh.mended.left) {
-    polygons.push_back(a);
-    polygons.push_back(b);
-  }
-  mesh.meeting = verticesOf(mesh.made.mesh, polygons);
+  mesh.meeting = mend::verticesOf(mesh.made.mesh, mend::polygonsOf(mesh.mended.left));
 }
 
 template void mendAndMeasure(Certifier<openvdb::FloatTree>&, const Repair*, Measured&, base::Job&,

@@ -5,17 +5,16 @@
 #include <utility>
 
 #include "base/bits.h"
-#include "base/single_precision.h"
 #include "certify/certificate.h"
 #include "certify/split_cells.h"
 #include "chunks/collapse_inside.h"
+#include "chunks/level_mender.h"
 #include "chunks/polyline.h"
 #include "chunks/seamed_cut.h"
 #include "chunks/seams.h"
 #include "chunks/split_chunks.h"
 #include "cut/leaves.h"
 #include "forest/forest.h"
-#include "mend/mend.h"
 #include "mend/surface.h"
 
 namespace tufa::chunks {
@@ -25,8 +24,6 @@ using openvdb::Coord;
 
 // What of the tolerance a polyline may use up on its face.
 constexpr double kLineShare = 0.5;
-// How often the two meshes of a level are mended in turn.
-constexpr int kMostTurns = 3;
 // After so many rounds no cells are split any more because polygons meet: where they still do, as
 // on white noise, smaller cells do not help.
 constexpr int kMostRounds = 12;
@@ -114,6 +111,9 @@ class RegionMaker {
         seamPositions_(worldPositions(seams_, transform, options.singlePrecision)),
         seamBase_(withMesh(seams_.mesh)),
         surface_(seamBase_, forest_.levels[0], job),
+        mender_({cells_, level0.suspects(), seamPositions_, chunks, base_.affine,
+                 options.singlePrecision},
+                job),
         forbidden_(forbidOthers(forest_, chunks)),
         beyond_(findBeyond()) {
     for (const double tolerance : options.tolerances) {
@@ -155,10 +155,10 @@ class RegionMaker {
         if (splitFar(meshes.transition, *transition, forbidden)) continue;
       }
       if (options_.repair) {
-        mendBoth(meshes, alone, Movable::Clusters);
+        mender_.mend(meshes, alone, Movable::Clusters);
         if (splitPairs(meshes, forbidden) && round < kMostRounds) continue;
         if (!meshes.pairs.empty() || !meshes.transitionPairs.empty()) {
-          mendBoth(meshes, alone, Movable::All);
+          mender_.mend(meshes, alone, Movable::All);
         }
         bool split = splitFar(meshes.regular, regular, forbidden);
         if (!alone) split |= splitFar(meshes.transition, *transition, forbidden);
@@ -177,9 +177,6 @@ class RegionMaker {
 
  private:
   using Certifier = certify::Certifier<TreeT>;
-  // What may move so that no polygons meet: vertices that stand for larger cells, or all but those
-  // on seams, which other chunks have too.
-  enum class Movable : std::uint8_t { Clusters, All };
 
   [[nodiscard]] Mesh inChunks(Mesh mesh) {
     keepInChunks(mesh.positions, cells_, chunks_, level0_.affine(), job_);
@@ -226,99 +223,6 @@ class RegionMaker {
                                options_.rule.minLevel, forbidden);
   }
 
-  // Polygons of which each pair that meets has one: those of strips and of the pairs that another
-  // mesh with the same clusters has.
-  [[nodiscard]] static std::vector<mend::PolygonIndex> suspectsOf(
-      const SeamedCut& mesh, const std::vector<mend::PolygonPair>& shared) {
-    const Mesh& own = mesh.made.mesh;
-    const auto count = static_cast<mend::PolygonIndex>(own.quads.size() + own.triangles.size());
-    const auto firstStrip = count - static_cast<mend::PolygonIndex>(mesh.strips.size());
-    std::vector<mend::PolygonIndex> suspects;
-    for (const auto& [a, b] : shared) {
-      if (a < firstStrip && b < firstStrip) suspects.push_back(a);
-    }
-    std::sort(suspects.begin(), suspects.end());
-    suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
-    for (mend::PolygonIndex i = firstStrip; i < count; ++i) suspects.push_back(i);
-    return suspects;
-  }
-
-  // The same of a mesh of which nothing is known.
-  [[nodiscard]] std::vector<mend::PolygonIndex> suspectsOf(const SeamedCut& mesh) const {
-    std::vector<std::uint8_t> altered(mesh.cut.clusters.size(), 0);
-    for (const VertexIndex vertex : mesh.altered) altered[vertex] = 1;
-    std::vector<mend::PolygonIndex> suspects;
-    mend::PolygonIndex polygon = 0;
-    const auto look = [&](const auto& v, std::uint32_t source) {
-      const bool suspect =
-          std::any_of(
-              v.begin(), v.end(),
-              [&](VertexIndex i) { return altered[i] != 0 || mesh.cut.clusters[i].level != 0; }) ||
-          std::binary_search(level0_.suspects().begin(), level0_.suspects().end(), source);
-      if (suspect) suspects.push_back(polygon);
-      ++polygon;
-    };
-    const Mesh& own = mesh.made.mesh;
-    for (std::size_t i = 0; i < own.quads.size(); ++i) {
-      look(own.quads[i].vertices, mesh.made.quadSources[i]);
-    }
-    for (std::size_t i = 0; i < own.triangles.size(); ++i) {
-      look(own.triangles[i].vertices, mesh.made.triangleSources[i]);
-    }
-    return suspects;
-  }
-
-  [[nodiscard]] bool isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const {
-    const cut::ClusterRef& ref = mesh.cut.clusters[vertex];
-    if (ref.level != 0) return false;
-    return movable == Movable::Clusters || mesh.isOnSeam(vertex) ||
-           !chunks_.own.isInside(chunks_.chunkOf(cells_[ref.cluster]));
-  }
-
-  // Moves vertices and turns quads until no polygons meet, where that can be, as they will be
-  // written. Gives the pairs left.
-  std::vector<mend::PolygonPair> mend(SeamedCut& mesh, Movable movable,
-                                      const std::vector<mend::PolygonIndex>& suspects) {
-    std::vector<Position>& positions = mesh.made.mesh.positions;
-    for (VertexIndex i = 0; i < positions.size(); ++i) {
-      Position& p = positions[i];
-      p = mesh.isOnSeam(i) ? seamPositions_[mesh.seamAt(i)] : base_.affine.toWorld(p);
-      if (options_.singlePrecision) p = base::toSingle(p);
-    }
-    mend::Source source;
-    source.singlePrecision = options_.singlePrecision;
-    source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
-      std::vector<Position> points;
-      for (const VertexIndex vertex : vertices) points.push_back(mesh.made.mesh.positions[vertex]);
-      return points;
-    };
-    source.isFixed = [&](VertexIndex vertex) { return isFixed(mesh, vertex, movable); };
-    source.voxelSize = base_.affine.voxelSize();
-    source.toTheFloor = false;
-    mend::MendReport report = mend::mend(mesh.made.mesh, suspects, source, job_);
-    for (Position& p : positions) p = base_.affine.fromWorld(p);
-    return std::move(report.left);
-  }
-
-  // Mends both meshes of a level, which share all but their strips, in turn; or the regular one
-  // `alone`.
-  void mendBoth(LevelMeshes& meshes, bool alone, Movable movable) {
-    meshes.pairs = mend(meshes.regular, movable, suspectsOf(meshes.regular));
-    if (alone) return;
-    for (int turn = 0; turn < kMostTurns; ++turn) {
-      if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
-      meshes.transitionPairs =
-          mend(meshes.transition, movable, suspectsOf(meshes.transition, meshes.pairs));
-      if (!takeShared(meshes.transition, meshes.regular)) return;
-      meshes.pairs = mend(meshes.regular, movable, suspectsOf(meshes.regular));
-    }
-    if (takeShared(meshes.regular, meshes.transition)) {
-      const mend::Surface surface(meshes.transition.made.mesh, job_);
-      meshes.transitionPairs =
-          mend::findPairs(surface, suspectsOf(meshes.transition, meshes.pairs), job_);
-    }
-  }
-
   // Splits the cells of polygons that meet; returns whether there are any.
   bool splitPairs(const LevelMeshes& meshes, cut::CellFlags& forbidden) {
     bool split = splitPairs(meshes.regular, meshes.pairs, forbidden);
@@ -326,24 +230,10 @@ class RegionMaker {
     return split;
   }
 
-  // Makes of one mesh, but for seams and strips, what another of the same cut is. Returns whether
-  // that changed anything.
-  static bool takeShared(const SeamedCut& from, SeamedCut& to) {
-    const Mesh& mesh = from.made.mesh;
-    Mesh& own = to.made.mesh;
-    const auto end = mesh.positions.begin() + static_cast<std::ptrdiff_t>(from.clusterCount);
-    if (std::equal(mesh.positions.begin(), end, own.positions.begin()) && mesh.quads == own.quads) {
-      return false;
-    }
-    std::copy(mesh.positions.begin(), end, own.positions.begin());
-    own.quads = mesh.quads;
-    return true;
-  }
-
   bool splitPairs(const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
                   cut::CellFlags& forbidden) {
-    return certify::splitCells(verticesOf(mesh.made.mesh, pairs), mesh.cut, options_.rule.minLevel,
-                               forbidden);
+    return certify::splitCells(mend::verticesOf(mesh.made.mesh, mend::polygonsOf(pairs)), mesh.cut,
+                               options_.rule.minLevel, forbidden);
   }
 
   void measureErrors(LevelMeshes& meshes, bool alone, const cut::CutRule& rule) {
@@ -377,7 +267,7 @@ class RegionMaker {
       if (!alone) {
         next.transition = withInsideOf(meshes.transition, next.regular);
       }
-      if (options_.repair) mendBoth(next, alone, Movable::Clusters);
+      if (options_.repair) mender_.mend(next, alone, Movable::Clusters);
       measureErrors(next, alone, rule);
       const std::vector<std::uint8_t> worse = findWorse(meshes, next, alone, rule.tolerance);
       if (std::find(worse.begin(), worse.end(), 1) == worse.end()) {
@@ -401,7 +291,7 @@ class RegionMaker {
                           const std::vector<float>& errors,
                           const std::vector<float>& errorsBefore) {
       if (pairs.size() > pairsBefore.size()) {
-        for (const VertexIndex vertex : verticesOf(mesh.made.mesh, pairs)) {
+        for (const VertexIndex vertex : mend::verticesOf(mesh.made.mesh, mend::polygonsOf(pairs))) {
           if (!mesh.isOnSeam(vertex)) worse[vertex] = 1;
         }
       }
@@ -417,25 +307,6 @@ class RegionMaker {
            before.transitionErrors);
     }
     return worse;
-  }
-
-  static std::vector<VertexIndex> verticesOf(const Mesh& mesh,
-                                             const std::vector<mend::PolygonPair>& pairs) {
-    std::vector<VertexIndex> vertices;
-    const auto add = [&](mend::PolygonIndex polygon) {
-      if (polygon < mesh.quads.size()) {
-        const auto& v = mesh.quads[polygon].vertices;
-        vertices.insert(vertices.end(), v.begin(), v.end());
-      } else {
-        const auto& v = mesh.triangles[polygon - mesh.quads.size()].vertices;
-        vertices.insert(vertices.end(), v.begin(), v.end());
-      }
-    };
-    for (const mend::PolygonPair& pair : pairs) {
-      add(pair.a);
-      add(pair.b);
-    }
-    return vertices;
   }
 
   // What was kept from the meshes before does not count here.
@@ -458,6 +329,7 @@ class RegionMaker {
   std::vector<Position> seamPositions_;  ///< in the world
   forest::Base<TreeT> seamBase_;         ///< with the seams' vertices
   certify::BaseSurface<TreeT> surface_;
+  LevelMender mender_;
   std::vector<SeamLines> lines_;  ///< of each level
   cut::CellFlags forbidden_;
   std::vector<std::uint8_t> beyond_;

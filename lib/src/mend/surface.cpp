@@ -7,6 +7,31 @@ namespace tufa::mend {
 using base::Box;
 using openvdb::Vec3d;
 
+std::vector<PolygonIndex> polygonsOf(const std::vector<PolygonPair>& pairs) {
+  std::vector<PolygonIndex> polygons;
+  for (const auto& [a, b] : pairs) {
+    polygons.push_back(a);
+    polygons.push_back(b);
+  }
+  return polygons;
+}
+
+std::vector<VertexIndex> verticesOf(const Mesh& mesh, const std::vector<PolygonIndex>& polygons) {
+  std::vector<VertexIndex> vertices;
+  for (const PolygonIndex polygon : polygons) {
+    if (polygon < mesh.quads.size()) {
+      const auto& v = mesh.quads[polygon].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    } else {
+      const auto& v = mesh.triangles[polygon - mesh.quads.size()].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
 Surface::Surface(Mesh& mesh, base::Job& job) : mesh_(mesh) {
   runs_.resize((size() + kRun - 1) / kRun);
   job.forRanges(runs_.size(), 64, [&](std::size_t begin, std::size_t end) {

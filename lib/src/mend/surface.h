@@ -35,6 +35,13 @@ inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
   return 2;
 }
 
+/// The polygons of pairs, each as often as it occurs.
+[[nodiscard]] std::vector<PolygonIndex> polygonsOf(const std::vector<PolygonPair>& pairs);
+
+/// The vertices of polygons of a mesh, sorted.
+[[nodiscard]] std::vector<VertexIndex> verticesOf(const Mesh& mesh,
+                                                  const std::vector<PolygonIndex>& polygons);
+
 /// Whether two polygons, or if they are the `same` the triangles of one, meet elsewhere than in
 /// what they share.
 [[nodiscard]] bool meetElsewhere(std::span<const Position> positions, Corners a, Corners b,

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "base/affine.h"
+#include "base/job.h"
+#include "chunks/chunk_cells.h"
+#include "chunks/split_chunks.h"
+#include "mend/surface.h"
+
+namespace tufa::chunks {
+
+/// What may move so that no polygons meet: vertices that stand for larger cells, or all but those
+/// on seams, which other chunks have too.
+enum class Movable : std::uint8_t { Clusters, All };
+
+/// Takes the self-intersections out of a region's levels.
+class LevelMender {
+ public:
+  /// What all levels share; must outlive the mender.
+  struct Region {
+    const std::vector<openvdb::Coord>& cells;        ///< of the base vertices
+    const std::vector<std::uint32_t>& baseSuspects;  ///< see polygons::findSuspects()
+    const std::vector<Position>& seamPositions;      ///< of the vertices on seams, in the world
+    const ChunkCells& chunks;
+    const base::Affine& affine;
+    bool singlePrecision;  ///< positions are rounded to floats
+  };
+
+  LevelMender(const Region& region, base::Job& job) : region_(region), job_(job) {}
+
+  /// Moves vertices and turns quads until no polygons meet, as they will be written, where that can
+  /// be; says which pairs are left. The two meshes of the level, which share all but their strips,
+  /// are mended in turn; or the regular one `alone`.
+  void mend(LevelMeshes& meshes, bool alone, Movable movable) const;
+
+ private:
+  [[nodiscard]] std::vector<mend::PolygonPair> mend(
+      SeamedCut& mesh, Movable movable, const std::vector<mend::PolygonIndex>& suspects) const;
+  [[nodiscard]] std::vector<mend::PolygonIndex> suspectsOf(const SeamedCut& mesh) const;
+  [[nodiscard]] bool isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const;
+
+  Region region_;
+  base::Job& job_;
+};
+
+}  // namespace tufa::chunks
