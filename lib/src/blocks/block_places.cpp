@@ -1,7 +1,5 @@
 #include "blocks/block_places.h"
 
-#include <bit>
-
 #include "base/huge_pages.h"
 
 namespace tufa::blocks {
@@ -9,34 +7,12 @@ namespace {
 
 using openvdb::Coord;
 
-std::size_t hashOf(const Coord& origin) {
-  const auto mix = [](std::uint64_t hash, std::int32_t value) {
-    hash ^= static_cast<std::uint32_t>(value) >> 3;
-    hash *= 0x9e3779b97f4a7c15u;
-    return hash ^ (hash >> 29);
-  };
-  return mix(mix(mix(0, origin[0]), origin[1]), origin[2]);
+void number(const std::vector<Coord>& origins, base::CoordTable& table) {
+  table.reserve(origins.size());
+  for (std::uint32_t i = 0; i < origins.size(); ++i) table.tryEmplace(origins[i], i);
 }
 
 }  // namespace
-
-void OriginTable::build(const std::vector<Coord>& origins) {
-  const std::size_t size = std::bit_ceil(2 * origins.size() + 2);
-  entries_.assign(size, {});
-  for (std::size_t i = 0; i < origins.size(); ++i) {
-    std::size_t slot = hashOf(origins[i]) & (size - 1);
-    while (entries_[slot].number != kNone) slot = (slot + 1) & (size - 1);
-    entries_[slot] = {origins[i], static_cast<std::int32_t>(i)};
-  }
-}
-
-std::int32_t OriginTable::find(const Coord& origin) const {
-  std::size_t slot = hashOf(origin) & (entries_.size() - 1);
-  while (entries_[slot].number != kNone && entries_[slot].origin != origin) {
-    slot = (slot + 1) & (entries_.size() - 1);
-  }
-  return entries_[slot].number;
-}
 
 template <class TreeT>
 void BlockPlaces<TreeT>::build(const TreeT& tree, const IsoChoice& iso, base::Job& job) {
@@ -50,8 +26,7 @@ void BlockPlaces<TreeT>::build(const TreeT& tree, const IsoChoice& iso, base::Jo
     firstLeaf.push_back(leaves);
     leaves += static_cast<BlockRef>(region->getChildMask().countOn());
   }
-  regionTable_.build(origins);
-  looseTable_.build({});
+  number(origins, regionTable_);
   base::resizeLarge(places_, regions.size() * Region::NUM_VALUES, job);
   job.forRanges(regions.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -95,7 +70,7 @@ void BlockPlaces<TreeT>::addTileBlocks(const std::vector<Coord>& origins, BlockR
       looseBlocks_.push_back(block);
     }
   }
-  looseTable_.build(loose);
+  number(loose, looseTable_);
 }
 
 template class BlockPlaces<openvdb::FloatTree>;

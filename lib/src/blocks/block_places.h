@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/coord_table.h"
 #include "base/job.h"
 #include "blocks/block_bits.h"
 #include "blocks/isovalue.h"
@@ -19,23 +20,6 @@ inline constexpr BlockRef kOutsideTile = -1;
 inline constexpr BlockRef kInsideTile = -2;
 /// A block that was left out, where Blocks holds only a part of a grid.
 inline constexpr BlockRef kMissingBlock = -4;
-
-/// From the origin of a block or region to its number.
-class OriginTable {
- public:
-  static constexpr std::int32_t kNone = -1;
-
-  /// The numbers are the places in the vector.
-  void build(const std::vector<openvdb::Coord>& origins);
-  [[nodiscard]] std::int32_t find(const openvdb::Coord& origin) const;
-
- private:
-  struct Entry {
-    openvdb::Coord origin;
-    std::int32_t number = kNone;
-  };
-  std::vector<Entry> entries_;  // open addressing
-};
 
 /// What is at each place of 8^3 samples. One table for each region of 16^3 places that the tree
 /// divides, so that neighbours are mostly found by a step in the same table.
@@ -60,8 +44,8 @@ class BlockPlaces {
     if (!box_.empty()) return box_.isInside(origin) ? places_[boxIndex(origin)] : kUnknown;
     const BlockRef* region = regionAt(origin);
     if (region != nullptr) return region[Region::coordToOffset(origin)];
-    const std::int32_t loose = looseTable_.find(origin);
-    return loose == OriginTable::kNone ? kUnknown : looseBlocks_[loose];
+    const std::uint32_t loose = looseTable_.find(origin);
+    return loose == base::CoordTable::kNone ? kUnknown : looseBlocks_[loose];
   }
 
   /// Calls take(i, block) for the places (dx, dy, dz) = -1..1 steps around a block, i being
@@ -89,9 +73,9 @@ class BlockPlaces {
 
   [[nodiscard]] const BlockRef* regionAt(const openvdb::Coord& origin) const {
     constexpr int kMask = ~static_cast<int>(Region::DIM - 1);
-    const std::int32_t region =
+    const std::uint32_t region =
         regionTable_.find({origin[0] & kMask, origin[1] & kMask, origin[2] & kMask});
-    return region == OriginTable::kNone
+    return region == base::CoordTable::kNone
                ? nullptr
                : &places_[static_cast<std::size_t>(region) * Region::NUM_VALUES];
   }
@@ -103,9 +87,9 @@ class BlockPlaces {
   }
 
   openvdb::CoordBBox box_;  // if not empty, places_ holds all places in it
-  OriginTable regionTable_;
+  base::CoordTable regionTable_;
   std::vector<BlockRef> places_;  // Region::NUM_VALUES for each region
-  OriginTable looseTable_;        // of the blocks in no region
+  base::CoordTable looseTable_;   // of the blocks in no region
   std::vector<BlockRef> looseBlocks_;
 };
 

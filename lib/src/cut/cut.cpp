@@ -7,6 +7,7 @@ namespace tufa::cut {
 using components::SurfaceBlock;
 using components::Topology;
 using forest::BlockForest;
+using forest::BlockGroup;
 using forest::Forest;
 using forest::kNone;
 using forest::Level;
@@ -37,30 +38,31 @@ class Numbering {
   // Level 3 stands for all above: the cluster is one of forest levels[0].
   template <class Body>
   void forVertices(std::size_t index, const Body& body) const {
-    const BlockForest& block = forest_.blocks[index];
+    const auto parents = forest_.parents(index);
+    const auto level1 = forest_.level1(index), level2 = forest_.level2(index);
     const std::uint64_t merged1 = merged_.level1[index];
     const unsigned merged2 = merged_.level2[index];
     const bool merged3 = merged_.levels[0][index] != 0;
-    for (std::uint32_t i = 0; i < block.parents.size(); ++i) {
-      const std::uint16_t parent1 = block.parents[i];
-      if (parent1 == BlockForest::kNoParent || ((merged1 >> block.level1[parent1].cell) & 1) == 0) {
+    for (std::uint32_t i = 0; i < parents.size(); ++i) {
+      const std::uint16_t parent1 = parents[i];
+      if (parent1 == BlockGroup::kNoParent || ((merged1 >> level1[parent1].cell) & 1) == 0) {
         body(i, 0, i);
         continue;
       }
-      const std::uint32_t parent2 = block.level1[parent1].parent;
-      if (parent2 == kNone || ((merged2 >> block.level2[parent2].cell) & 1) == 0) {
+      const std::uint32_t parent2 = level1[parent1].parent;
+      if (parent2 == kNone || ((merged2 >> level2[parent2].cell) & 1) == 0) {
         body(i, 1, std::uint32_t{parent1});
       } else if (!merged3) {
         body(i, 2, parent2);
       } else {
-        body(i, 3, block.level2[parent2].parent);
+        body(i, 3, level2[parent2].parent);
       }
     }
   }
 
   [[nodiscard]] VertexIndex countVertices(std::size_t index) const {
     const BlockForest& block = forest_.blocks[index];
-    std::vector<std::uint8_t> seen1(block.level1.size()), seen2(block.level2.size());
+    std::vector<std::uint8_t> seen1(block.clusters1), seen2(block.clusters2);
     VertexIndex count = 0;
     forVertices(index, [&](std::uint32_t, int level, std::uint32_t cluster) {
       if (level == 3) return;
@@ -96,10 +98,10 @@ class Numbering {
   }
 
   void numberBlock(std::size_t index, VertexIndex next) {
-    const BlockForest& block = forest_.blocks[index];
+    const auto level1 = forest_.level1(index), level2 = forest_.level2(index);
     const SurfaceBlock& surface = topology_.blocks[index];
-    std::vector<VertexIndex> number1(block.level1.size(), kNone);
-    std::vector<VertexIndex> number2(block.level2.size(), kNone);
+    std::vector<VertexIndex> number1(level1.size(), kNone);
+    std::vector<VertexIndex> number2(level2.size(), kNone);
     const auto parent = static_cast<std::uint32_t>(index);
     forVertices(index, [&](std::uint32_t i, int level, std::uint32_t cluster) {
       VertexIndex& vertex = cut_.vertexOf[surface.firstVertex + i];
@@ -115,8 +117,7 @@ class Numbering {
       VertexIndex& number = level == 1 ? number1[cluster] : number2[cluster];
       if (number == kNone) {
         number = next++;
-        const std::uint16_t cell =
-            level == 1 ? block.level1[cluster].cell : block.level2[cluster].cell;
+        const std::uint16_t cell = level == 1 ? level1[cluster].cell : level2[cluster].cell;
         cut_.clusters[number] = {static_cast<std::uint8_t>(level), cell, parent, cluster};
       }
       vertex = number;

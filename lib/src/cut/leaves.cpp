@@ -74,7 +74,7 @@ class Merger {
     forBlocks([&](std::size_t i) {
       const BlockForest& block = forest_.blocks[i];
       std::uint64_t merged = block.safe1 & ~forbidden_.level1[i];
-      for (const Cluster& cluster : block.level1) {
+      for (const Cluster& cluster : forest_.level1(i)) {
         const int cell = cluster.cell;
         if (!keepsRule(cluster, 1, middleOf(i, 1, cell >> 4, (cell >> 2) & 3, cell & 3))) {
           merged &= ~(std::uint64_t{1} << cell);
@@ -88,7 +88,7 @@ class Merger {
     forBlocks([&](std::size_t i) {
       const BlockForest& block = forest_.blocks[i];
       auto merged = static_cast<std::uint8_t>(block.safe2 & ~forbidden_.level2[i]);
-      for (const Cluster& cluster : block.level2) {
+      for (const Cluster& cluster : forest_.level2(i)) {
         const int cell = cluster.cell;
         if (!keepsRule(cluster, 2, middleOf(i, 2, cell >> 2, (cell >> 1) & 1, cell & 1))) {
           merged &= static_cast<std::uint8_t>(~(1 << cell));

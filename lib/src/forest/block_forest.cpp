@@ -17,9 +17,9 @@ using components::SurfaceBlockIndex;
 using Kind = creases::VertexSides::Kind;
 
 template <class TreeT>
-BlockForest BlockForestBuilder<TreeT>::build(std::size_t index) {
+BlockForest BlockForestBuilder<TreeT>::build(std::size_t index, BlockGroup& group) {
   forest_ = {};
-  clusters3_.clear();
+  for (auto* clusters : {&clusters1_, &clusters2_, &clusters3_}) clusters->clear();
   for (Patches& level : levels_) {
     level.patches.clear();
     level.count.fill(0);
@@ -31,7 +31,7 @@ BlockForest BlockForestBuilder<TreeT>::build(std::size_t index) {
       for (int z = 0; z < 4; ++z) {
         const std::uint64_t bit = std::uint64_t{1} << cellIndex1(x, y, z);
         if ((forest_.surface1 & bit) == 0 || (forbidden1_ & bit) != 0) continue;
-        if (tryCell(1, x, y, z, forest_.level1)) forest_.safe1 |= bit;
+        if (tryCell(1, x, y, z, clusters1_)) forest_.safe1 |= bit;
       }
     }
   }
@@ -46,10 +46,18 @@ BlockForest BlockForestBuilder<TreeT>::build(std::size_t index) {
     if (children == 0) continue;
     forest_.surface2 |= static_cast<std::uint8_t>(1 << cell);
     if ((children & ~forest_.safe1) != 0) continue;
-    if (tryCell(2, x, y, z, forest_.level2)) forest_.safe2 |= static_cast<std::uint8_t>(1 << cell);
+    if (tryCell(2, x, y, z, clusters2_)) forest_.safe2 |= static_cast<std::uint8_t>(1 << cell);
   }
   safe3_ = forest_.safe2 == forest_.surface2 && tryCell(3, 0, 0, 0, clusters3_);
-  return std::move(forest_);
+  forest_.vertices = static_cast<std::uint16_t>(parents_.size());
+  forest_.clusters1 = static_cast<std::uint16_t>(clusters1_.size());
+  forest_.clusters2 = static_cast<std::uint16_t>(clusters2_.size());
+  forest_.firstVertex = static_cast<std::uint32_t>(group.parents.size());
+  forest_.firstCluster = static_cast<std::uint32_t>(group.clusters.size());
+  group.parents.insert(group.parents.end(), parents_.begin(), parents_.end());
+  group.clusters.insert(group.clusters.end(), clusters1_.begin(), clusters1_.end());
+  group.clusters.insert(group.clusters.end(), clusters2_.begin(), clusters2_.end());
+  return forest_;
 }
 
 template <class TreeT>
@@ -84,7 +92,7 @@ void BlockForestBuilder<TreeT>::readVertices(std::size_t index) {
       }
     });
   }
-  forest_.parents.assign(level.patches.size(), BlockForest::kNoParent);
+  parents_.assign(level.patches.size(), BlockGroup::kNoParent);
   if (special) forbidBeside(index);
 }
 
@@ -159,9 +167,9 @@ bool BlockForestBuilder<TreeT>::neighbourOwnsBothArcs(std::size_t index, int cel
 
 template <class TreeT>
 void BlockForestBuilder<TreeT>::setParent(int level, std::uint32_t patch, std::uint32_t parent) {
-  if (level == 0) forest_.parents[patch] = static_cast<std::uint16_t>(parent);
-  if (level == 1) forest_.level1[patch].parent = parent;
-  if (level == 2) forest_.level2[patch].parent = parent;
+  if (level == 0) parents_[patch] = static_cast<std::uint16_t>(parent);
+  if (level == 1) clusters1_[patch].parent = parent;
+  if (level == 2) clusters2_[patch].parent = parent;
 }
 
 template <class TreeT>

@@ -14,8 +14,9 @@ class BlockForestBuilder {
  public:
   explicit BlockForestBuilder(const Base<TreeT>& base) : base_(base) {}
 
-  /// The forest of surface block `index`; the parents in its level 2 count from 0.
-  [[nodiscard]] BlockForest build(std::size_t index);
+  /// Builds the forest of surface block `index`, and appends its parents and clusters to those of
+  /// the group. The parents in its level 2 count from 0.
+  [[nodiscard]] BlockForest build(std::size_t index, BlockGroup& group);
 
   /// Of the block built last, the patches and clusters of level 3; none unless isSafe().
   [[nodiscard]] bool isSafe() const { return safe3_; }
@@ -48,7 +49,8 @@ class BlockForestBuilder {
   BlockForest forest_;
   PatchJoiner joiner_;
   std::array<Patches, 4> levels_;  ///< levels 0 to 3
-  std::vector<Cluster> clusters3_;
+  std::vector<std::uint16_t> parents_;
+  std::vector<Cluster> clusters1_, clusters2_, clusters3_;
   std::uint64_t forbidden1_ = 0;
   bool safe3_ = false;
 };

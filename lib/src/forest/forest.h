@@ -6,10 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <unordered_map>
+#include <span>
 #include <vector>
 
 #include "base/affine.h"
+#include "base/coord_table.h"
 #include "base/job.h"
 #include "blocks/blocks.h"
 #include "components/topology.h"
@@ -17,7 +18,7 @@
 
 namespace tufa::forest {
 
-inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t kNone = base::CoordTable::kNone;
 
 /// A connected piece of the surface in one octree cell, which one vertex can stand for.
 struct Cluster {
@@ -33,17 +34,23 @@ struct Cluster {
 inline constexpr int cellIndex1(int x, int y, int z) { return x * 16 + y * 4 + z; }
 inline constexpr int cellIndex2(int x, int y, int z) { return x * 4 + y * 2 + z; }
 
-/// Levels 1 and 2 of one block.
+/// The cells of levels 1 and 2 of one block, and how many clusters they have.
 struct BlockForest {
+  std::uint64_t surface1 = 0;  ///< level-1 cells that the surface passes
+  std::uint64_t safe1 = 0;     ///< of these, the ones that may become leaves
+  std::uint8_t surface2 = 0;
+  std::uint8_t safe2 = 0;
+  std::uint16_t vertices = 0, clusters1 = 0, clusters2 = 0;
+  std::uint32_t firstVertex = 0, firstCluster = 0;  ///< in their BlockGroup
+};
+
+/// What is of different size in each of some consecutive blocks: few arrays are freed in no time.
+struct BlockGroup {
+  static constexpr std::size_t kBlocks = 64;
   static constexpr std::uint16_t kNoParent = std::numeric_limits<std::uint16_t>::max();
 
   std::vector<std::uint16_t> parents;  ///< of each base vertex: its level-1 cluster or kNoParent
-  std::vector<Cluster> level1;         ///< parents in level2
-  std::vector<Cluster> level2;         ///< parents in Forest::levels[0]
-  std::uint64_t surface1 = 0;          ///< level-1 cells that the surface passes
-  std::uint64_t safe1 = 0;             ///< of these, the ones that may become leaves
-  std::uint8_t surface2 = 0;
-  std::uint8_t safe2 = 0;
+  std::vector<Cluster> clusters;       ///< block by block, of level 1, then of level 2
 };
 
 /// One level of cells of the size of a block or larger: all that the surface passes.
@@ -57,11 +64,8 @@ struct Level {
   std::vector<std::uint32_t> parentCells;  ///< in the next level; empty at the last
 
   /// Index of a cell, or kNone where the surface does not pass.
-  [[nodiscard]] std::uint32_t find(const openvdb::Coord& cell) const {
-    const auto found = indices.find(cell);
-    return found == indices.end() ? kNone : found->second;
-  }
-  std::unordered_map<openvdb::Coord, std::uint32_t> indices;
+  [[nodiscard]] std::uint32_t find(const openvdb::Coord& cell) const { return indices.find(cell); }
+  base::CoordTable indices;
 };
 
 /// The surface as clusters of all sizes, each with the vertex that would stand for it: what every
@@ -69,7 +73,25 @@ struct Level {
 /// below, pass the safety test; see PatchJoiner.
 struct Forest {
   std::vector<BlockForest> blocks;  ///< for each surface block of the topology
+  std::vector<BlockGroup> groups;   ///< of the blocks, so many each
   std::vector<Level> levels;        ///< level 3 (cell i is surface block i), 4, and so on
+
+  /// Of each base vertex of a block: its level-1 cluster or BlockGroup::kNoParent.
+  [[nodiscard]] std::span<const std::uint16_t> parents(std::size_t block) const {
+    const BlockForest& own = blocks[block];
+    return {groups[block / BlockGroup::kBlocks].parents.data() + own.firstVertex, own.vertices};
+  }
+  /// The clusters of a block's level-1 cells; their parents are in level2().
+  [[nodiscard]] std::span<const Cluster> level1(std::size_t block) const {
+    const BlockForest& own = blocks[block];
+    return {groups[block / BlockGroup::kBlocks].clusters.data() + own.firstCluster, own.clusters1};
+  }
+  /// The clusters of a block's level-2 cells; their parents are in levels[0].
+  [[nodiscard]] std::span<const Cluster> level2(std::size_t block) const {
+    const BlockForest& own = blocks[block];
+    return {groups[block / BlockGroup::kBlocks].clusters.data() + own.firstCluster + own.clusters1,
+            own.clusters2};
+  }
 };
 
 /// The uniform mesh that a forest is built on.

@@ -54,18 +54,19 @@ Outcome tryCell(const LevelPatches& below, const ChildCells& cells, const base::
 std::vector<ChildCells> findCells(Level& below, Level& above, base::Job& job) {
   std::vector<ChildCells> children;
   below.parentCells.resize(below.cells.size());
+  above.indices.reserve(below.cells.size());
   for (std::uint32_t i = 0; i < below.cells.size(); ++i) {
     job.lookAtTimes(i);
     const openvdb::Coord& cell = below.cells[i];
     const openvdb::Coord parent(cell[0] >> 1, cell[1] >> 1, cell[2] >> 1);
-    const auto [entry, fresh] =
-        above.indices.try_emplace(parent, static_cast<std::uint32_t>(above.cells.size()));
-    if (fresh) {
+    const auto fresh = static_cast<std::uint32_t>(above.cells.size());
+    const std::uint32_t own = above.indices.tryEmplace(parent, fresh);
+    if (own == fresh) {
       above.cells.push_back(parent);
       children.emplace_back().fill(kNone);
     }
-    below.parentCells[i] = entry->second;
-    children[entry->second][(cell[0] & 1) * 4 + (cell[1] & 1) * 2 + (cell[2] & 1)] = i;
+    below.parentCells[i] = own;
+    children[own][(cell[0] & 1) * 4 + (cell[1] & 1) * 2 + (cell[2] & 1)] = i;
   }
   return children;
 }

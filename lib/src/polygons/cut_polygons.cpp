@@ -28,13 +28,13 @@ Located locate(const Forest& forest, const ClusterRef& ref) {
     return {openvdb::Coord(cell[0] << level, cell[1] << level, cell[2] << level),
             &cells.clusters[ref.cluster]};
   }
-  const forest::BlockForest& block = forest.blocks[ref.parentCell];
   const openvdb::Coord& cell = forest.levels[0].cells[ref.parentCell];
   const int bits = 3 - level, mask = (1 << bits) - 1;
-  return {openvdb::Coord((cell[0] << 3) + (((ref.cell >> (2 * bits)) & mask) << level),
-                         (cell[1] << 3) + (((ref.cell >> bits) & mask) << level),
-                         (cell[2] << 3) + ((ref.cell & mask) << level)),
-          level == 1 ? &block.level1[ref.cluster] : &block.level2[ref.cluster]};
+  return {
+      openvdb::Coord((cell[0] << 3) + (((ref.cell >> (2 * bits)) & mask) << level),
+                     (cell[1] << 3) + (((ref.cell >> bits) & mask) << level),
+                     (cell[2] << 3) + ((ref.cell & mask) << level)),
+      &(level == 1 ? forest.level1(ref.parentCell) : forest.level2(ref.parentCell))[ref.cluster]};
 }
 
 void placeVertices(const Forest& forest, const Cut& cut, const Mesh& base,

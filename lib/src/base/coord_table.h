@@ -1,0 +1,37 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace tufa::base {
+
+/// From coordinates of cells, blocks or regions to their numbers. One array, so that it is built
+/// and freed in no time.
+class CoordTable {
+ public:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  CoordTable() { reserve(0); }
+  /// Forgets all, and makes room for so many coordinates and no more.
+  void reserve(std::size_t count);
+  /// Numbers coordinates that have no number yet. Returns the number that they have then.
+  std::uint32_t tryEmplace(const openvdb::Coord& at, std::uint32_t number);
+  [[nodiscard]] std::uint32_t find(const openvdb::Coord& at) const {
+    return entries_[slotOf(at)].number;
+  }
+
+ private:
+  struct Entry {
+    openvdb::Coord at;
+    std::uint32_t number = kNone;
+  };
+  [[nodiscard]] std::size_t slotOf(const openvdb::Coord& at) const;
+
+  std::vector<Entry> entries_;  ///< open addressing; a power of two, at most half full
+};
+
+}  // namespace tufa::base
