@@ -5,6 +5,7 @@
 #include <tufa/check.h>
 #include <tufa/chunks.h>
 #include <tufa/shapes.h>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -160,6 +161,39 @@ TEST(ChunkInsides, AreCollapsedAsFarAsTheToleranceAllows) {
       const ChunkLevelEntry& entry = made.index.chunks[i].levels[level];
       EXPECT_LE(entry.maxErrorVoxels, std::max(0.5, made.index.tolerances[level])) << level;
       EXPECT_EQ(entry.intersectionsLeft, 0u) << level;
+    }
+  }
+}
+
+// Triangles of all regular strips at a level.
+std::size_t stripsOf(const ChunkIndex& index, std::size_t level) {
+  std::size_t count = 0;
+  for (const ChunkEntry& entry : index.chunks) count += entry.levels[level].regularTriangles;
+  return count;
+}
+
+// Vertices beside faces are joined, too, and each still stands for one stretch of a curve.
+TEST(ChunkRims, AreCollapsedAlongTheirCurves) {
+  ChunkOptions options;
+  options.chunkSize = 32;
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
+  const Made made = makeChunks(*grid, options);
+  options.contour.simplify = false;
+  const Made plain = makeChunks(*grid, options);
+  for (std::size_t level = 0; level < made.index.tolerances.size(); ++level) {
+    EXPECT_LT(stripsOf(made.index, level), stripsOf(plain.index, level)) << level;
+  }
+  for (const Chunk& chunk : made.chunks) {
+    for (const ChunkLevel& level : chunk.levels) {
+      for (const std::vector<ChunkSeam>& face : level.seams) {
+        for (const ChunkSeam& seam : face) {
+          std::vector<VertexIndex> runs = seam.tiles;
+          runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+          if (seam.closed && runs.size() > 1 && runs.front() == runs.back()) runs.pop_back();
+          const std::set<VertexIndex> different(runs.begin(), runs.end());
+          EXPECT_EQ(runs.size(), different.size()) << chunk.index;
+        }
+      }
     }
   }
 }

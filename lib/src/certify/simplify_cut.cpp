@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/huge_pages.h"
+#include "certify/widen.h"
 #include "simplify/collapse.h"
 
 namespace tufa::certify {
@@ -167,21 +168,6 @@ std::vector<std::uint8_t> findFaulty(const forest::Base<TreeT>& base, const Meas
   return faulty;
 }
 
-// The marks and those of all neighbours, so many rings of them.
-std::vector<std::uint8_t> widen(const Mesh& mesh, std::vector<std::uint8_t> marks, int rings) {
-  for (int ring = 0; ring < rings; ++ring) {
-    std::vector<std::uint8_t> wider = marks;
-    const auto look = [&](const auto& v) {
-      if (std::none_of(v.begin(), v.end(), [&](VertexIndex i) { return marks[i] != 0; })) return;
-      for (const VertexIndex i : v) wider[i] = 1;
-    };
-    for (const Quad& quad : mesh.quads) look(quad.vertices);
-    for (const Triangle& triangle : mesh.triangles) look(triangle.vertices);
-    marks = std::move(wider);
-  }
-  return marks;
-}
-
 // Takes from what was found faulty all that is not beside something that was collapsed or turned:
 // the mesh was so before.
 template <class TreeT>
@@ -340,6 +326,8 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     return certifier.distanceToBase(point, normal, enough);
   };
   bounds.triangles = goal.triangles;
+  bounds.rim = goal.rim;
+  bounds.mayLie = goal.mayLie;
   const double tolerance = rule.tolerance;
   for (const Position& p : mesh.made.mesh.positions) {
     const double least = std::max(0.0, toleranceAt(rule, base.affine, vectorOf(p)));

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
+
 #include "certify/measured.h"
 #include "forest/forest.h"
+#include "simplify/rim.h"
 
 namespace tufa::certify {
 
@@ -16,6 +19,8 @@ struct Goal {
   /// the mesh says are altered stay so, what was faulty before is no fault, and some faults may be
   /// left.
   std::vector<VertexIndex> fixed = {};
+  simplify::Rim rim = {};  ///< see simplify::Bounds
+  std::function<bool(VertexIndex vertex, const openvdb::Vec3d& point)> mayLie = nullptr;
 };
 
 /// Collapses edges of a mesh as far as the rule's tolerance and the topology allow:

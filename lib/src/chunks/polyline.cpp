@@ -18,7 +18,7 @@ using openvdb::Vec3d;
 
 constexpr std::size_t kLeastOfLoop = 3;
 // A segment may be so many times longer than the limit, in arcs.
-constexpr double kLongest = 1.5;
+constexpr double kLongest = 2.5;
 // What an arc more adds to the length that a segment may have.
 constexpr double kGrowth = 0.5;
 // How much of the way to a side that faces the other way a line may go.
@@ -156,26 +156,12 @@ class Line {
     if (curve_.end == kNoSeam) choose(firstArc_ + curve_.arcs.size() - 1);
   }
 
-  // A cluster's cell lies in one quadrant of the least square of the octree that holds the loop.
-  // Runs that do the same have no more than one stretch in common with it.
+  // Runs that lie in one quadrant, as clusters do, have no more than one stretch in common with
+  // one.
   void chooseInQuadrants() {
     const std::size_t count = points_.size();
-    const auto [u, v] = components::otherAxes(curve_.axis);
-    unsigned differs = 0;
-    const auto cell = [&](std::size_t node) -> const Coord& {
-      return seams_.vertices[indices_[node]].cell;
-    };
-    for (std::size_t i = 1; i < count; ++i) {
-      differs |= static_cast<unsigned>(cell(i)[u] ^ cell(0)[u]) |
-                 static_cast<unsigned>(cell(i)[v] ^ cell(0)[v]);
-    }
-    if (differs == 0) return;
-    const int bit = std::bit_width(differs) - 1;
-    quadrants_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      quadrants_[i] =
-          static_cast<std::uint8_t>(((cell(i)[u] >> bit) & 1) * 2 + ((cell(i)[v] >> bit) & 1));
-    }
+    quadrants_ = quadrantsOf(seams_, curve_);
+    if (quadrants_.empty()) return;
     std::size_t start = 0;
     while (start < count && quadrants_[start] == quadrants_[(start + count - 1) % count]) ++start;
     for (std::size_t i = start; i < start + count;) {
@@ -218,7 +204,9 @@ class Line {
         double limit = limits_[from % points_.size()];
         for (std::size_t i = from; i <= to; ++i)
           limit = std::min(limit, limits_[i % points_.size()]);
-        if (!(static_cast<double>(to - from) > kLongest * limit)) continue;
+        if (!(static_cast<double>(to - from) >
+              kLongest * limit))
+          continue;
         node = from + (to - from) / 2;
       }
       choose(node);
@@ -325,6 +313,26 @@ class Face {
 };
 
 }  // namespace
+
+std::vector<std::uint8_t> quadrantsOf(const Seams& seams, const SeamCurve& curve) {
+  const auto [u, v] = components::otherAxes(curve.axis);
+  const auto cell = [&](std::size_t i) -> const Coord& {
+    return seams.vertices[curve.arcs[i]].cell;
+  };
+  unsigned differs = 0;
+  for (std::size_t i = 1; i < curve.arcs.size(); ++i) {
+    differs |= static_cast<unsigned>(cell(i)[u] ^ cell(0)[u]) |
+               static_cast<unsigned>(cell(i)[v] ^ cell(0)[v]);
+  }
+  std::vector<std::uint8_t> quadrants;
+  if (differs == 0) return quadrants;
+  const int bit = std::bit_width(differs) - 1;
+  for (std::size_t i = 0; i < curve.arcs.size(); ++i) {
+    quadrants.push_back(
+        static_cast<std::uint8_t>(((cell(i)[u] >> bit) & 1) * 2 + ((cell(i)[v] >> bit) & 1)));
+  }
+  return quadrants;
+}
 
 SeamLines simplifySeams(const Seams& seams, const base::Affine& affine,
                         const std::function<double(const Vec3d&)>& allowed) {

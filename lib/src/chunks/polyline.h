@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -10,6 +11,10 @@ namespace tufa::chunks {
 
 /// For each seam vertex the one that stands for it: what one level makes of the seams.
 using SeamLines = std::vector<SeamIndex>;
+
+/// For each arc of a closed curve the quadrant of the least square of the octree that holds all of
+/// them; empty if they are in one cell. A cluster's cell lies in one quadrant.
+[[nodiscard]] std::vector<std::uint8_t> quadrantsOf(const Seams& seams, const SeamCurve& curve);
 
 /// Simplifies the curves of all seams, each to a polyline on its face through some of its arcs'
 /// vertices. No vertex that is left out is further from it than `allowed` says, in world units.

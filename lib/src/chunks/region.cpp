@@ -7,7 +7,7 @@
 #include "base/bits.h"
 #include "certify/certificate.h"
 #include "certify/split_cells.h"
-#include "chunks/collapse_inside.h"
+#include "chunks/level_collapser.h"
 #include "chunks/level_mender.h"
 #include "chunks/polyline.h"
 #include "chunks/seamed_cut.h"
@@ -24,16 +24,14 @@ using openvdb::Coord;
 
 // What of the tolerance a polyline may use up on its face.
 constexpr double kLineShare = 0.5;
+// And never more than this, in voxels: where the surface is nearly flat on the face, what lies
+// beside the polyline would be on its other side.
+constexpr double kMostOff = 1.5;
 // After so many rounds no cells are split any more because polygons meet: where they still do, as
 // on white noise, smaller cells do not help.
 constexpr int kMostRounds = 12;
-// So often edges are collapsed inside the chunks, each time without what went wrong.
-constexpr int kMostTries = 2;
 // Cells are merged at this share of the tolerance where edges will be collapsed.
 constexpr double kCutShare = 0.5;
-// A collapse that leaves this share of the triangles is not worth its time.
-constexpr double kMostLeft = 0.95;
-
 // The cell of each base vertex.
 template <class TreeT>
 std::vector<Coord> cellsOf(const forest::Base<TreeT>& base, base::Job& job) {
@@ -115,11 +113,12 @@ class RegionMaker {
                  options.singlePrecision},
                 job),
         forbidden_(forbidOthers(forest_, chunks)),
-        beyond_(findBeyond()) {
+        beyond_(findBeyond()),
+        collapser_({seamBase_, surface_, cells_, seams_, chunks, beyond_, mender_}, job) {
     for (const double tolerance : options.tolerances) {
       const cut::CutRule rule = ruleFor(tolerance);
       lines_.push_back(simplifySeams(seams_, base_.affine, [&](const openvdb::Vec3d& point) {
-        return kLineShare * rule.toleranceAt(point) * base_.affine.voxelSize();
+        return std::min(kMostOff, kLineShare * rule.toleranceAt(point)) * base_.affine.voxelSize();
       }));
     }
   }
@@ -164,8 +163,10 @@ class RegionMaker {
         if (!alone) split |= splitFar(meshes.transition, *transition, forbidden);
         if (split) continue;
       }
-      measureErrors(meshes, alone, rule);
-      if (options_.simplify) collapse(meshes, alone, rule, regular);
+      const std::size_t next = level + (alone ? 0 : 1);
+      const typename LevelCollapser<TreeT>::Level own{rule, options_.tolerances[next], lines_[next],
+                                                      alone};
+      options_.simplify ? collapse(meshes, own, regular) : collapser_.measure(meshes, own);
       if (alone && !last) {
         meshes.transition = meshes.regular;
         meshes.transitionErrors = meshes.regularErrors;
@@ -236,85 +237,10 @@ class RegionMaker {
                                options_.rule.minLevel, forbidden);
   }
 
-  void measureErrors(LevelMeshes& meshes, bool alone, const cut::CutRule& rule) {
-    meshes.regularErrors = errorsOf(meshes.regular, rule);
-    if (!alone) meshes.transitionErrors = errorsOf(meshes.transition, rule);
-  }
-
-  // Collapses edges inside the chunks. Where that makes a mesh worse it is tried again without what
-  // is around, and given up at last.
-  void collapse(LevelMeshes& meshes, bool alone, const cut::CutRule& rule, Certifier& certifier) {
+  void collapse(LevelMeshes& meshes, const typename LevelCollapser<TreeT>::Level& level,
+                Certifier& certifier) {
     const certify::Repair repair{level0_.suspects(), level0_.source(job_)};
-    std::vector<std::uint8_t> fixed(meshes.regular.cut.clusters.size(), 0);
-    for (const VertexIndex vertex : meshes.regular.altered) fixed[vertex] = 1;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (!chunks_.own.isInside(chunks_.chunkOf(cells_[i]))) {
-        fixed[meshes.regular.cut.vertexOf[i]] = 1;
-      }
-    }
-    for (int attempt = 0; attempt < kMostTries; ++attempt) {
-      certify::Goal goal;
-      goal.giveUp = static_cast<std::size_t>(
-          kMostLeft * static_cast<double>(meshes.regular.made.mesh.triangleCount()));
-      for (VertexIndex i = 0; i < fixed.size(); ++i) {
-        if (fixed[i] != 0) goal.fixed.push_back(i);
-      }
-      LevelMeshes next;
-      next.regular = collapseInside(seamBase_, meshes.regular, goal, rule,
-                                    options_.repair ? &repair : nullptr, certifier, job_);
-      if (next.regular.made.mesh.triangleCount() >= goal.giveUp) return;
-      chunks::keepInChunks(cells_, chunks_, base_.affine, next.regular);
-      if (!alone) {
-        next.transition = withInsideOf(meshes.transition, next.regular);
-      }
-      if (options_.repair) mender_.mend(next, alone, Movable::Clusters);
-      measureErrors(next, alone, rule);
-      const std::vector<std::uint8_t> worse = findWorse(meshes, next, alone, rule.tolerance);
-      if (std::find(worse.begin(), worse.end(), 1) == worse.end()) {
-        meshes = std::move(next);
-        return;
-      }
-      for (std::size_t i = 0; i < cells_.size(); ++i) {
-        if (worse[next.regular.cut.vertexOf[i]] != 0) fixed[meshes.regular.cut.vertexOf[i]] = 1;
-      }
-    }
-  }
-
-  // Marks vertices of pairs, if there are more of them than before, and those of a larger error
-  // than the tolerance and all errors before.
-  [[nodiscard]] std::vector<std::uint8_t> findWorse(const LevelMeshes& before,
-                                                    const LevelMeshes& now, bool alone,
-                                                    double tolerance) const {
-    std::vector<std::uint8_t> worse(now.regular.cut.clusters.size(), 0);
-    const auto look = [&](const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
-                          const std::vector<mend::PolygonPair>& pairsBefore,
-                          const std::vector<float>& errors,
-                          const std::vector<float>& errorsBefore) {
-      if (pairs.size() > pairsBefore.size()) {
-        for (const VertexIndex vertex : mend::verticesOf(mesh.made.mesh, mend::polygonsOf(pairs))) {
-          if (!mesh.isOnSeam(vertex)) worse[vertex] = 1;
-        }
-      }
-      const float most = std::max(static_cast<float>(tolerance),
-                                  *std::max_element(errorsBefore.begin(), errorsBefore.end()));
-      for (VertexIndex i = 0; i < mesh.clusterCount; ++i) {
-        if (errors[i] > most) worse[i] = 1;
-      }
-    };
-    look(now.regular, now.pairs, before.pairs, now.regularErrors, before.regularErrors);
-    if (!alone) {
-      look(now.transition, now.transitionPairs, before.transitionPairs, now.transitionErrors,
-           before.transitionErrors);
-    }
-    return worse;
-  }
-
-  // What was kept from the meshes before does not count here.
-  [[nodiscard]] std::vector<float> errorsOf(const SeamedCut& mesh, const cut::CutRule& rule) {
-    Certifier certifier(seamBase_, surface_, rule, job_);
-    certifier.setIgnored(beyond_);
-    (void)certifier.measure(mesh.cut, mesh.made, mesh.altered);
-    return certifier.errorsAtVertices();
+    collapser_.collapse(meshes, level, options_.repair ? &repair : nullptr, certifier);
   }
 
   const level0::Level0<TreeT>& level0_;
@@ -333,6 +259,7 @@ class RegionMaker {
   std::vector<SeamLines> lines_;  ///< of each level
   cut::CellFlags forbidden_;
   std::vector<std::uint8_t> beyond_;
+  LevelCollapser<TreeT> collapser_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "chunks/seamed_cut.h"
 
 #include <algorithm>
+#include <array>
 
 #include "chunks/stitch.h"
 
@@ -67,10 +68,34 @@ class Joints {
   std::vector<std::pair<VertexIndex, VertexIndex>> edges_;  // between such vertices
 };
 
-// Adds the strips on both sides of all seams, where the chunk is to be made.
+// Begins a mesh of `cut` with the vertices of the lines behind those of the clusters. Returns the
+// vertex of each seam vertex that is on a line.
+std::vector<VertexIndex> addLines(const Seams& seams, const SeamLines& lines, cut::Cut cut,
+                                  SeamedCut& result) {
+  result.clusterCount = static_cast<VertexIndex>(cut.clusters.size());
+  const std::size_t baseCount = cut.vertexOf.size();
+  std::vector<VertexIndex> vertexOf(seams.vertices.size());
+  for (SeamIndex i = 0; i < lines.size(); ++i) {
+    if (lines[i] != i) continue;
+    vertexOf[i] = static_cast<VertexIndex>(cut.clusters.size());
+    cut.clusters.push_back({0, 0, 0, static_cast<std::uint32_t>(baseCount + i)});
+    result.seamOf.push_back(i);
+  }
+  for (const SeamIndex line : lines) cut.vertexOf.push_back(vertexOf[line]);
+  for (const VertexIndex base : seams.beside) result.altered.push_back(cut.vertexOf[base]);
+  std::sort(result.altered.begin(), result.altered.end());
+  result.altered.erase(std::unique(result.altered.begin(), result.altered.end()),
+                       result.altered.end());
+  for (auto i = result.clusterCount; i < cut.clusters.size(); ++i) result.altered.push_back(i);
+  result.cut = std::move(cut);
+  return vertexOf;
+}
+
+// Adds the strips on both sides of all seams, where the chunk is to be made, but for those that are
+// kept; empty: none.
 void addStrips(const Seams& seams, const SeamLines& lines,
                const std::vector<VertexIndex>& seamVertices, const ChunkCells& chunks,
-               SeamedCut& result) {
+               const std::vector<std::uint8_t>& kept, SeamedCut& result) {
   struct Side {
     const SeamCurve* curve;
     bool above;
@@ -90,6 +115,8 @@ void addStrips(const Seams& seams, const SeamLines& lines,
     }
   }
   for (const auto& [curve, above, seam] : sides) {
+    const StripPlace place{static_cast<std::uint32_t>(curve - seams.curves.data()), above};
+    if (!kept.empty() && kept[place.number()] != 0) continue;
     const bool several = std::any_of(curve->arcs.begin(), curve->arcs.end(),
                                      [&](SeamIndex arc) { return !seams.arcs[arc].single; });
     for (const StripTriangle& strip :
@@ -97,9 +124,44 @@ void addStrips(const Seams& seams, const SeamLines& lines,
                 [&](VertexIndex a, VertexIndex b) { return joints.mayJoin(a, b); })) {
       const std::size_t arc = above ? curve->arcs.size() - 1 - strip.arc : strip.arc;
       mesh.triangles.push_back(strip.triangle);
-      result.strips.push_back({static_cast<std::uint32_t>(curve - seams.curves.data()), above});
+      result.strips.push_back(place);
       result.made.triangleSources.push_back(seams.arcs[curve->arcs[arc]].quad);
     }
+  }
+}
+
+// Marks the sides of curves where what is left of the strips has no edge across more than twice.
+std::vector<std::uint8_t> findClosed(const SeamedCut& before, const std::vector<StripLeft>& left,
+                                     const Seams& seams, const SeamedCut& result) {
+  using Edge = std::array<std::size_t, 3>;  // of a side: cluster and seam vertex
+  std::vector<Edge> edges;
+  for (const StripLeft& strip : left) {
+    const StripPlace& place = before.strips[strip.strip];
+    if (!seams.curves[place.curve].closed) continue;
+    for (int i = 0; i < 3; ++i) {
+      const VertexIndex a = strip.triangle.vertices[i], b = strip.triangle.vertices[(i + 1) % 3];
+      if (result.isOnSeam(a) == result.isOnSeam(b)) continue;
+      edges.push_back({place.number(), std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<std::uint8_t> closed(2 * seams.curves.size(), 1);
+  for (std::size_t i = 2; i < edges.size(); ++i) {
+    if (edges[i] == edges[i - 2]) closed[edges[i][0]] = 0;
+  }
+  return closed;
+}
+
+// Adds what is left of the strips that are kept.
+void keepStrips(const SeamedCut& before, const std::vector<StripLeft>& left,
+                const std::vector<std::uint8_t>& kept, SeamedCut& result) {
+  const std::size_t first = before.made.mesh.triangles.size() - before.strips.size();
+  for (const StripLeft& strip : left) {
+    const StripPlace& place = before.strips[strip.strip];
+    if (kept[place.number()] == 0) continue;
+    result.made.mesh.triangles.push_back(strip.triangle);
+    result.made.triangleSources.push_back(before.made.triangleSources[first + strip.strip]);
+    result.strips.push_back(place);
   }
 }
 
@@ -146,25 +208,55 @@ SeamedCut meshWithSeams(const forest::Forest& forest, cut::Cut cut, const Seams&
                         const SeamLines& lines, const std::vector<openvdb::Coord>& vertexCells,
                         const ChunkCells& chunks, const base::Affine& affine, base::Job& job) {
   SeamedCut result;
-  result.clusterCount = static_cast<VertexIndex>(cut.clusters.size());
-  const std::size_t baseCount = cut.vertexOf.size();
-  std::vector<VertexIndex> vertexOf(seams.vertices.size());
-  for (SeamIndex i = 0; i < lines.size(); ++i) {
-    if (lines[i] != i) continue;
-    vertexOf[i] = static_cast<VertexIndex>(cut.clusters.size());
-    cut.clusters.push_back({0, 0, 0, static_cast<std::uint32_t>(baseCount + i)});
-    result.seamOf.push_back(i);
-  }
-  for (const SeamIndex line : lines) cut.vertexOf.push_back(vertexOf[line]);
-  for (const VertexIndex base : seams.beside) result.altered.push_back(cut.vertexOf[base]);
-  std::sort(result.altered.begin(), result.altered.end());
-  result.altered.erase(std::unique(result.altered.begin(), result.altered.end()),
-                       result.altered.end());
-  for (auto i = result.clusterCount; i < cut.clusters.size(); ++i) result.altered.push_back(i);
-  result.cut = std::move(cut);
+  const std::vector<VertexIndex> seamVertices = addLines(seams, lines, std::move(cut), result);
   result.made = polygons::meshCut(forest, result.cut, seams.mesh, seams.quads, affine, job);
   keepInChunks(vertexCells, chunks, affine, result);
-  addStrips(seams, lines, vertexOf, chunks, result);
+  addStrips(seams, lines, seamVertices, chunks, {}, result);
+  partDiagonals(result);
+  return result;
+}
+
+std::vector<StripLeft> stripsLeft(const SeamedCut& before, const cut::Cut& now) {
+  std::vector<VertexIndex> numbers(before.cut.clusters.size());
+  for (std::size_t i = 0; i < now.vertexOf.size(); ++i) {
+    numbers[before.cut.vertexOf[i]] = now.vertexOf[i];
+  }
+  const std::vector<Triangle>& triangles = before.made.mesh.triangles;
+  const std::size_t first = triangles.size() - before.strips.size();
+  std::vector<StripLeft> left;
+  for (std::size_t i = 0; i < before.strips.size(); ++i) {
+    const auto& v = triangles[first + i].vertices;
+    const VertexIndex a = numbers[v[0]], b = numbers[v[1]], c = numbers[v[2]];
+    if (a != b && b != c && c != a) left.push_back({i, {a, b, c}});
+  }
+  return left;
+}
+
+SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh, const Seams& seams,
+                       const SeamLines& lines, const ChunkCells& chunks) {
+  SeamedCut result;
+  cut::Cut cut = mesh.cut;
+  cut.clusters.resize(mesh.clusterCount);
+  cut.vertexOf.resize(cut.vertexOf.size() - lines.size());
+  const std::size_t baseCount = cut.vertexOf.size();
+  const std::vector<VertexIndex> seamVertices = addLines(seams, lines, std::move(cut), result);
+  for (const VertexIndex vertex : mesh.altered) {
+    if (!mesh.isOnSeam(vertex)) result.altered.push_back(vertex);
+  }
+  result.made = mesh.made;
+  Mesh& own = result.made.mesh;
+  own.triangles.resize(own.triangles.size() - mesh.strips.size());
+  result.made.triangleSources.resize(own.triangles.size());
+  own.positions.resize(mesh.clusterCount);
+  own.normals.resize(mesh.clusterCount);
+  for (const SeamIndex seam : result.seamOf) {
+    own.positions.push_back(seams.mesh.positions[baseCount + seam]);
+    own.normals.push_back(seams.mesh.normals[baseCount + seam]);
+  }
+  const std::vector<StripLeft> left = stripsLeft(before, result.cut);
+  const std::vector<std::uint8_t> kept = findClosed(before, left, seams, result);
+  keepStrips(before, left, kept, result);
+  addStrips(seams, lines, seamVertices, chunks, kept, result);
   partDiagonals(result);
   return result;
 }

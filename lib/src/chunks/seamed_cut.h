@@ -15,6 +15,9 @@ namespace tufa::chunks {
 struct StripPlace {
   std::uint32_t curve = 0;  ///< in Seams::curves
   bool above = false;       ///< in the chunk above the face
+
+  /// A number for each side of each curve.
+  [[nodiscard]] std::size_t number() const { return std::size_t{2} * curve + (above ? 1 : 0); }
 };
 
 /// The mesh of a cut, parted at the seams.
@@ -39,6 +42,24 @@ struct SeamedCut {
                                       const std::vector<openvdb::Coord>& vertexCells,
                                       const ChunkCells& chunks, const base::Affine& affine,
                                       base::Job& job);
+
+/// What became of a triangle in a strip where vertices of its mesh were joined.
+struct StripLeft {
+  std::size_t strip = 0;  ///< its number in SeamedCut::strips
+  Triangle triangle;      ///< in the mesh as it is now
+};
+
+/// The triangles in strips of `before` that have three vertices still, in order; `now` is a cut of
+/// the same base vertices.
+[[nodiscard]] std::vector<StripLeft> stripsLeft(const SeamedCut& before, const cut::Cut& now);
+
+/// The inside of a mesh with the lines of another one, `before`, which shared all but lines and
+/// strips with what became the mesh by joining vertices. Strips are what became of those of
+/// `before`; where that does not close the surface, as may be along a closed curve, they are made
+/// anew.
+[[nodiscard]] SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh,
+                                     const Seams& seams, const SeamLines& lines,
+                                     const ChunkCells& chunks);
 
 /// Moves the vertices of clusters off the faces of their chunks.
 void keepInChunks(const std::vector<openvdb::Coord>& vertexCells, const ChunkCells& chunks,

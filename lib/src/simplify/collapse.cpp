@@ -46,6 +46,7 @@ class Collapser {
         mesh_(mesh),
         planes_(planes),
         allowed_(bounds.allowed),
+        rim_(bounds.rim),
         joined_(mesh.positions.size(), 0),
         version_(mesh.positions.size(), 0),
         samples_(mesh_.cornerCount() / 3, bounds.samples.size()) {
@@ -275,7 +276,8 @@ class Collapser {
     const Vec3d middle = (pa + pb) * 0.5;
     const PlaneSum planes = joined(a, b, middle);
     Vec3d offset = planes.least();
-    if (!(offset.lengthSqr() <= (pa - pb).lengthSqr())) offset = Vec3d(0.0);
+    const bool near = offset.lengthSqr() <= (pa - pb).lengthSqr();
+    if (!near || (bounds_.mayLie && !bounds_.mayLie(a, middle + offset))) offset = Vec3d(0.0);
     return {a, b, middle + offset, offset, planes.at(offset), planes};
   }
 
@@ -294,7 +296,7 @@ class Collapser {
 
   bool canCollapse(const Edge& edge, double& reach) {
     reach = edge.sum.count > 0 ? std::sqrt(edge.error / edge.sum.count) : 0;
-    if (!mesh_.mayCollapse(edge.a, edge.b) ||
+    if (!rim_.mayJoin(edge.a, edge.b) || !mesh_.mayCollapse(edge.a, edge.b) ||
         !ring_.collect(mesh_, edge.a, edge.b, edge.point, edge.sum.normals)) {
       return false;
     }
@@ -394,6 +396,7 @@ class Collapser {
     planes_[edge.a] = edge.sum.seenFrom(edge.offset);
     allowed_[edge.a] = std::min(allowed_[edge.a], allowed_[edge.b]);
     mesh_.collapse(edge.a, edge.b, edge.point);
+    rim_.join(edge.a, edge.b);
     if (moved) {
       for (const std::uint32_t t : ring_.star()) samples_.clear(t);
       for (const auto& [sample, t] : attached_) samples_.attach(sample, t);
@@ -411,6 +414,7 @@ class Collapser {
   EdgeMesh mesh_;
   std::vector<PlaneSum> planes_;
   std::vector<float> allowed_;
+  Rim rim_;
   double looseness_ = 1;
   bool tooFar_ = false;                // an edge was refused for want of freedom
   std::vector<std::uint8_t> joined_;   // vertices that others went into

@@ -7,6 +7,7 @@
 
 #include "base/job.h"
 #include "simplify/plane_sum.h"
+#include "simplify/rim.h"
 
 namespace tufa::simplify {
 
@@ -57,6 +58,9 @@ struct Bounds {
   std::vector<std::uint8_t> firm;    ///< vertices that no new steps are made with; empty: none
   bool onlyRepeat = false;           ///< make no new steps
   std::vector<float> turning;        ///< as `allowed`, where edges are turned; empty: none are
+  Rim rim;                           ///< which vertices may be joined
+  /// Whether a vertex may lie at a point; else the middle of the edge is taken. Null: anywhere.
+  std::function<bool(VertexIndex vertex, const openvdb::Vec3d& point)> mayLie;
 };
 
 /// Collapses edges of a mesh with normals, the one of least error first, each to the point of least
