@@ -2,14 +2,13 @@
 // the promise: a closed 2-manifold where the data is closed, the same topology at every tolerance,
 // and the error as certified.
 
-#include <openvdb/openvdb.h>
-
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "base/openvdb_templates.h"
 #include "fuzz.h"
 #include "support/mesh_oracle.h"
 

@@ -1,13 +1,13 @@
 #include "support/mesh_oracle.h"
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <cstring>
 #include <map>
 #include <numeric>
 #include <utility>
 #include <vector>
+
+#include "base/openvdb_templates.h"
 
 namespace tufa::test {
 namespace {
