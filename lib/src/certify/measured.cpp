@@ -5,28 +5,6 @@
 namespace tufa::certify {
 namespace {
 
-// The polygons that may meet others: the suspects of the base mesh that are left, and what is not
-// of the base mesh.
-std::vector<mend::PolygonIndex> suspectsOf(const polygons::CutMesh& made, const cut::Cut& cut,
-                                           const std::vector<std::uint32_t>& baseSuspects) {
-  std::vector<mend::PolygonIndex> suspects;
-  const auto look = [&](const auto& v, std::uint32_t source, std::size_t polygon) {
-    const bool coarse =
-        std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return cut.clusters[k].level != 0; });
-    if (coarse || std::binary_search(baseSuspects.begin(), baseSuspects.end(), source)) {
-      suspects.push_back(static_cast<mend::PolygonIndex>(polygon));
-    }
-  };
-  const std::size_t quads = made.mesh.quads.size();
-  for (std::size_t i = 0; i < quads; ++i) {
-    look(made.mesh.quads[i].vertices, made.quadSources[i], i);
-  }
-  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
-    look(made.mesh.triangles[i].vertices, made.triangleSources[i], quads + i);
-  }
-  return suspects;
-}
-
 // Those of the polygons that have a marked vertex; all without marks.
 std::vector<mend::PolygonIndex> withMarks(const Mesh& mesh,
                                           const std::vector<mend::PolygonIndex>& polygons,
@@ -63,6 +41,29 @@ mend::MendReport mendCut(const Repair& repair, const cut::Cut& cut,
 }
 
 }  // namespace
+
+std::vector<mend::PolygonIndex> suspectsOf(const polygons::CutMesh& made, const cut::Cut& cut,
+                                           const std::vector<std::uint32_t>& baseSuspects,
+                                           const std::vector<VertexIndex>& altered) {
+  std::vector<std::uint8_t> other(cut.clusters.size());
+  for (std::size_t i = 0; i < other.size(); ++i) other[i] = cut.clusters[i].level != 0 ? 1 : 0;
+  for (const VertexIndex vertex : altered) other[vertex] = 1;
+  std::vector<mend::PolygonIndex> suspects;
+  const auto look = [&](const auto& v, std::uint32_t source, std::size_t polygon) {
+    if (std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return other[k] != 0; }) ||
+        std::binary_search(baseSuspects.begin(), baseSuspects.end(), source)) {
+      suspects.push_back(static_cast<mend::PolygonIndex>(polygon));
+    }
+  };
+  const std::size_t quads = made.mesh.quads.size();
+  for (std::size_t i = 0; i < quads; ++i) {
+    look(made.mesh.quads[i].vertices, made.quadSources[i], i);
+  }
+  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
+    look(made.mesh.triangles[i].vertices, made.triangleSources[i], quads + i);
+  }
+  return suspects;
+}
 
 template <class TreeT>
 void mendAndMeasure(Certifier<TreeT>& certifier, const Repair* repair, Measured& mesh,

@@ -26,6 +26,12 @@ struct Measured {
   std::vector<VertexIndex> meeting;  ///< of polygons that still meet; sorted
 };
 
+/// Polygons of which each pair that meets has one: the suspects of the base mesh that are left, and
+/// what is not of the base mesh, at vertices of larger cells and at `altered` ones.
+[[nodiscard]] std::vector<mend::PolygonIndex> suspectsOf(
+    const polygons::CutMesh& made, const cut::Cut& cut,
+    const std::vector<std::uint32_t>& baseSuspects, const std::vector<VertexIndex>& altered = {});
+
 /// Mends a mesh by small moves of what is not of the base mesh, if `repair`, and measures it.
 /// `fresh`: for each vertex, whether something around it is not as in a mesh that had no pairs that
 /// meet; empty: all.

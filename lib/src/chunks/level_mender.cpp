@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/single_precision.h"
+#include "certify/measured.h"
 #include "mend/mend.h"
 
 namespace tufa::chunks {
@@ -14,8 +15,8 @@ constexpr int kMostTurns = 3;
 
 // Polygons of which each pair that meets has one: those of strips and of the pairs that another
 // mesh with the same clusters has.
-std::vector<mend::PolygonIndex> suspectsOf(const SeamedCut& mesh,
-                                           const std::vector<mend::PolygonPair>& shared) {
+std::vector<mend::PolygonIndex> stripSuspectsOf(const SeamedCut& mesh,
+                                                const std::vector<mend::PolygonPair>& shared) {
   const Mesh& own = mesh.made.mesh;
   const auto count = static_cast<mend::PolygonIndex>(own.quads.size() + own.triangles.size());
   const auto firstStrip = count - static_cast<mend::PolygonIndex>(mesh.strips.size());
@@ -44,32 +45,6 @@ bool takeShared(const SeamedCut& from, SeamedCut& to) {
 }
 
 }  // namespace
-
-// The polygons that may meet others, of a mesh of which nothing is known.
-std::vector<mend::PolygonIndex> LevelMender::suspectsOf(const SeamedCut& mesh) const {
-  std::vector<std::uint8_t> altered(mesh.cut.clusters.size(), 0);
-  for (const VertexIndex vertex : mesh.altered) altered[vertex] = 1;
-  const std::vector<std::uint32_t>& base = region_.baseSuspects;
-  std::vector<mend::PolygonIndex> suspects;
-  mend::PolygonIndex polygon = 0;
-  const auto look = [&](const auto& v, std::uint32_t source) {
-    const bool suspect = std::any_of(v.begin(), v.end(),
-                                     [&](VertexIndex i) {
-                                       return altered[i] != 0 || mesh.cut.clusters[i].level != 0;
-                                     }) ||
-                         std::binary_search(base.begin(), base.end(), source);
-    if (suspect) suspects.push_back(polygon);
-    ++polygon;
-  };
-  const Mesh& own = mesh.made.mesh;
-  for (std::size_t i = 0; i < own.quads.size(); ++i) {
-    look(own.quads[i].vertices, mesh.made.quadSources[i]);
-  }
-  for (std::size_t i = 0; i < own.triangles.size(); ++i) {
-    look(own.triangles[i].vertices, mesh.made.triangleSources[i]);
-  }
-  return suspects;
-}
 
 bool LevelMender::isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const {
   const cut::ClusterRef& ref = mesh.cut.clusters[vertex];
@@ -103,14 +78,20 @@ std::vector<mend::PolygonPair> LevelMender::mend(
 }
 
 void LevelMender::mend(LevelMeshes& meshes, bool alone, Movable movable) const {
-  meshes.pairs = mend(meshes.regular, movable, suspectsOf(meshes.regular));
+  const auto mendRegular = [&] {
+    const SeamedCut& mesh = meshes.regular;
+    meshes.pairs =
+        mend(meshes.regular, movable,
+             certify::suspectsOf(mesh.made, mesh.cut, region_.baseSuspects, mesh.altered));
+  };
+  mendRegular();
   if (alone) return;
-  const auto stripSuspects = [&] { return chunks::suspectsOf(meshes.transition, meshes.pairs); };
+  const auto stripSuspects = [&] { return stripSuspectsOf(meshes.transition, meshes.pairs); };
   for (int turn = 0; turn < kMostTurns; ++turn) {
     if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
     meshes.transitionPairs = mend(meshes.transition, movable, stripSuspects());
     if (!takeShared(meshes.transition, meshes.regular)) return;
-    meshes.pairs = mend(meshes.regular, movable, suspectsOf(meshes.regular));
+    mendRegular();
   }
   if (takeShared(meshes.regular, meshes.transition)) {
     const mend::Surface surface(meshes.transition.made.mesh, job_);

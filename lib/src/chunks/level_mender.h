@@ -40,7 +40,6 @@ class LevelMender {
  private:
   [[nodiscard]] std::vector<mend::PolygonPair> mend(
       SeamedCut& mesh, Movable movable, const std::vector<mend::PolygonIndex>& suspects) const;
-  [[nodiscard]] std::vector<mend::PolygonIndex> suspectsOf(const SeamedCut& mesh) const;
   [[nodiscard]] bool isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const;
 
   Region region_;
