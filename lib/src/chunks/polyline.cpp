@@ -18,7 +18,7 @@ using openvdb::Vec3d;
 
 constexpr std::size_t kLeastOfLoop = 3;
 // A segment may be so many times longer than the limit, in arcs.
-constexpr double kLongest = 2.5;
+constexpr double kLongest = 1.5;
 // What an arc more adds to the length that a segment may have.
 constexpr double kGrowth = 0.5;
 // How much of the way to a side that faces the other way a line may go.
@@ -204,9 +204,7 @@ class Line {
         double limit = limits_[from % points_.size()];
         for (std::size_t i = from; i <= to; ++i)
           limit = std::min(limit, limits_[i % points_.size()]);
-        if (!(static_cast<double>(to - from) >
-              kLongest * limit))
-          continue;
+        if (!(static_cast<double>(to - from) > kLongest * limit)) continue;
         node = from + (to - from) / 2;
       }
       choose(node);
