@@ -20,9 +20,9 @@ inline constexpr int kChunkFaces = 6;
 
 /// Options of buildChunks().
 struct ChunkOptions {
-  /// How the surface is read. `tolerance` is that of level 0. `simplify` collapses edges inside the
-  /// chunks. Not looked at: `uniform`, `normals` (always of the gradient), `keepLeaves`; no cell is
-  /// larger than a chunk.
+  /// How the surface is read. `tolerance` is that of level 0. `simplify` collapses edges of the
+  /// chunks but for those on their faces. Not looked at: `uniform`, `normals` (always of the
+  /// gradient), `keepLeaves`; no cell is larger than a chunk.
   ContourOptions contour;
   int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
   int levels = 4;      ///< of each chunk, 1 to 16

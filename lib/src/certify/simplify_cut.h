@@ -19,7 +19,8 @@ struct Goal {
   /// the mesh says are altered stay so, what was faulty before is no fault, and some faults may be
   /// left.
   std::vector<VertexIndex> fixed = {};
-  simplify::Rim rim = {};  ///< see simplify::Bounds
+  /// See simplify::Bounds.
+  simplify::Rim rim = {};
   std::function<bool(VertexIndex vertex, const openvdb::Vec3d& point)> mayLie = nullptr;
 };
 

@@ -32,6 +32,7 @@ constexpr double kMostOff = 1.5;
 constexpr int kMostRounds = 12;
 // Cells are merged at this share of the tolerance where edges will be collapsed.
 constexpr double kCutShare = 0.5;
+
 // The cell of each base vertex.
 template <class TreeT>
 std::vector<Coord> cellsOf(const forest::Base<TreeT>& base, base::Job& job) {

@@ -8,7 +8,8 @@
 namespace tufa::simplify {
 
 /// Curves beside a mesh that its vertices stand for, each vertex for a stretch. Vertices may be
-/// joined as long as each still stands for one stretch of every curve, inside one of its parts.
+/// joined as long as each still stands for one stretch of every curve, inside one of its parts; two
+/// with stretches of different curves alone may not.
 class Rim {
  public:
   /// Places on a curve, from `first` to `last`.
