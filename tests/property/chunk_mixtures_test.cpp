@@ -234,10 +234,11 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
   EXPECT_TRUE(report.watertight());
   EXPECT_EQ(report.selfIntersectingPairs, 0u);
   EXPECT_EQ(report.eulerCharacteristic, check(nearby).eulerCharacteristic);
-  // Rounding alone may part them.
+  // Rounding alone may part them: where a collapse is made again without what was worse, by a few
+  // dozen triangles.
   EXPECT_NEAR(static_cast<double>(away.triangles.size()),
               static_cast<double>(nearby.triangles.size()),
-              0.01 * static_cast<double>(nearby.triangles.size()));
+              0.03 * static_cast<double>(nearby.triangles.size()));
 }
 
 TEST(ChunkMasks, OccurAll) {
