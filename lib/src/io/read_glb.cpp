@@ -58,7 +58,12 @@ class GlbReader {
     std::vector<bool> isChild(nodes.size(), false);
     for (const Json& node : nodes) {
       for (const Json& child : node.value("children", Json::array())) {
-        isChild.at(child.get<std::size_t>()) = true;
+        const auto number = child.get<std::size_t>();
+        if (number >= nodes.size()) {
+          input_.fail("a node has the child " + std::to_string(number) + " of " +
+                      std::to_string(nodes.size()) + " nodes");
+        }
+        isChild[number] = true;
       }
     }
     for (std::size_t n = 0; n < nodes.size(); ++n) {
