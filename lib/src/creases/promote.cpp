@@ -3,7 +3,9 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -18,8 +20,12 @@ using openvdb::Vec3d;
 constexpr double kFarthest = 1.0;
 // Two corners nearer than this, in voxels, are one.
 constexpr double kSameCorner = 0.5;
-// A move opens new defects around it; few places need more than one round.
-constexpr int kRounds = 4;
+// A move opens new defects around it, and of moves beside each other one waits; few places need
+// more than two rounds. A round reaches two cells far.
+constexpr int kRounds = 6;
+// Moves whose distances are in one step of this, in voxels, go in an order that is as good as
+// random, so that few along a crease have to wait.
+constexpr double kStep = 1.0 / 16;
 
 struct Plane {
   Vec3d point;
@@ -28,6 +34,7 @@ struct Plane {
 
 struct Move {
   double distance = std::numeric_limits<double>::infinity();
+  std::uint64_t order = 0;  // of two moves beside each other the lower one is made
   std::size_t quad = 0;
   VertexIndex vertex = 0;
   Vec3d point;
@@ -68,20 +75,17 @@ class Promoter {
     std::size_t moved = 0;
     for (int round = 0; round < kRounds; ++round) {
       std::vector<Move> moves = findMoves(round == 0, job);
-      // Nearest first; each is looked at again, as the ones before may have mended its quad.
-      std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
-        return a.distance != b.distance ? a.distance < b.distance : a.quad < b.quad;
-      });
-      std::size_t inRound = 0;
       std::fill(touched_.begin(), touched_.end(), 0);
+      dropContested(moves);
+      std::size_t inRound = 0;
       for (const Move& move : moves) {
-        if (const auto now = moveFor(move.quad)) {
-          apply(*now);
-          ++inRound;
-        }
+        // Two quads apart may have found the same corner.
+        if (move.sides.count > 2 && isCorner(move.point)) continue;
+        apply(move);
+        ++inRound;
       }
       moved += inRound;
-      if (inRound == 0) break;
+      if (moves.empty()) break;
     }
     return moved;
   }
@@ -106,8 +110,8 @@ class Promoter {
     });
   }
 
-  // After the first round only quads with a vertex that was moved in the last one can need another
-  // move.
+  // After the first round only quads with a vertex that was moved in the last one, and those whose
+  // move had to wait, can need one.
   std::vector<Move> findMoves(bool first, base::Job& job) const {
     std::vector<Move> moves;
     std::mutex mutex;
@@ -125,6 +129,47 @@ class Promoter {
       moves.insert(moves.end(), found.begin(), found.end());
     });
     return moves;
+  }
+
+  // Keeps the moves that no lower one comes before: none that moves a vertex of the same quad.
+  // Which those are depends on what is near alone, and not on where the mesh begins.
+  void dropContested(std::vector<Move>& moves) {
+    lowest_.resize(mesh_.positions.size(), kNoMove);
+    for (const Move& move : moves) {
+      std::uint64_t& lowest = lowest_[move.vertex];
+      lowest = std::min(lowest, move.order);
+    }
+    std::vector<Move> kept;
+    for (const Move& move : moves) {
+      const auto& v = mesh_.quads[move.quad].vertices;
+      const bool waits = std::any_of(
+          v.begin(), v.end(), [&](VertexIndex vertex) { return lowest_[vertex] < move.order; });
+      if (waits) {
+        touched_[v[0]] = 1;
+      } else {
+        kept.push_back(move);
+      }
+    }
+    for (const Move& move : moves) lowest_[move.vertex] = kNoMove;
+    std::sort(kept.begin(), kept.end(),
+              [](const Move& a, const Move& b) { return a.order < b.order; });
+    moves = std::move(kept);
+  }
+
+  // A number by the distance of a move, in steps, then by digits of the quad's corners: those of
+  // their positions now, which are the same wherever the mesh begins.
+  [[nodiscard]] std::uint64_t orderOf(const Move& move) const {
+    std::uint64_t hash = 0;
+    for (const VertexIndex vertex : mesh_.quads[move.quad].vertices) {
+      const Position& p = mesh_.positions[vertex];
+      for (const double x : {p.x, p.y, p.z}) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 29;
+      }
+    }
+    constexpr int kHashBits = 56;
+    const auto step = static_cast<std::uint64_t>(move.distance / (kStep * voxelSize_));
+    return (step << kHashBits) | (hash >> (64 - kHashBits));
   }
 
   // The shortest move that mends a quad; none if it needs none or none is short enough.
@@ -145,6 +190,7 @@ class Promoter {
     }
     if (!(best.distance < kFarthest * voxelSize_)) return {};
     best.quad = quad;
+    best.order = orderOf(best);
     return best;
   }
 
@@ -243,7 +289,9 @@ class Promoter {
   VertexSides& sides_;
   double voxelSize_;
   std::vector<Vec3d> corners_;
-  std::vector<std::uint8_t> touched_;  // vertices that were moved in the last round
+  std::vector<std::uint8_t> touched_;  // vertices where the last round left something to look at
+  static constexpr std::uint64_t kNoMove = std::numeric_limits<std::uint64_t>::max();
+  std::vector<std::uint64_t> lowest_;  // order of the moves of each vertex, kNoMove between rounds
 };
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "creases/vertex_sides.h"
 
@@ -85,6 +87,56 @@ TEST(PromoteToCreases, MovesTheNearestVerticesOntoTheRidge) {
   for (const Quad& quad : roof.mesh.quads) {
     const QuadSides around(roof.mesh, roof.sides, quad);
     EXPECT_TRUE(around.fits(false) || around.fits(true));
+  }
+}
+
+/// A band of quads along y whose vertices lie on one of three sides each, or nobody knows where.
+struct Band {
+  static constexpr int kWidth = 6;
+  Mesh mesh;
+  VertexSides sides;
+
+  Band(int from, int to) {
+    std::vector<Kind> kinds;
+    for (int y = from; y < to; ++y) {
+      // The same numbers at the same place.
+      std::mt19937 random(static_cast<unsigned>(y + 1));
+      std::uniform_real_distribution<double> shift(-0.3, 0.3);
+      for (int x = 0; x < kWidth; ++x) {
+        mesh.positions.emplace_back(x + shift(random), y + shift(random), shift(random));
+        const auto tilt = static_cast<float>(0.1 * shift(random));
+        const auto side = random() % 3;
+        mesh.normals.push_back(side == 0   ? Normal(-kHalf, tilt, kHalf)
+                               : side == 1 ? Normal(kHalf, tilt, kHalf)
+                                           : Normal(tilt, kHalf, kHalf));
+        kinds.push_back(random() % 4 == 0 ? Kind::Unknown : Kind::Near);
+      }
+    }
+    for (int y = 0; y + 1 < to - from; ++y) {
+      for (int x = 0; x + 1 < kWidth; ++x) {
+        const auto at = static_cast<VertexIndex>(y * kWidth + x);
+        mesh.quads.emplace_back(at, at + 1, at + 1 + kWidth, at + kWidth);
+      }
+    }
+    sides = VertexSides(mesh.positions.size());
+    sides.setKinds(0, kinds);
+  }
+};
+
+TEST(PromoteToCreases, DependsOnWhatIsNearAlone) {
+  constexpr int kReach = 12, kLength = 60;  // two cells in each of six rounds
+  const auto promote = [](int from, int to) {
+    Band band(from, to);
+    base::Job job(2, {});
+    EXPECT_GT(promoteToCreases(band.mesh, band.sides, 1, job), 0U);
+    return band.mesh;
+  };
+  const Mesh whole = promote(0, 400);
+  for (int from = 1; from + kLength < 400; from += 7) {
+    const Mesh part = promote(from, from + kLength);
+    for (int i = kReach * Band::kWidth; i < (kLength - kReach) * Band::kWidth; ++i) {
+      ASSERT_EQ(part.positions[i], whole.positions[from * Band::kWidth + i]) << from << " " << i;
+    }
   }
 }
 
