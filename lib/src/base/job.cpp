@@ -2,6 +2,7 @@
 
 #include <tufa/error.h>
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 namespace tufa::base {
@@ -37,17 +38,37 @@ std::vector<StageTime> Job::finish() {
   return std::exchange(times_, {});
 }
 
+void Job::throwIfStopped() {
+  if (stopped().load(std::memory_order_relaxed)) {
+    throw Error(ErrorCode::Cancelled, "cancelled by the caller");
+  }
+}
+
 void Job::report(std::size_t done, std::size_t count) {
-  if (!progress_) return;
-  const double inStage = static_cast<double>(done) / static_cast<double>(count);
-  lastFraction_ = std::max(lastFraction_, stageBegin_ + (stageEnd_ - stageBegin_) * inStage);
   const std::string_view stage = times_.empty() ? std::string_view() : times_.back().stage;
-  if (!progress_(stage, lastFraction_)) cancelled_ = true;
-  if (cancelled_) throw Error(ErrorCode::Cancelled, "cancelled by the caller");
+  tell(stage, static_cast<double>(done) / static_cast<double>(count));
+}
+
+// Parts tell from the thread they run on how far they are, and from the caller's all that is known.
+void Job::tell(std::string_view stage, double inStage) {
+  lastFraction_ = std::max(lastFraction_, stageBegin_ + (stageEnd_ - stageBegin_) * inStage);
+  if (whole_ != nullptr) {
+    share_->store(lastFraction_, std::memory_order_relaxed);
+    if (isCaller()) {
+      double sum = 0;
+      for (const std::atomic<double>& share : *whole_->shares_) {
+        sum += share.load(std::memory_order_relaxed);
+      }
+      whole_->tell(stage, sum / static_cast<double>(whole_->shares_->size()));
+    }
+  } else if (progress_ && !progress_(stage, lastFraction_)) {
+    stopped_ = true;
+  }
+  throwIfStopped();
 }
 
 void Job::look(std::size_t done, std::size_t count) {
-  if (std::this_thread::get_id() == caller_) report(done, count);
+  isCaller() ? report(done, count) : throwIfStopped();
 }
 
 void Job::forRanges(std::size_t count, std::size_t grain, const RangeBody& body) {
@@ -56,11 +77,38 @@ void Job::forRanges(std::size_t count, std::size_t grain, const RangeBody& body)
   const std::size_t size = std::max(grain, (count + kMostRanges - 1) / kMostRanges);
   std::atomic<std::size_t> done{0};
   runRanges(count, size, [&](std::size_t begin, std::size_t end) {
-    if (cancelled_.load(std::memory_order_relaxed)) return;
+    if (stopped().load(std::memory_order_relaxed)) return;
     body(begin, end);
     done.fetch_add(end - begin, std::memory_order_relaxed);
-    if (std::this_thread::get_id() == caller_) report(done, count);
+    if (isCaller()) report(done, count);
   });
+  throwIfStopped();
+}
+
+void Job::forParts(std::size_t count,
+                   const std::function<void(Job& part, std::size_t index)>& body) {
+  Shares shares(count);
+  shares_ = &shares;
+  std::vector<std::exception_ptr> failures(count);
+  runParts(count, [&](std::size_t i) {
+    try {
+      throwIfStopped();
+      Job part(*this, shares[i]);
+      body(part, i);
+      shares[i] = 1;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::Cancelled) failures[i] = std::current_exception();
+      stopped() = true;
+    } catch (...) {
+      failures[i] = std::current_exception();
+      stopped() = true;
+    }
+  });
+  shares_ = nullptr;
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  throwIfStopped();
 }
 
 }  // namespace tufa::base

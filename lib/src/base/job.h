@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -36,6 +37,11 @@ class Job {
   /// least `grain` indices where there are so many. Throws Error(Cancelled) when asked to stop.
   void forRanges(std::size_t count, std::size_t grain, const RangeBody& body);
 
+  /// Calls body(part, index) for each index below `count`, several at a time. Each has a job of its
+  /// own: the progress of all is that of this job's stage, and the times of their stages are not
+  /// kept. Throws what a body throws, the first of several; the others are stopped then.
+  void forParts(std::size_t count, const std::function<void(Job& part, std::size_t index)>& body);
+
   /// For long work on one thread, now and then: `done` of `count` parts of the stage are done.
   /// Throws Error(Cancelled) when asked to stop.
   void look(std::size_t done, std::size_t count);
@@ -48,12 +54,26 @@ class Job {
   }
 
  private:
+  using Shares = std::vector<std::atomic<double>>;
+
+  Job(Job& whole, std::atomic<double>& share)
+      : threads_(whole.threads_), whole_(&whole), share_(&share), caller_(whole.caller_) {}
+
+  [[nodiscard]] bool isCaller() const { return std::this_thread::get_id() == caller_; }
+  [[nodiscard]] std::atomic<bool>& stopped() {
+    return whole_ != nullptr ? whole_->stopped() : stopped_;
+  }
+  void throwIfStopped();
   void report(std::size_t done, std::size_t count);
+  void tell(std::string_view stage, double inStage);
   void closeStage();
 
   int threads_;
   Progress progress_;
-  std::atomic<bool> cancelled_{false};
+  std::atomic<bool> stopped_{false};      ///< by the caller, or because a part has failed
+  Job* whole_ = nullptr;                  ///< what this is a part of
+  std::atomic<double>* share_ = nullptr;  ///< how much of this part is done
+  const Shares* shares_ = nullptr;        ///< how much of each of its own parts is done
   std::thread::id caller_ = std::this_thread::get_id();
   std::vector<StageTime> times_;
   std::chrono::steady_clock::time_point stageStart_{};

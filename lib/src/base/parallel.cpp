@@ -6,6 +6,8 @@
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 #ifdef TUFA_THREAD_SANITIZER
 extern "C" {
 void __tsan_acquire(void* address);
@@ -79,6 +81,18 @@ void runRanges(std::size_t count, std::size_t size, const RangeBody& body) {
         body(range.begin(), range.end());
       },
       tbb::simple_partitioner());
+}
+
+void runParts(std::size_t count, const std::function<void(std::size_t index)>& body) {
+  runRanges(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      tbb::this_task_arena::isolate([&] { body(i); });
+    }
+  });
+}
+
+std::size_t threadCount() {
+  return static_cast<std::size_t>(std::max(1, tbb::this_task_arena::max_concurrency()));
 }
 
 void runBoth(const std::function<void()>& first, const std::function<void()>& second) {

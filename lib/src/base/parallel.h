@@ -20,6 +20,14 @@ void runWithThreads(int threads, const std::function<void()>& work);
 /// `size` indices.
 void runRanges(std::size_t count, std::size_t size, const RangeBody& body);
 
+/// Calls body(index) for each index below `count`, each in one go, as many at a time as there are
+/// threads. A loop inside a body takes up no other body while it waits. Bodies must not throw:
+/// loops in others would end unfinished.
+void runParts(std::size_t count, const std::function<void(std::size_t index)>& body);
+
+/// The most threads that loops have here.
+[[nodiscard]] std::size_t threadCount();
+
 /// Runs both, at the same time where there is a thread to spare.
 void runBoth(const std::function<void()>& first, const std::function<void()>& second);
 
