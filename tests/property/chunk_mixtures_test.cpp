@@ -241,6 +241,45 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
               0.03 * static_cast<double>(nearby.triangles.size()));
 }
 
+// Regions are made at the same time, and come in the same order all the same.
+TEST(ChunkThreads, GiveTheSameBytes) {
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.025);
+  ChunkOptions options;
+  options.levels = 2;
+  const auto make = [&](int threads, double& lastFraction) {
+    options.contour.threads = threads;
+    options.contour.progress = [&](std::string_view, double fraction) {
+      EXPECT_GE(fraction, lastFraction);
+      lastFraction = fraction;
+      return true;
+    };
+    std::vector<Chunk> chunks;
+    (void)buildChunks(*grid, options, [&](const ChunkIndex&, Chunk&& chunk) {
+      chunks.push_back(std::move(chunk));
+    });
+    return chunks;
+  };
+  double alone = 0, together = 0;
+  const std::vector<Chunk> one = make(1, alone), three = make(3, together);
+  EXPECT_EQ(alone, 1);
+  EXPECT_EQ(together, 1);
+  ASSERT_EQ(one.size(), three.size());
+  EXPECT_LT(one.front().index[0], 0);
+  EXPECT_GE(one.back().index[0], 0) << "all are in one region";
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].index, three[i].index);
+    for (std::size_t level = 0; level < one[i].levels.size(); ++level) {
+      const ChunkLevel &a = one[i].levels[level], &b = three[i].levels[level];
+      EXPECT_EQ(a.positions, b.positions);
+      EXPECT_EQ(a.normals, b.normals);
+      EXPECT_EQ(a.interior, b.interior);
+      EXPECT_EQ(a.regular, b.regular);
+      EXPECT_EQ(a.transition, b.transition);
+      EXPECT_EQ(a.maxErrorVoxels, b.maxErrorVoxels);
+    }
+  }
+}
+
 TEST(ChunkMasks, OccurAll) {
   ChunkOptions options;
   options.chunkSize = 8;

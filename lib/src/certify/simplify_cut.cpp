@@ -96,9 +96,15 @@ class Samples {
     const std::size_t vertices = base_.mesh.positions.size();
     if (number < vertices) {
       addVertex(static_cast<VertexIndex>(number));
-    } else {
-      const auto quad = static_cast<std::uint32_t>(number - vertices);
-      addMiddle(quad, polygonOf_[mesh_.cut.vertexOf[base_.mesh.quads[quad].vertices[0]]]);
+      return;
+    }
+    // Where the mesh ends, some of the corners have no polygons.
+    const auto quad = static_cast<std::uint32_t>(number - vertices);
+    for (const VertexIndex corner : base_.mesh.quads[quad].vertices) {
+      const std::uint32_t polygon = polygonOf_[mesh_.cut.vertexOf[corner]];
+      if (polygon == forest::kNone) continue;
+      addMiddle(quad, polygon);
+      return;
     }
   }
   [[nodiscard]] const std::vector<simplify::Sample>& all() const { return samples_; }

@@ -28,9 +28,13 @@ using openvdb::Coord;
 // Chunks are made together in regions of at least this many voxels, aligned to their size, so that
 // less is made twice at their borders. Which region a chunk is in depends on its index alone.
 constexpr int kLeastRegion = 128;
-// Around a region one block more is read: an ambiguous face depends on no cell more than six away.
-constexpr int kMargin = blocks::kBlockSize;
+// Around a region two blocks more are read: an ambiguous face depends on no cell more than six
+// away, and a vertex that is moved to a crease on none more than fifteen.
+constexpr int kMargin = 2 * blocks::kBlockSize;
 constexpr double kIndexEnd = 0.02;
+// So many regions' chunks are kept at most until those before them are handed out. More would make
+// threads wait less for each other, at the cost of memory.
+constexpr std::size_t kRegionsPerThread = 4;
 
 void requireOptions(const ChunkOptions& options) {
   const auto refuse = [](const std::string& message) {
@@ -146,10 +150,10 @@ class ChunkBuilder {
     ContourOptions contour = options_.contour;
     contour.uniform = false;
     contour.normals = Normals::Gradient;
-    cells_.level = std::countr_zero(static_cast<unsigned>(options_.chunkSize));
+    chunkLevel_ = std::countr_zero(static_cast<unsigned>(options_.chunkSize));
     region_.rule = cut::readRule(contour, grid_.transform());
-    region_.rule.maxLevel = std::min(region_.rule.maxLevel, cells_.level);
-    region_.rule.chunkLevel = cells_.level;
+    region_.rule.maxLevel = std::min(region_.rule.maxLevel, chunkLevel_);
+    region_.rule.chunkLevel = chunkLevel_;
     region_.repair = contour.repair;
     region_.simplify = cut::maySimplify(contour);
     job_.beginStage("index", kIndexEnd);
@@ -167,14 +171,19 @@ class ChunkBuilder {
     report_.nonFiniteValues = blocks.nonFiniteValues();
 
     const int regionLevel =
-        std::max(cells_.level, std::countr_zero(static_cast<unsigned>(kLeastRegion)));
-    const std::set<Coord> regions = findRegions(blocks, options_, regionLevel);
-    double begin = kIndexEnd;
-    const double step =
-        (1 - kIndexEnd) / static_cast<double>(std::max<std::size_t>(1, regions.size()));
-    for (const Coord& region : regions) {
-      makeChunks(blocks, scale, contour, region, regionLevel, begin, begin + step, index);
-      begin += step;
+        std::max(chunkLevel_, std::countr_zero(static_cast<unsigned>(kLeastRegion)));
+    const std::set<Coord> found = findRegions(blocks, options_, regionLevel);
+    const std::vector<Coord> regions(found.begin(), found.end());
+    const std::size_t atOnce = kRegionsPerThread * base::threadCount();
+    for (std::size_t begin = 0; begin < regions.size(); begin += atOnce) {
+      const std::size_t end = std::min(regions.size(), begin + atOnce);
+      const double share = static_cast<double>(end) / static_cast<double>(regions.size());
+      job_.beginStage("chunks", kIndexEnd + (1 - kIndexEnd) * share);
+      std::vector<Region> made(end - begin);
+      job_.forParts(made.size(), [&](base::Job& part, std::size_t i) {
+        made[i] = makeRegion(blocks, scale, contour, regions[begin + i], regionLevel, part);
+      });
+      for (Region& region : made) handOut(std::move(region), index);
     }
     index.chunks = std::move(entries_);
     std::sort(index.chunks.begin(), index.chunks.end(),
@@ -183,21 +192,36 @@ class ChunkBuilder {
   }
 
  private:
-  void makeChunks(const blocks::Blocks<TreeT>& blocks, const blocks::FieldScale& scale,
-                  const ContourOptions& contour, const Coord& region, int regionLevel, double begin,
-                  double end, const ChunkIndex& index) {
+  // What was made of a region.
+  struct Region {
+    std::vector<chunks::MadeChunk> chunks;
+    std::uint64_t surfaceCells = 0, cutEdges = 0;
+  };
+
+  [[nodiscard]] Region makeRegion(const blocks::Blocks<TreeT>& blocks,
+                                  const blocks::FieldScale& scale, const ContourOptions& contour,
+                                  const Coord& region, int regionLevel, base::Job& job) const {
     const auto size = static_cast<std::int32_t>(1) << regionLevel;
     const Coord corner(region[0] * size, region[1] * size, region[2] * size);
-    cells_.own = {cells_.chunkOf(corner), cells_.chunkOf(corner.offsetBy(size - 1))};
+    ChunkCells cells;
+    cells.level = chunkLevel_;
+    cells.own = {cells.chunkOf(corner), cells.chunkOf(corner.offsetBy(size - 1))};
     const openvdb::CoordBBox box(corner.offsetBy(-kMargin), corner.offsetBy(size + kMargin - 1));
-    const auto at = [&](double share) { return begin + share * (end - begin); };
-    const level0::StageEnds ends = {at(0.1), at(0.15), at(0.3), at(0.35), at(0.4), at(0.45)};
-    const level0::Level0<TreeT> level0(grid_.transform(), blocks, box, scale, contour, ends, job_);
-    addCounts(level0);
-    job_.beginStage("levels", end);
-    for (chunks::MadeChunk& made :
-         chunks::makeRegion(level0, grid_.transform(), cells_, region_, job_)) {
-      if (!isAskedFor(made.chunk.index)) continue;
+    const level0::StageEnds ends = {0.1, 0.15, 0.3, 0.35, 0.4, 0.45};
+    const level0::Level0<TreeT> level0(grid_.transform(), blocks, box, scale, contour, ends, job);
+    job.beginStage("levels", 1);
+    Region made;
+    countOwn(level0, cells, made);
+    made.chunks = chunks::makeRegion(level0, grid_.transform(), cells, region_, job);
+    std::erase_if(made.chunks,
+                  [&](const chunks::MadeChunk& chunk) { return !isAskedFor(chunk.chunk.index); });
+    return made;
+  }
+
+  void handOut(Region&& region, const ChunkIndex& index) {
+    report_.surfaceCells += region.surfaceCells;
+    report_.cutEdges += region.cutEdges;
+    for (chunks::MadeChunk& made : region.chunks) {
       ChunkEntry entry = entryOf(made);
       for (const ChunkLevelEntry& level : entry.levels) {
         report_.intersectionsLeft += level.intersectionsLeft;
@@ -209,16 +233,16 @@ class ChunkBuilder {
 
   // Counts what lies in the region itself: the margin is in other regions too, and the surface is
   // cut open where it ends.
-  void addCounts(const level0::Level0<TreeT>& level0) {
+  static void countOwn(const level0::Level0<TreeT>& level0, const ChunkCells& cells, Region& made) {
     const forest::Base<TreeT> base = level0.base(false);
     for (std::size_t i = 0; i < base.topology.blocks.size(); ++i) {
       const components::SurfaceBlock& block = base.topology.blocks[i];
-      if (!cells_.own.isInside(cells_.chunkOf(base.origin(i)))) continue;
-      report_.surfaceCells += block.cellCount;
+      if (!cells.own.isInside(cells.chunkOf(base.origin(i)))) continue;
+      made.surfaceCells += block.cellCount;
       if (block.special < 0) continue;
       for (const blocks::BlockBits& cut : base.topology.specials[block.special].cut) {
         for (const std::uint64_t slab : cut.slabs) {
-          report_.cutEdges += static_cast<std::size_t>(base::countBits(slab));
+          made.cutEdges += static_cast<std::size_t>(base::countBits(slab));
         }
       }
     }
@@ -234,7 +258,7 @@ class ChunkBuilder {
   const ChunkSink& sink_;
   ContourReport& report_;
   base::Job& job_;
-  ChunkCells cells_;
+  int chunkLevel_ = 0;  ///< log2 of a chunk's size
   chunks::RegionOptions region_;
   std::vector<ChunkEntry> entries_;
 };

@@ -130,15 +130,16 @@ std::vector<std::uint8_t> LevelCollapser<TreeT>::findWorse(LevelMeshes& before,
                                                            const LevelMeshes& now,
                                                            const Level& level) const {
   std::vector<std::uint8_t> worse(now.regular.cut.clusters.size(), 0);
+  const auto mark = [&](const SeamedCut& mesh, const std::vector<mend::PolygonIndex>& polygons) {
+    for (const VertexIndex vertex : mend::verticesOf(mesh.made.mesh, polygons)) {
+      if (!mesh.isOnSeam(vertex)) worse[vertex] = 1;
+    }
+  };
   const auto look = [&](const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
                         const std::vector<mend::PolygonPair>& pairsBefore,
                         const std::vector<float>& errors, const std::vector<float>& errorsBefore,
                         double tolerance) {
-    if (pairs.size() > pairsBefore.size()) {
-      for (const VertexIndex vertex : mend::verticesOf(mesh.made.mesh, mend::polygonsOf(pairs))) {
-        if (!mesh.isOnSeam(vertex)) worse[vertex] = 1;
-      }
-    }
+    if (pairs.size() > pairsBefore.size()) mark(mesh, mend::polygonsOf(pairs));
     auto most = static_cast<float>(tolerance);
     if (std::all_of(errors.begin(), errors.end(), [&](float error) { return error <= most; })) {
       return;
@@ -154,6 +155,12 @@ std::vector<std::uint8_t> LevelCollapser<TreeT>::findWorse(LevelMeshes& before,
   if (!level.alone) {
     look(now.transition, now.transitionPairs, before.transitionPairs, now.transitionErrors,
          before.transitionErrors, level.nextTolerance);
+  }
+  if (now.mixedPairs.size() > before.mixedPairs.size()) {
+    for (const auto& [a, b] : now.mixedPairs) {
+      mark(now.regular, {a});
+      mark(now.transition, {b});
+    }
   }
   return worse;
 }

@@ -5,6 +5,7 @@
 
 #include "base/single_precision.h"
 #include "certify/measured.h"
+#include "chunks/mixed_pairs.h"
 #include "mend/mend.h"
 
 namespace tufa::chunks {
@@ -77,26 +78,33 @@ std::vector<mend::PolygonPair> LevelMender::mend(
   return std::move(report.left);
 }
 
-void LevelMender::mend(LevelMeshes& meshes, bool alone, Movable movable) const {
-  const auto mendRegular = [&] {
-    const SeamedCut& mesh = meshes.regular;
-    meshes.pairs =
-        mend(meshes.regular, movable,
-             certify::suspectsOf(mesh.made, mesh.cut, region_.baseSuspects, mesh.altered));
-  };
-  mendRegular();
-  if (alone) return;
+void LevelMender::mendRegular(LevelMeshes& meshes, Movable movable) const {
+  const SeamedCut& mesh = meshes.regular;
+  meshes.pairs = mend(meshes.regular, movable,
+                      certify::suspectsOf(mesh.made, mesh.cut, region_.baseSuspects, mesh.altered));
+}
+
+void LevelMender::mendInTurn(LevelMeshes& meshes, Movable movable) const {
   const auto stripSuspects = [&] { return stripSuspectsOf(meshes.transition, meshes.pairs); };
   for (int turn = 0; turn < kMostTurns; ++turn) {
     if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
     meshes.transitionPairs = mend(meshes.transition, movable, stripSuspects());
     if (!takeShared(meshes.transition, meshes.regular)) return;
-    mendRegular();
+    mendRegular(meshes, movable);
   }
   if (takeShared(meshes.regular, meshes.transition)) {
     const mend::Surface surface(meshes.transition.made.mesh, job_);
     meshes.transitionPairs = mend::findPairs(surface, stripSuspects(), job_);
   }
+}
+
+void LevelMender::mend(LevelMeshes& meshes, bool alone, Movable movable) const {
+  mendRegular(meshes, movable);
+  if (alone) return;
+  mendInTurn(meshes, movable);
+  meshes.mixedPairs =
+      findMixedPairs(meshes.regular, meshes.transition, region_.seams, region_.seamPositions,
+                     region_.affine, region_.singlePrecision, job_);
 }
 
 }  // namespace tufa::chunks

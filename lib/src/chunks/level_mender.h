@@ -8,6 +8,7 @@
 #include "base/affine.h"
 #include "base/job.h"
 #include "chunks/chunk_cells.h"
+#include "chunks/seams.h"
 #include "chunks/split_chunks.h"
 #include "mend/surface.h"
 
@@ -24,7 +25,8 @@ class LevelMender {
   struct Region {
     const std::vector<openvdb::Coord>& cells;        ///< of the base vertices
     const std::vector<std::uint32_t>& baseSuspects;  ///< see polygons::findSuspects()
-    const std::vector<Position>& seamPositions;      ///< of the vertices on seams, in the world
+    const Seams& seams;
+    const std::vector<Position>& seamPositions;  ///< of the vertices on seams, in the world
     const ChunkCells& chunks;
     const base::Affine& affine;
     bool singlePrecision;  ///< positions are rounded to floats
@@ -34,10 +36,12 @@ class LevelMender {
 
   /// Moves vertices and turns quads until no polygons meet, as they will be written, where that can
   /// be; says which pairs are left. The two meshes of the level, which share all but their strips,
-  /// are mended in turn; or the regular one `alone`.
+  /// are mended in turn; or the regular one `alone`. Pairs of a strip of each are found only.
   void mend(LevelMeshes& meshes, bool alone, Movable movable) const;
 
  private:
+  void mendInTurn(LevelMeshes& meshes, Movable movable) const;
+  void mendRegular(LevelMeshes& meshes, Movable movable) const;
   [[nodiscard]] std::vector<mend::PolygonPair> mend(
       SeamedCut& mesh, Movable movable, const std::vector<mend::PolygonIndex>& suspects) const;
   [[nodiscard]] bool isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const;

@@ -17,10 +17,12 @@ using openvdb::Coord;
 using openvdb::Vec3d;
 
 constexpr std::size_t kLeastOfLoop = 3;
-// A segment may be so many times longer than the limit, in arcs.
-constexpr double kLongest = 1.5;
+// A segment may be so many times longer than the limit, in arcs; at faults it is split while it is
+// so many times longer.
+constexpr double kLongest = 4;
+constexpr double kLongestAtFolds = 1.5;
 // What an arc more adds to the length that a segment may have.
-constexpr double kGrowth = 0.5;
+constexpr double kGrowth = 1;
 // How much of the way to a side that faces the other way a line may go.
 constexpr double kClearShare = 1.0 / 3;
 
@@ -73,6 +75,11 @@ class Line {
     if (to - from < 2) return false;
     choose(farthest(from, to).first);
     return true;
+  }
+
+  // The same for one that is long still.
+  bool splitLong(std::size_t from, std::size_t to) {
+    return isLonger(from, to, kLongestAtFolds) && split(from, to);
   }
 
   // Names the vertex that stands for each arc.
@@ -201,16 +208,20 @@ class Line {
       if (to - from < 2) continue;
       auto [node, ratio] = farthest(from, to);
       if (!(ratio > 1)) {
-        double limit = limits_[from % points_.size()];
-        for (std::size_t i = from; i <= to; ++i)
-          limit = std::min(limit, limits_[i % points_.size()]);
-        if (!(static_cast<double>(to - from) > kLongest * limit)) continue;
+        if (!isLonger(from, to, kLongest)) continue;
         node = from + (to - from) / 2;
       }
       choose(node);
       open.emplace_back(from, node);
       open.emplace_back(node, to);
     }
+  }
+
+  // Whether a segment is so many times longer than the least limit on it.
+  [[nodiscard]] bool isLonger(std::size_t from, std::size_t to, double times) const {
+    double limit = limits_[from % points_.size()];
+    for (std::size_t i = from; i <= to; ++i) limit = std::min(limit, limits_[i % points_.size()]);
+    return static_cast<double>(to - from) > times * limit;
   }
 
   // The node between two whose distance to their segment is most beyond what is allowed there.
@@ -261,11 +272,44 @@ class Line {
   std::vector<std::uint8_t> quadrants_;  // of the nodes of a loop
 };
 
-// The polylines of one face, made finer until none cross.
+// The polylines of one face, made finer until none cross and all are sound.
 class Face {
  public:
   explicit Face(const Seams& seams, std::vector<Line>& lines, std::size_t begin, std::size_t end)
       : seams_(seams), lines_(lines), begin_(begin), end_(end) {}
+
+  // Until nothing is at fault either.
+  void makeSound(const LineTrial& trial, SeamLines& result) {
+    for (bool any = true; any;) {
+      uncross();
+      for (std::size_t line = begin_; line < end_; ++line) lines_[line].assign(result);
+      any = trial && splitAt(trial(begin_, end_, result));
+    }
+  }
+
+ private:
+  // Where triangles meet cells cannot help; folds are better left to them than to very short
+  // segments.
+  bool splitAt(const LineFaults& faults) {
+    if (faults.meeting.empty() && faults.folded.empty()) return false;
+    collect();
+    bool any = false;
+    for (const FaceSegment& segment : segments_) {
+      Line& line = lines_[segment.line];
+      const auto isIn = [&](const std::vector<SeamIndex>& vertices) {
+        const auto has = [&](std::size_t node) {
+          return std::binary_search(vertices.begin(), vertices.end(), line.seamAt(node));
+        };
+        return has(segment.from) || has(segment.to);
+      };
+      if (isIn(faults.meeting)) {
+        any |= line.split(segment.from, segment.to);
+      } else if (isIn(faults.folded)) {
+        any |= line.splitLong(segment.from, segment.to);
+      }
+    }
+    return any;
+  }
 
   void uncross() {
     while (true) {
@@ -286,7 +330,6 @@ class Face {
     }
   }
 
- private:
   void collect() {
     segments_.clear();
     const auto axes = components::otherAxes(lines_[begin_].curve().axis);
@@ -333,15 +376,16 @@ std::vector<std::uint8_t> quadrantsOf(const Seams& seams, const SeamCurve& curve
 }
 
 SeamLines simplifySeams(const Seams& seams, const base::Affine& affine,
-                        const std::function<double(const Vec3d&)>& allowed) {
+                        const std::function<double(const Vec3d&)>& allowed,
+                        const LineTrial& trial) {
   SeamLines result(seams.vertices.size());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<SeamIndex>(i);
   std::vector<Line> lines;
   lines.reserve(seams.curves.size());
   for (const SeamCurve& curve : seams.curves) lines.emplace_back(seams, curve, affine, allowed);
-  forFaces(seams.curves,
-           [&](std::size_t begin, std::size_t end) { Face(seams, lines, begin, end).uncross(); });
-  for (const Line& line : lines) line.assign(result);
+  forFaces(seams.curves, [&](std::size_t begin, std::size_t end) {
+    Face(seams, lines, begin, end).makeSound(trial, result);
+  });
   return result;
 }
 

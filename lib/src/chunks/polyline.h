@@ -16,6 +16,15 @@ using SeamLines = std::vector<SeamIndex>;
 /// them; empty if they are in one cell. A cluster's cell lies in one quadrant.
 [[nodiscard]] std::vector<std::uint8_t> quadrantsOf(const Seams& seams, const SeamCurve& curve);
 
+/// Vertices of lines at which strips are not sound; sorted.
+struct LineFaults {
+  std::vector<SeamIndex> meeting;  ///< of triangles that meet others
+  std::vector<SeamIndex> folded;   ///< of folded triangles
+};
+/// Finds the faults of the lines of the curves `begin` to `end`, which are those of one face.
+using LineTrial =
+    std::function<LineFaults(std::size_t begin, std::size_t end, const SeamLines& lines)>;
+
 /// Simplifies the curves of all seams, each to a polyline on its face through some of its arcs'
 /// vertices. No vertex that is left out is further from it than `allowed` says, in world units.
 ///
@@ -27,8 +36,11 @@ using SeamLines = std::vector<SeamIndex>;
 ///
 /// What becomes of a curve depends on what lies on its face alone, and not on the order of
 /// anything.
+/// Polylines are made finer at vertices that `trial` finds faults at, see StripTrial, until there
+/// are none or nothing can be made finer.
 [[nodiscard]] SeamLines simplifySeams(
     const Seams& seams, const base::Affine& affine,
-    const std::function<double(const openvdb::Vec3d& latticePoint)>& allowed);
+    const std::function<double(const openvdb::Vec3d& latticePoint)>& allowed,
+    const LineTrial& trial = nullptr);
 
 }  // namespace tufa::chunks

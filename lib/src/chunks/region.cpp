@@ -13,6 +13,7 @@
 #include "chunks/seamed_cut.h"
 #include "chunks/seams.h"
 #include "chunks/split_chunks.h"
+#include "chunks/strip_trial.h"
 #include "cut/leaves.h"
 #include "forest/forest.h"
 #include "mend/surface.h"
@@ -105,22 +106,30 @@ class RegionMaker {
         mesh_(inChunks(level0.mesh())),
         base_(withMesh(mesh_)),
         forest_(forest::buildForest(base_, options.rule.maxLevel, job)),
-        seams_(findSeams(level0.quads(), mesh_, inChunks(level0.meshBeforeRepair()), cells_, chunks,
-                         job)),
+        before_(inChunks(level0.meshBeforeRepair())),
+        seams_(findSeams(level0.quads(), mesh_, before_, cells_, chunks, job)),
         seamPositions_(worldPositions(seams_, transform, options.singlePrecision)),
         seamBase_(withMesh(seams_.mesh)),
         surface_(seamBase_, forest_.levels[0], job),
-        mender_({cells_, level0.suspects(), seamPositions_, chunks, base_.affine,
+        mender_({cells_, level0.suspects(), seams_, seamPositions_, chunks, base_.affine,
                  options.singlePrecision},
                 job),
         forbidden_(forbidOthers(forest_, chunks)),
         beyond_(findBeyond()),
         collapser_({seamBase_, surface_, cells_, seams_, chunks, beyond_, mender_}, job) {
+    const StripTrial trial(before_, seams_, cells_, chunks, base_.affine, job);
     for (const double tolerance : options.tolerances) {
       const cut::CutRule rule = ruleFor(tolerance);
-      lines_.push_back(simplifySeams(seams_, base_.affine, [&](const openvdb::Vec3d& point) {
+      const auto allowed = [&](const openvdb::Vec3d& point) {
         return std::min(kMostOff, kLineShare * rule.toleranceAt(point)) * base_.affine.voxelSize();
-      }));
+      };
+      LineTrial tried;
+      if (options.repair) {
+        tried = [&](std::size_t begin, std::size_t end, const SeamLines& lines) {
+          return trial.faults(begin, end, lines);
+        };
+      }
+      lines_.push_back(simplifySeams(seams_, base_.affine, allowed, tried));
     }
   }
 
@@ -143,20 +152,25 @@ class RegionMaker {
       transition.emplace(seamBase_, surface_, ruleFor(options_.tolerances[level + 1]), job_);
       transition->setIgnored(beyond_);
     }
+    SideFlags direct, directNext;
     for (int round = 0;; ++round) {
       const cut::CellFlags merged =
           cut::mergeCells(forest_, base_.topology, cutRule, forbidden, job_);
       const cut::Cut cut = cut::makeCut(forest_, base_.topology, merged, job_);
       LevelMeshes meshes;
-      meshes.regular = mesh(cut, lines_[level]);
+      meshes.regular = mesh(cut, lines_[level], direct);
       if (splitFar(meshes.regular, regular, forbidden)) continue;
       if (!alone) {
-        meshes.transition = mesh(cut, lines_[level + 1]);
+        meshes.transition = mesh(cut, lines_[level + 1], directNext);
         if (splitFar(meshes.transition, *transition, forbidden)) continue;
       }
       if (options_.repair) {
         mender_.mend(meshes, alone, Movable::Clusters);
         if (splitPairs(meshes, forbidden) && round < kMostRounds) continue;
+        if (straighten(meshes.regular, meshes.pairs, direct) |
+            straighten(meshes.transition, meshes.transitionPairs, directNext)) {
+          continue;
+        }
         if (!meshes.pairs.empty() || !meshes.transitionPairs.empty()) {
           mender_.mend(meshes, alone, Movable::All);
         }
@@ -215,8 +229,9 @@ class RegionMaker {
     return rule;
   }
 
-  [[nodiscard]] SeamedCut mesh(const cut::Cut& cut, const SeamLines& lines) {
-    return meshWithSeams(forest_, cut, seams_, lines, cells_, chunks_, base_.affine, job_);
+  [[nodiscard]] SeamedCut mesh(const cut::Cut& cut, const SeamLines& lines,
+                               const SideFlags& direct) {
+    return meshWithSeams(forest_, cut, seams_, lines, cells_, chunks_, base_.affine, direct, job_);
   }
 
   bool splitFar(const SeamedCut& mesh, Certifier& certifier, cut::CellFlags& forbidden) {
@@ -225,16 +240,45 @@ class RegionMaker {
                                options_.rule.minLevel, forbidden);
   }
 
+  // Where cells do not help strips that meet others, they are made as their arcs run: like the base
+  // mesh. Returns whether there are any.
+  bool straighten(const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
+                  SideFlags& direct) const {
+    const Mesh& own = mesh.made.mesh;
+    const std::size_t firstStrip = own.quads.size() + own.triangles.size() - mesh.strips.size();
+    direct.resize(2 * seams_.curves.size(), 0);
+    bool any = false;
+    for (const mend::PolygonIndex polygon : mend::polygonsOf(pairs)) {
+      if (polygon < firstStrip) continue;
+      std::uint8_t& flag = direct[mesh.strips[polygon - firstStrip].number()];
+      any |= flag == 0;
+      flag = 1;
+    }
+    return any;
+  }
+
   // Splits the cells of polygons that meet; returns whether there are any.
   bool splitPairs(const LevelMeshes& meshes, cut::CellFlags& forbidden) {
     bool split = splitPairs(meshes.regular, meshes.pairs, forbidden);
     split |= splitPairs(meshes.transition, meshes.transitionPairs, forbidden);
+    std::vector<mend::PolygonIndex> regular, transition;
+    for (const auto& [a, b] : meshes.mixedPairs) {
+      regular.push_back(a);
+      transition.push_back(b);
+    }
+    split |= splitAround(meshes.regular, regular, forbidden);
+    split |= splitAround(meshes.transition, transition, forbidden);
     return split;
   }
 
   bool splitPairs(const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
                   cut::CellFlags& forbidden) {
-    return certify::splitCells(mend::verticesOf(mesh.made.mesh, mend::polygonsOf(pairs)), mesh.cut,
+    return splitAround(mesh, mend::polygonsOf(pairs), forbidden);
+  }
+
+  bool splitAround(const SeamedCut& mesh, const std::vector<mend::PolygonIndex>& polygons,
+                   cut::CellFlags& forbidden) {
+    return certify::splitCells(mend::verticesOf(mesh.made.mesh, polygons), mesh.cut,
                                options_.rule.minLevel, forbidden);
   }
 
@@ -252,6 +296,7 @@ class RegionMaker {
   Mesh mesh_;                 ///< the base mesh, no vertex of it outside of its chunk
   forest::Base<TreeT> base_;
   forest::Forest forest_;
+  Mesh before_;  ///< the base mesh before its repair, no vertex of it outside of its chunk
   Seams seams_;
   std::vector<Position> seamPositions_;  ///< in the world
   forest::Base<TreeT> seamBase_;         ///< with the seams' vertices

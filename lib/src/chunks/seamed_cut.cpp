@@ -3,29 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "chunks/curve_side.h"
 #include "chunks/stitch.h"
 
 namespace tufa::chunks {
 namespace {
-
-// One side of a curve.
-ChunkSeam sideOf(const SeamCurve& curve, bool above, const Seams& seams, const SeamLines& lines,
-                 const std::vector<VertexIndex>& seamVertices, const cut::Cut& cut) {
-  ChunkSeam side;
-  for (const SeamIndex arc : curve.arcs) {
-    side.tiles.push_back(cut.vertexOf[above ? seams.arcs[arc].above : seams.arcs[arc].below]);
-    side.line.push_back(seamVertices[lines[arc]]);
-  }
-  if (curve.begin != kNoSeam) side.begin = seamVertices[curve.begin];
-  if (curve.end != kNoSeam) side.end = seamVertices[curve.end];
-  side.closed = curve.closed;
-  if (above) {
-    std::reverse(side.tiles.begin(), side.tiles.end());
-    std::reverse(side.line.begin(), side.line.end());
-    std::swap(side.begin, side.end);
-  }
-  return side;
-}
 
 // Which vertices of the chunks a strip may join.
 class Joints {
@@ -91,11 +73,15 @@ std::vector<VertexIndex> addLines(const Seams& seams, const SeamLines& lines, cu
   return vertexOf;
 }
 
+bool isSet(const SideFlags& flags, const StripPlace& place) {
+  return !flags.empty() && flags[place.number()] != 0;
+}
+
 // Adds the strips on both sides of all seams, where the chunk is to be made, but for those that are
 // kept; empty: none.
 void addStrips(const Seams& seams, const SeamLines& lines,
                const std::vector<VertexIndex>& seamVertices, const ChunkCells& chunks,
-               const std::vector<std::uint8_t>& kept, SeamedCut& result) {
+               const SideFlags& kept, SeamedCut& result) {
   struct Side {
     const SeamCurve* curve;
     bool above;
@@ -109,18 +95,22 @@ void addStrips(const Seams& seams, const SeamLines& lines,
       openvdb::Coord chunk = curve.chunk;
       if (!above) --chunk[curve.axis];
       if (!chunks.own.isInside(chunk)) continue;
-      sides.push_back(
-          {&curve, above, sideOf(curve, above, seams, lines, seamVertices, result.cut)});
+      sides.push_back({&curve, above,
+                       sideOf(
+                           curve, above, seams, lines,
+                           [&](VertexIndex base) { return result.cut.vertexOf[base]; },
+                           [&](SeamIndex seam) { return seamVertices[seam]; })});
       joints.addCurve(sides.back().seam);
     }
   }
   for (const auto& [curve, above, seam] : sides) {
     const StripPlace place{static_cast<std::uint32_t>(curve - seams.curves.data()), above};
-    if (!kept.empty() && kept[place.number()] != 0) continue;
-    const bool several = std::any_of(curve->arcs.begin(), curve->arcs.end(),
-                                     [&](SeamIndex arc) { return !seams.arcs[arc].single; });
+    if (isSet(kept, place)) continue;
+    const bool asArcsRun = isSet(result.direct, place) ||
+                           std::any_of(curve->arcs.begin(), curve->arcs.end(),
+                                       [&](SeamIndex arc) { return !seams.arcs[arc].single; });
     for (const StripTriangle& strip :
-         stitch(seam, several, mesh.positions, mesh.normals,
+         stitch(seam, asArcsRun, mesh.positions, mesh.normals,
                 [&](VertexIndex a, VertexIndex b) { return joints.mayJoin(a, b); })) {
       const std::size_t arc = above ? curve->arcs.size() - 1 - strip.arc : strip.arc;
       mesh.triangles.push_back(strip.triangle);
@@ -131,8 +121,8 @@ void addStrips(const Seams& seams, const SeamLines& lines,
 }
 
 // Marks the sides of curves where what is left of the strips has no edge across more than twice.
-std::vector<std::uint8_t> findClosed(const SeamedCut& before, const std::vector<StripLeft>& left,
-                                     const Seams& seams, const SeamedCut& result) {
+SideFlags findClosed(const SeamedCut& before, const std::vector<StripLeft>& left,
+                     const Seams& seams, const SeamedCut& result) {
   using Edge = std::array<std::size_t, 3>;  // of a side: cluster and seam vertex
   std::vector<Edge> edges;
   for (const StripLeft& strip : left) {
@@ -145,7 +135,7 @@ std::vector<std::uint8_t> findClosed(const SeamedCut& before, const std::vector<
     }
   }
   std::sort(edges.begin(), edges.end());
-  std::vector<std::uint8_t> closed(2 * seams.curves.size(), 1);
+  SideFlags closed(2 * seams.curves.size(), 1);
   for (std::size_t i = 2; i < edges.size(); ++i) {
     if (edges[i] == edges[i - 2]) closed[edges[i][0]] = 0;
   }
@@ -153,8 +143,8 @@ std::vector<std::uint8_t> findClosed(const SeamedCut& before, const std::vector<
 }
 
 // Adds what is left of the strips that are kept.
-void keepStrips(const SeamedCut& before, const std::vector<StripLeft>& left,
-                const std::vector<std::uint8_t>& kept, SeamedCut& result) {
+void keepStrips(const SeamedCut& before, const std::vector<StripLeft>& left, const SideFlags& kept,
+                SeamedCut& result) {
   const std::size_t first = before.made.mesh.triangles.size() - before.strips.size();
   for (const StripLeft& strip : left) {
     const StripPlace& place = before.strips[strip.strip];
@@ -206,8 +196,10 @@ void keepInChunks(const std::vector<openvdb::Coord>& vertexCells, const ChunkCel
 
 SeamedCut meshWithSeams(const forest::Forest& forest, cut::Cut cut, const Seams& seams,
                         const SeamLines& lines, const std::vector<openvdb::Coord>& vertexCells,
-                        const ChunkCells& chunks, const base::Affine& affine, base::Job& job) {
+                        const ChunkCells& chunks, const base::Affine& affine, SideFlags direct,
+                        base::Job& job) {
   SeamedCut result;
+  result.direct = std::move(direct);
   const std::vector<VertexIndex> seamVertices = addLines(seams, lines, std::move(cut), result);
   result.made = polygons::meshCut(forest, result.cut, seams.mesh, seams.quads, affine, job);
   keepInChunks(vertexCells, chunks, affine, result);
@@ -235,6 +227,7 @@ std::vector<StripLeft> stripsLeft(const SeamedCut& before, const cut::Cut& now) 
 SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh, const Seams& seams,
                        const SeamLines& lines, const ChunkCells& chunks) {
   SeamedCut result;
+  result.direct = before.direct;
   cut::Cut cut = mesh.cut;
   cut.clusters.resize(mesh.clusterCount);
   cut.vertexOf.resize(cut.vertexOf.size() - lines.size());
@@ -254,7 +247,7 @@ SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh, const Sea
     own.normals.push_back(seams.mesh.normals[baseCount + seam]);
   }
   const std::vector<StripLeft> left = stripsLeft(before, result.cut);
-  const std::vector<std::uint8_t> kept = findClosed(before, left, seams, result);
+  const SideFlags kept = findClosed(before, left, seams, result);
   keepStrips(before, left, kept, result);
   addStrips(seams, lines, seamVertices, chunks, kept, result);
   partDiagonals(result);

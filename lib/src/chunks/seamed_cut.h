@@ -20,6 +20,9 @@ struct StripPlace {
   [[nodiscard]] std::size_t number() const { return std::size_t{2} * curve + (above ? 1 : 0); }
 };
 
+/// A flag for each side of each curve, by StripPlace::number(); empty: none is set.
+using SideFlags = std::vector<std::uint8_t>;
+
 /// The mesh of a cut, parted at the seams.
 struct SeamedCut {
   cut::Cut cut;  ///< of the base mesh with the seams' vertices
@@ -29,19 +32,21 @@ struct SeamedCut {
   VertexIndex clusterCount = 0;   ///< vertices from here on are on seams
   std::vector<SeamIndex> seamOf;  ///< of each of these
   std::vector<VertexIndex>
-      altered;  ///< vertices of pieces and seams: not as the base mesh has them
+      altered;       ///< vertices of pieces and seams: not as the base mesh has them
+  SideFlags direct;  ///< sides whose strips run as the arcs do, see stitch()
 
   [[nodiscard]] bool isOnSeam(VertexIndex vertex) const { return vertex >= clusterCount; }
   [[nodiscard]] SeamIndex seamAt(VertexIndex vertex) const { return seamOf[vertex - clusterCount]; }
 };
 
 /// Takes the mesh of `cut`, which is one of the base mesh, with its seams as `lines` have them and
-/// strips along these in the chunks to be made. `vertexCells` has the cell of each base vertex.
+/// strips along these in the chunks to be made, those of `direct` as their arcs run. `vertexCells`
+/// has the cell of each base vertex.
 [[nodiscard]] SeamedCut meshWithSeams(const forest::Forest& forest, cut::Cut cut,
                                       const Seams& seams, const SeamLines& lines,
                                       const std::vector<openvdb::Coord>& vertexCells,
                                       const ChunkCells& chunks, const base::Affine& affine,
-                                      base::Job& job);
+                                      SideFlags direct, base::Job& job);
 
 /// What became of a triangle in a strip where vertices of its mesh were joined.
 struct StripLeft {

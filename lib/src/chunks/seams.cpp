@@ -28,6 +28,7 @@ constexpr double kMargin = 1e-3;
 constexpr double kCorner = 0.02;
 // Vertices nearer to each other than this, in voxels, may become one by rounding.
 constexpr double kClose = 4e-3;
+constexpr std::size_t kGrain = 4096;
 
 // The axis along which two neighbouring chunks differ.
 int axisBetween(const Coord& a, const Coord& b) { return a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2; }
@@ -41,7 +42,7 @@ class SeamFinder {
   // Base quads with vertices in several chunks, at least one of them to be made.
   std::vector<std::uint32_t> findParted(base::Job& job) {
     std::vector<std::uint8_t> parted(base_.quads.size());
-    job.forRanges(parted.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    job.forRanges(parted.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) parted[i] = isParted(base_.quads[i]) ? 1 : 0;
     });
     for (std::size_t i = 0; i < parted.size(); ++i) {
@@ -50,7 +51,7 @@ class SeamFinder {
     return quads_;
   }
 
-  Seams find(const std::vector<SeamCrossing>& crossings) {
+  Seams find(const std::vector<SeamCrossing>& crossings, base::Job& job) {
     collectArcs();
     placeArcs(crossings);
     placeEdgePoints(crossings);
@@ -60,7 +61,7 @@ class SeamFinder {
     untangle(havensOf(crossings), seams_);
     measureFlatness(base_, before_, affine_, seams_);
     measureClearance(affine_, seams_);
-    makeMesh();
+    makeMesh(job);
     return std::move(seams_);
   }
 
@@ -381,7 +382,7 @@ class SeamFinder {
     return {vertex.cell, vertex.offset[0], vertex.offset[1], vertex.offset[2]};
   }
 
-  void makeMesh() {
+  void makeMesh(base::Job& job) {
     Mesh& mesh = seams_.mesh;
     mesh = base_;
     for (const SeamVertex& vertex : seams_.vertices) {
@@ -391,12 +392,21 @@ class SeamFinder {
     }
     seams_.quads = base_.quads;
     for (const std::uint32_t i : quads_) {
-      Quad& quad = seams_.quads[i];
-      for (const VertexIndex vertex : quad.vertices) {
+      for (const VertexIndex vertex : seams_.quads[i].vertices) {
         if (isOwn(vertex)) seams_.beside.push_back(vertex);
       }
-      quad.vertices.fill(quad.vertices[0]);
     }
+    job.forRanges(seams_.quads.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        auto& v = seams_.quads[i].vertices;
+        const Coord chunk = chunkOf(v[0]);
+        const bool whole =
+            chunks_.own.isInside(chunk) && std::all_of(v.begin(), v.end(), [&](VertexIndex vertex) {
+              return chunkOf(vertex) == chunk;
+            });
+        if (!whole) v.fill(v[0]);
+      }
+    });
     std::sort(seams_.beside.begin(), seams_.beside.end());
     seams_.beside.erase(std::unique(seams_.beside.begin(), seams_.beside.end()),
                         seams_.beside.end());
@@ -423,7 +433,7 @@ Seams findSeams(const polygons::QuadContext<TreeT>& context, const Mesh& base, c
                 const std::vector<Coord>& vertexCells, const ChunkCells& chunks, base::Job& job) {
   SeamFinder finder(base, before, vertexCells, chunks, context.affine);
   const std::vector<std::uint32_t> parted = finder.findParted(job);
-  return finder.find(seamCrossings(context, parted, job));
+  return finder.find(seamCrossings(context, parted, job), job);
 }
 
 std::vector<Position> worldPositions(const Seams& seams, const openvdb::math::Transform& transform,

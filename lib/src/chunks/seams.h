@@ -74,10 +74,10 @@ struct Seams {
   std::vector<Arc> arcs;
   std::vector<SeamCurve> curves;  ///< sorted by axis, chunk and first arc
   Mesh mesh;                      ///< the base mesh, the seams' vertices behind its own
-  /// The base quads: those of one chunk as they are, nothing (four times the same vertex) of the
-  /// others.
+  /// The base quads: those of one chunk to be made as they are, nothing (four times the same
+  /// vertex) of the others.
   std::vector<Quad> quads;
-  std::vector<VertexIndex> beside;  ///< base vertices of these others; sorted
+  std::vector<VertexIndex> beside;  ///< base vertices of chunks to be made at parted quads; sorted
 };
 
 /// Finds the seams of the chunks to be made. `vertexCells` has the cell of each base vertex,

@@ -45,19 +45,37 @@ void ChunkSplitter::addLevel(const LevelMeshes& meshes, const SeamLines& lines,
   sortPieces(meshes.regular, regular);
   if (next != nullptr) sortPieces(meshes.transition, transition);
   clusterNumbers_.assign(meshes.regular.clusterCount, kNoNumber);
-  std::vector<std::int32_t> chunkOfPolygon(
-      meshes.regular.made.mesh.quads.size() + meshes.regular.made.mesh.triangles.size(),
-      ChunkCells::kNotOwn);
   for (std::int32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
     MadeChunk& made = made_[chunk];
     fillLevel(meshes, chunk, regular[chunk], transition[chunk], lines,
               made.chunk.levels.emplace_back());
     made.pairsLeft.push_back(0);
-    for (const Piece& piece : regular[chunk]) chunkOfPolygon[piece.polygon] = chunk;
   }
-  for (const auto& [a, b] : meshes.pairs) {
-    const std::int32_t chunk = std::max(chunkOfPolygon[a], chunkOfPolygon[b]);
+  countPairs(meshes, regular, transition);
+}
+
+// Pairs that both meshes have count once.
+void ChunkSplitter::countPairs(const LevelMeshes& meshes,
+                               const std::vector<std::vector<Piece>>& regular,
+                               const std::vector<std::vector<Piece>>& transition) {
+  const auto chunksOf = [&](const SeamedCut& mesh, const std::vector<std::vector<Piece>>& pieces) {
+    const Mesh& own = mesh.made.mesh;
+    std::vector<std::int32_t> chunks(own.quads.size() + own.triangles.size(), ChunkCells::kNotOwn);
+    for (std::int32_t chunk = 0; chunk < chunks_.count(); ++chunk) {
+      for (const Piece& piece : pieces[chunk]) chunks[piece.polygon] = chunk;
+    }
+    return chunks;
+  };
+  const auto count = [&](std::int32_t chunk) {
     if (chunk != ChunkCells::kNotOwn) ++made_[chunk].pairsLeft.back();
+  };
+  const std::vector<std::int32_t> ofRegular = chunksOf(meshes.regular, regular);
+  for (const auto& [a, b] : meshes.pairs) count(std::max(ofRegular[a], ofRegular[b]));
+  for (const auto& [a, b] : meshes.mixedPairs) count(ofRegular[a]);
+  const std::vector<std::int32_t> ofTransition = chunksOf(meshes.transition, transition);
+  const std::size_t firstStrip = ofTransition.size() - meshes.transition.strips.size();
+  for (const auto& [a, b] : meshes.transitionPairs) {
+    if (b >= firstStrip) count(std::max(ofTransition[a], ofTransition[b]));
   }
 }
 

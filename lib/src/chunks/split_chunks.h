@@ -23,6 +23,7 @@ struct LevelMeshes {
   std::vector<float> transitionErrors;             ///< at each vertex, voxels
   std::vector<mend::PolygonPair> pairs;            ///< of the regular mesh that meet
   std::vector<mend::PolygonPair> transitionPairs;  ///< of the transition mesh that meet
+  std::vector<mend::PolygonPair> mixedPairs;       ///< see findMixedPairs()
 };
 
 /// A chunk, and for each of its levels the number of pairs of its polygons that meet.
@@ -56,6 +57,8 @@ class ChunkSplitter {
   void sortPieces(const SeamedCut& mesh, std::vector<std::vector<Piece>>& pieces) const;
   void fillLevel(const LevelMeshes& meshes, std::int32_t chunk, const std::vector<Piece>& regular,
                  const std::vector<Piece>& transition, const SeamLines& lines, ChunkLevel& level);
+  void countPairs(const LevelMeshes& meshes, const std::vector<std::vector<Piece>>& regular,
+                  const std::vector<std::vector<Piece>>& transition);
   void addPieces(const SeamedCut& mesh, const std::vector<Piece>& pieces, ChunkLevel& level,
                  bool transition);
   void addSeams(const SeamedCut& mesh, std::int32_t chunk, const SeamLines& lines,

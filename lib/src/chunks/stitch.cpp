@@ -18,6 +18,9 @@ constexpr double kFold = 1e6;
 // A triangle whose normal and the mean of those of its corners have a smaller cosine is folded.
 constexpr double kLeastCosine = 0.1;
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+// Costs that differ by less are sums of the same in another order.
+constexpr double kSlack = 1 + 1e-9;
 // What an edge across between vertices that stand for no common arc costs more.
 constexpr double kAstray = 3;
 
@@ -38,6 +41,8 @@ std::vector<Link> chainOf(const std::vector<VertexIndex>& vertices, bool closed)
   return chain;
 }
 
+Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
+
 class Stitcher {
  public:
   using MayJoin = std::function<bool(VertexIndex, VertexIndex)>;
@@ -46,9 +51,12 @@ class Stitcher {
            std::span<const Normal> normals, const MayJoin& mayJoin)
       : seam_(seam), positions_(positions), normals_(normals), mayJoin_(mayJoin) {}
 
-  // As the arcs run.
+  // As the arcs run. Where both sides go on at once there are two ways; around a loop one of them
+  // may be an edge across that is there already.
   std::vector<StripTriangle> direct() {
     const std::size_t count = seam_.tiles.size();
+    std::set<std::pair<VertexIndex, VertexIndex>> across;
+    for (std::size_t i = 0; i < count; ++i) across.emplace(seam_.tiles[i], seam_.line[i]);
     for (std::size_t i = 0; i + (seam_.closed ? 0 : 1) < count; ++i) {
       const std::size_t j = (i + 1) % count;
       const VertexIndex p = seam_.line[i], q = seam_.line[j];
@@ -57,10 +65,14 @@ class Stitcher {
         add(p, a, b, i);
       } else if (a == b) {
         add(p, a, q, i);
-      } else if (stepCost(p, a, q) + stepCost(q, a, b) < stepCost(p, a, b) + stepCost(p, b, q)) {
+      } else if (!across.contains({a, q}) &&
+                 (across.contains({b, p}) ||
+                  stepCost(p, a, q) + stepCost(q, a, b) < stepCost(p, a, b) + stepCost(p, b, q))) {
+        across.emplace(a, q);
         add(p, a, q, i);
         add(q, a, b, i);
       } else {
+        across.emplace(b, p);
         add(p, a, b, i);
         add(p, b, q, i);
       }
@@ -72,8 +84,9 @@ class Stitcher {
   // The best of all ways. Empty if it uses an edge across twice.
   std::vector<StripTriangle> best() {
     for (std::size_t i = 0; i < seam_.tiles.size(); ++i) {
-      paired_.emplace(seam_.tiles[i], seam_.line[i]);
+      paired_.emplace_back(seam_.tiles[i], seam_.line[i]);
     }
+    std::sort(paired_.begin(), paired_.end());
     tiles_ = chainOf(seam_.tiles, seam_.closed);
     line_ = chainOf(seam_.line, seam_.closed);
     if (seam_.closed) startNearest();
@@ -91,10 +104,7 @@ class Stitcher {
   }
 
  private:
-  [[nodiscard]] Vec3d at(VertexIndex vertex) const {
-    const Position& p = positions_[vertex];
-    return {p.x, p.y, p.z};
-  }
+  [[nodiscard]] Vec3d at(VertexIndex vertex) const { return vectorOf(positions_[vertex]); }
 
   void add(VertexIndex a, VertexIndex b, VertexIndex c, std::size_t arc) {
     if (a != b && b != c && a != c) strip_.push_back({{a, b, c}, arc});
@@ -108,18 +118,14 @@ class Stitcher {
 
   // What a triangle costs but for its edges; its squared size makes folds comparable to them.
   [[nodiscard]] double stepCost(VertexIndex a, VertexIndex b, VertexIndex c) const {
-    const Vec3d u = at(b) - at(a), v = at(c) - at(a), normal = u.cross(v);
-    Vec3d facing(0.0);
-    for (const VertexIndex i : {a, b, c}) {
-      facing += Vec3d(normals_[i].x, normals_[i].y, normals_[i].z);
-    }
-    const double cosine = normal.dot(facing);
-    if (cosine > kLeastCosine * normal.length() * facing.length()) return 0;
-    return kFold * ((at(c) - at(b)).lengthSqr() + u.lengthSqr() + v.lengthSqr());
+    if (!isFolded({a, b, c}, positions_, normals_)) return 0;
+    return kFold * ((at(c) - at(b)).lengthSqr() + (at(b) - at(a)).lengthSqr() +
+                    (at(c) - at(a)).lengthSqr());
   }
   [[nodiscard]] double acrossCost(std::size_t i, std::size_t j) const {
     const std::pair<VertexIndex, VertexIndex> pair{tiles_[i].vertex, line_[j].vertex};
-    return (paired_.contains(pair) ? 1 : kAstray) * (at(pair.first) - at(pair.second)).lengthSqr();
+    const bool paired = std::binary_search(paired_.begin(), paired_.end(), pair);
+    return (paired ? 1 : kAstray) * (at(pair.first) - at(pair.second)).lengthSqr();
   }
 
   // Turns both sides of a loop to a short edge across that the arcs have.
@@ -144,28 +150,39 @@ class Stitcher {
   // Cuts off a vertex of the chunk beside a fold that stands back behind its neighbours, the one
   // that helps most. Returns whether one helps.
   bool cutEar() {
-    const double before = costs_.back();
-    const std::vector<Link> tiles = tiles_;
-    std::vector<Link> bestTiles;
-    double best = before;
-    StripTriangle bestEar;
-    for (const std::size_t i : besideFolds()) {
-      const Link &a = tiles[i - 1], &b = tiles[i], &c = tiles[i + 1];
-      if (a.vertex == c.vertex || stepCost(a.vertex, b.vertex, c.vertex) > 0) continue;
-      if (areJoined(tiles, a.vertex, c.vertex) || !mayJoin_(a.vertex, c.vertex)) continue;
-      tiles_ = tiles;
-      tiles_.erase(tiles_.begin() + static_cast<std::ptrdiff_t>(i));
-      findCosts();
-      if (costs_.back() >= best) continue;
-      best = costs_.back();
-      bestTiles = tiles_;
-      bestEar = {{a.vertex, b.vertex, c.vertex}, b.arc};
+    double best = costs_.back();
+    std::size_t ear = 0;
+    const std::vector<std::size_t> places = besideFolds();
+    if (!places.empty()) findOnward();
+    for (const std::size_t i : places) {
+      const VertexIndex a = tiles_[i - 1].vertex, b = tiles_[i].vertex, c = tiles_[i + 1].vertex;
+      if (a == c || stepCost(a, b, c) > 0) continue;
+      if (areJoined(tiles_, a, c) || !mayJoin_(a, c)) continue;
+      const double cost = costWithout(i);
+      if (cost >= best) continue;
+      best = cost;
+      ear = i;
     }
-    tiles_ = bestTiles.empty() ? tiles : bestTiles;
+    if (ear == 0) return false;
+    strip_.push_back(
+        {{tiles_[ear - 1].vertex, tiles_[ear].vertex, tiles_[ear + 1].vertex}, tiles_[ear].arc});
+    tiles_.erase(tiles_.begin() + static_cast<std::ptrdiff_t>(ear));
     findCosts();
-    if (bestTiles.empty()) return false;
-    strip_.push_back(bestEar);
     return true;
+  }
+
+  // The least cost of all ways without one of the tiles in between.
+  [[nodiscard]] double costWithout(std::size_t i) {
+    double least = kNever;
+    for (std::size_t j = 0; j < line_.size(); ++j) {
+      if (isRound(i - 1, j) || isRound(i + 1, j)) continue;
+      const double ends = costAt(i - 1, j) + onward_[(i + 1) * line_.size() + j];
+      if (ends >= least) continue;
+      least = std::min(least,
+                       ends + acrossCost(i + 1, j) +
+                           stepCost(line_[j].vertex, tiles_[i - 1].vertex, tiles_[i + 1].vertex));
+    }
+    return least;
   }
 
   // Whether two vertices follow each other on the chunk's side already, as in a loop of three.
@@ -204,32 +221,82 @@ class Stitcher {
     return costs_[i * line_.size() + j];
   }
 
-  // Least costs of all ways from the first pair to each other one.
+  // The pairs that a way around a loop must not come through.
+  [[nodiscard]] bool isRound(std::size_t i, std::size_t j) const {
+    return seam_.closed && ((i == 0 && j == lineCount_) || (i + 1 == tiles_.size() && j == 0));
+  }
+  [[nodiscard]] double tileStep(std::size_t i, std::size_t j) const {
+    return stepCost(line_[j].vertex, tiles_[i - 1].vertex, tiles_[i].vertex);
+  }
+  [[nodiscard]] double lineStep(std::size_t i, std::size_t j) const {
+    return stepCost(line_[j - 1].vertex, tiles_[i].vertex, line_[j].vertex);
+  }
+
+  // What the way costs that takes the vertices as the arcs have them: no better one goes through a
+  // pair that costs more.
+  [[nodiscard]] double costAlongArcs() const {
+    const std::size_t arcs = seam_.tiles.size();
+    const auto place = [&](const std::vector<Link>& chain, std::size_t k) {
+      if (k + 1 == chain.size() && seam_.closed) return arcs;
+      return (chain[k].arc + arcs - chain[0].arc) % arcs;
+    };
+    double cost = 0;
+    for (std::size_t i = 0, j = 0; i + 1 < tiles_.size() || j + 1 < line_.size();) {
+      const bool byTile = j + 1 == line_.size() ||
+                          (i + 1 < tiles_.size() && place(tiles_, i + 1) <= place(line_, j + 1));
+      byTile ? ++i : ++j;
+      if (isRound(i, j)) return kNever;
+      cost += (byTile ? tileStep(i, j) : lineStep(i, j)) + acrossCost(i, j);
+    }
+    return cost;
+  }
+
+  // Least costs of ways from the first pair to each other one, of those that may be on the best
+  // way.
   void findCosts() {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
+    const double most = kSlack * costAlongArcs();
     costs_.assign(tiles_.size() * line_.size(), kNever);
     byTile_.assign(costs_.size(), 0);
     costs_[0] = 0;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
       for (std::size_t j = 0; j < line_.size(); ++j) {
-        const bool round =
-            seam_.closed && ((i == 0 && j == lineCount_) || (i + 1 == tiles_.size() && j == 0));
-        if ((i == 0 && j == 0) || round) continue;
+        if ((i == 0 && j == 0) || isRound(i, j)) continue;
         double best = kNever;
-        if (i > 0) {
-          best =
-              costAt(i - 1, j) + stepCost(line_[j].vertex, tiles_[i - 1].vertex, tiles_[i].vertex);
+        if (i > 0 && costAt(i - 1, j) < kNever) {
+          best = costAt(i - 1, j) + tileStep(i, j);
           byTile_[i * line_.size() + j] = 1;
         }
-        if (j > 0) {
-          const double other =
-              costAt(i, j - 1) + stepCost(line_[j - 1].vertex, tiles_[i].vertex, line_[j].vertex);
-          if (i == 0 || other < best) {
+        if (j > 0 && costAt(i, j - 1) < best) {
+          const double other = costAt(i, j - 1) + lineStep(i, j);
+          if (other < best) {
             best = other;
             byTile_[i * line_.size() + j] = 0;
           }
         }
-        costAt(i, j) = best + acrossCost(i, j);
+        if (!(best <= most)) continue;
+        best += acrossCost(i, j);
+        if (best <= most) costAt(i, j) = best;
+      }
+    }
+  }
+
+  // Least costs of ways from each pair to the last, of those that findCosts() reached.
+  void findOnward() {
+    const std::size_t width = line_.size();
+    onward_.assign(costs_.size(), kNever);
+    onward_.back() = 0;
+    for (std::size_t i = tiles_.size(); i-- > 0;) {
+      for (std::size_t j = width; j-- > 0;) {
+        double& own = onward_[i * width + j];
+        if (isRound(i, j)) continue;
+        if (i + 1 < tiles_.size() && onward_[(i + 1) * width + j] < own) {
+          own = std::min(own,
+                         onward_[(i + 1) * width + j] + tileStep(i + 1, j) + acrossCost(i + 1, j));
+        }
+        if (j + 1 < width && onward_[i * width + j + 1] < own) {
+          own =
+              std::min(own, onward_[i * width + j + 1] + lineStep(i, j + 1) + acrossCost(i, j + 1));
+        }
       }
     }
   }
@@ -259,12 +326,25 @@ class Stitcher {
   std::vector<Link> tiles_, line_;  // of a loop with the first again at the end
   std::size_t lineCount_ = 0;       // without that
   const MayJoin& mayJoin_;
-  std::set<std::pair<VertexIndex, VertexIndex>> paired_;  // vertices that stand for one arc
-  std::vector<double> costs_;                             // of the pairs (tile, line)
-  std::vector<std::uint8_t> byTile_;  // whether the last step to a pair was one from tile to tile
+  std::vector<std::pair<VertexIndex, VertexIndex>> paired_;  // that stand for one arc; sorted
+  // Of the pairs (tile, line): the least cost of a way from the first to each, whether its last
+  // step is one from tile to tile, and the least cost of a way on to the last.
+  std::vector<double> costs_;
+  std::vector<std::uint8_t> byTile_;
+  std::vector<double> onward_;
 };
 
 }  // namespace
+
+bool isFolded(const Triangle& triangle, std::span<const Position> positions,
+              std::span<const Normal> normals) {
+  const auto& v = triangle.vertices;
+  const Vec3d a = vectorOf(positions[v[0]]);
+  const Vec3d normal = (vectorOf(positions[v[1]]) - a).cross(vectorOf(positions[v[2]]) - a);
+  Vec3d facing(0.0);
+  for (const VertexIndex i : v) facing += Vec3d(normals[i].x, normals[i].y, normals[i].z);
+  return !(normal.dot(facing) > kLeastCosine * normal.length() * facing.length());
+}
 
 std::vector<StripTriangle> stitch(const ChunkSeam& seam, bool several,
                                   std::span<const Position> positions,

@@ -28,4 +28,8 @@ struct StripTriangle {
     std::span<const Normal> normals,
     const std::function<bool(VertexIndex, VertexIndex)>& mayJoin = nullptr);
 
+/// Whether a triangle of a strip faces away from the surface at its corners.
+[[nodiscard]] bool isFolded(const Triangle& triangle, std::span<const Position> positions,
+                            std::span<const Normal> normals);
+
 }  // namespace tufa::chunks

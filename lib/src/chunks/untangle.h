@@ -8,9 +8,10 @@
 
 namespace tufa::chunks {
 
-/// Moves the arcs' vertices where curves cross on their face to their `havens`, offsets from their
-/// cells, until no curves cross or none of these vertices can be moved. What becomes of a curve
-/// depends on what lies on its face alone.
+/// Moves the arcs' vertices where curves cross on their face, or lead back on themselves from one
+/// vertex to the next, to their `havens`, offsets from their cells, until they do so nowhere or
+/// none of these vertices can be moved. What becomes of a curve depends on what lies on its face
+/// alone.
 void untangle(const std::vector<openvdb::Vec3d>& havens, Seams& seams);
 
 }  // namespace tufa::chunks

@@ -56,9 +56,11 @@ struct Suspect {
 // So many polygons of a run are compared with what is near at once.
 constexpr PolygonIndex kGroup = 4;
 
+using Matters = std::function<bool(PolygonIndex, PolygonIndex)>;
+
 // The pairs of the polygons of one run with the suspects near it.
 void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspect>& near,
-                std::vector<PolygonPair>& pairs) {
+                const Matters& matters, std::vector<PolygonPair>& pairs) {
   const PolygonIndex begin = surface.runBegin(run), end = surface.runEnd(run);
   std::array<bool, Surface::kRun> isSuspect{};
   for (const Suspect& suspect : near) {
@@ -84,6 +86,7 @@ void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspe
         if (!boxes[p - group].meets(other.box) || (isSuspect[p - begin] && other.polygon < p)) {
           continue;
         }
+        if (matters && !matters(p, other.polygon)) continue;
         if (meetElsewhere(surface.mesh().positions, surface.corners(p),
                           surface.corners(other.polygon), p == other.polygon)) {
           pairs.push_back({std::min(p, other.polygon), std::max(p, other.polygon)});
@@ -96,7 +99,8 @@ void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspe
 }  // namespace
 
 std::vector<PolygonPair> findPairs(const Surface& surface,
-                                   const std::vector<PolygonIndex>& suspects, base::Job& job) {
+                                   const std::vector<PolygonIndex>& suspects, base::Job& job,
+                                   const std::function<bool(PolygonIndex, PolygonIndex)>& matters) {
   std::vector<Box> boxes(suspects.size());
   job.forRanges(suspects.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) boxes[i] = surface.box(suspects[i]);
@@ -112,7 +116,7 @@ std::vector<PolygonPair> findPairs(const Surface& surface,
       tree.itemsMeeting(surface.runBox(run), [&](std::uint32_t i, const Box& box) {
         near.push_back({suspects[i], box});
       });
-      if (!near.empty()) pairsOfRun(surface, run, near, found);
+      if (!near.empty()) pairsOfRun(surface, run, near, matters, found);
     }
     const std::scoped_lock lock(mutex);
     pairs.insert(pairs.end(), found.begin(), found.end());

@@ -5,6 +5,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -96,10 +97,11 @@ class Surface {
   bool fanned_ = false;
 };
 
-/// All pairs of which at least one polygon is among `suspects`, sorted. The result does not depend
-/// on the number of threads.
-[[nodiscard]] std::vector<PolygonPair> findPairs(const Surface& surface,
-                                                 const std::vector<PolygonIndex>& suspects,
-                                                 base::Job& job);
+/// All pairs of which at least one polygon is among `suspects`, sorted; of two polygons for which
+/// `matters` says so, if there is such a function. The result does not depend on the number of
+/// threads.
+[[nodiscard]] std::vector<PolygonPair> findPairs(
+    const Surface& surface, const std::vector<PolygonIndex>& suspects, base::Job& job,
+    const std::function<bool(PolygonIndex, PolygonIndex)>& matters = nullptr);
 
 }  // namespace tufa::mend

@@ -54,6 +54,27 @@ TEST(Untangle, MovesNoMoreThanItMust) {
   EXPECT_EQ(heights(seams, 1), (std::vector<double>{0.7, 0.9, 0.9, 0.9, 0.7}));
 }
 
+TEST(Untangle, MovesVerticesThatLeadBack) {
+  Seams seams;
+  std::vector<Vec3d> havens;
+  addCurve(seams, havens, {0.5, 0.5, 0.5, 0.5, 0.5}, 0.6);
+  // The third vertex lies behind the second.
+  seams.vertices[1].offset[1] = 0.9;
+  seams.vertices[2].offset[1] = -0.4;
+  untangle(havens, seams);
+  EXPECT_EQ(heights(seams, 0), (std::vector<double>{0.5, 0.6, 0.6, 0.5, 0.5}));
+  EXPECT_EQ(seams.vertices[1].offset, havens[1]);
+}
+
+TEST(Untangle, LeavesSharpCorners) {
+  Seams seams;
+  std::vector<Vec3d> havens;
+  // Up and down again by ten voxels, one apart.
+  addCurve(seams, havens, {0.5, 0.5, 10.5, 0.5, 0.5}, 0.6);
+  untangle(havens, seams);
+  EXPECT_EQ(heights(seams, 0), (std::vector<double>{0.5, 0.5, 10.5, 0.5, 0.5}));
+}
+
 TEST(Untangle, DoesNotMoveOneFaceForAnother) {
   Seams seams;
   std::vector<Vec3d> havens;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/job.h"
+#include "chunks/chunk_cells.h"
+#include "chunks/polyline.h"
+#include "chunks/seams.h"
+
+namespace tufa::chunks {
+
+/// Tries lines with the finest strips there are: those between them and the base mesh's own
+/// vertices, as it was before the repair. Lines that are sound with these can be had without
+/// intersections, whatever else the chunks beside them are like, as their cells can be split down
+/// to such strips. Depends on what is near the face alone.
+class StripTrial {
+ public:
+  /// `before` is the base mesh before its repair; it and the seams must outlive the trial.
+  /// `vertexCells` has the cell of each of its vertices.
+  StripTrial(const Mesh& before, const Seams& seams, const std::vector<openvdb::Coord>& vertexCells,
+             const ChunkCells& chunks, const base::Affine& affine, base::Job& job);
+
+  /// What is not sound beside the curves `begin` to `end`, which are those of one face.
+  [[nodiscard]] LineFaults faults(std::size_t begin, std::size_t end, const SeamLines& lines) const;
+
+ private:
+  void lookAtSide(std::size_t begin, std::size_t end, bool above, const SeamLines& lines,
+                  LineFaults& faults) const;
+
+  const std::vector<Quad>& quads_;
+  const Seams& seams_;
+  base::Job& job_;
+  std::vector<Position> positions_;  ///< of the base vertices, then of those on seams
+  /// Base vertices beside faces, each with the base quads at it that lie in one chunk; sorted.
+  std::vector<std::pair<VertexIndex, std::uint32_t>> quadsAt_;
+};
+
+}  // namespace tufa::chunks
