@@ -280,10 +280,11 @@ class Face {
 
   // Until nothing is at fault either.
   void makeSound(const LineTrial& trial, SeamLines& result) {
+    const FaceTrial onFace = trial ? trial(begin_, end_) : nullptr;
     for (bool any = true; any;) {
       uncross();
       for (std::size_t line = begin_; line < end_; ++line) lines_[line].assign(result);
-      any = trial && splitAt(trial(begin_, end_, result));
+      any = onFace && splitAt(onFace(result));
     }
   }
 

@@ -21,9 +21,10 @@ struct LineFaults {
   std::vector<SeamIndex> meeting;  ///< of triangles that meet others
   std::vector<SeamIndex> folded;   ///< of folded triangles
 };
-/// Finds the faults of the lines of the curves `begin` to `end`, which are those of one face.
-using LineTrial =
-    std::function<LineFaults(std::size_t begin, std::size_t end, const SeamLines& lines)>;
+/// Finds the faults of lines of one face; asked again with other lines.
+using FaceTrial = std::function<LineFaults(const SeamLines& lines)>;
+/// Begins a trial of the curves `begin` to `end`, which are those of one face.
+using LineTrial = std::function<FaceTrial(std::size_t begin, std::size_t end)>;
 
 /// Simplifies the curves of all seams, each to a polyline on its face through some of its arcs'
 /// vertices. No vertex that is left out is further from it than `allowed` says, in world units.

@@ -125,9 +125,7 @@ class RegionMaker {
       };
       LineTrial tried;
       if (options.repair) {
-        tried = [&](std::size_t begin, std::size_t end, const SeamLines& lines) {
-          return trial.faults(begin, end, lines);
-        };
+        tried = [&](std::size_t begin, std::size_t end) { return trial.ofFace(begin, end); };
       }
       lines_.push_back(simplifySeams(seams_, base_.affine, allowed, tried));
     }

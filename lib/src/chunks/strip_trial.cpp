@@ -70,18 +70,22 @@ StripTrial::StripTrial(const Mesh& before, const Seams& seams,
   std::sort(quadsAt_.begin(), quadsAt_.end());
 }
 
-LineFaults StripTrial::faults(std::size_t begin, std::size_t end, const SeamLines& lines) const {
-  LineFaults faults;
-  for (const bool above : {false, true}) lookAtSide(begin, end, above, lines, faults);
-  for (std::vector<SeamIndex>* found : {&faults.meeting, &faults.folded}) {
-    std::sort(found->begin(), found->end());
-    found->erase(std::unique(found->begin(), found->end()), found->end());
-  }
-  return faults;
+FaceTrial StripTrial::ofFace(std::size_t begin, std::size_t end) const {
+  return [this, begin, end, seen = std::array<Seen, 2>()](const SeamLines& lines) mutable {
+    LineFaults faults;
+    for (const bool above : {false, true}) {
+      lookAtSide(begin, end, above, lines, seen[above ? 1 : 0], faults);
+    }
+    for (std::vector<SeamIndex>* found : {&faults.meeting, &faults.folded}) {
+      std::sort(found->begin(), found->end());
+      found->erase(std::unique(found->begin(), found->end()), found->end());
+    }
+    return faults;
+  };
 }
 
 void StripTrial::lookAtSide(std::size_t begin, std::size_t end, bool above, const SeamLines& lines,
-                            LineFaults& faults) const {
+                            Seen& seen, LineFaults& faults) const {
   // Seam vertices are numbered behind those of the base mesh.
   const auto baseCount = static_cast<VertexIndex>(positions_.size() - seams_.vertices.size());
   const auto note = [&](const std::array<VertexIndex, 3>& triangle, std::vector<SeamIndex>& found) {
@@ -112,14 +116,30 @@ void StripTrial::lookAtSide(std::size_t begin, std::size_t end, bool above, cons
   quads.erase(std::unique(quads.begin(), quads.end()), quads.end());
   for (const std::uint32_t quad : quads) extract.quads.push_back(quads_[quad].vertices);
   Mesh mesh = extract.mesh(positions_);
+  // Triangles that were there in the trial before meet what they met then, and new ones.
   std::vector<mend::PolygonIndex> suspects;
   const auto first = static_cast<mend::PolygonIndex>(mesh.quads.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (std::binary_search(seen.triangles.begin(), seen.triangles.end(), extract.triangles[i])) {
+      continue;
+    }
     suspects.push_back(first + static_cast<mend::PolygonIndex>(i));
   }
-  for (const mend::PolygonIndex polygon :
-       mend::polygonsOf(mend::findPairs(mend::Surface(mesh, job_), suspects, job_))) {
-    if (polygon >= first) note(extract.triangles[polygon - first], faults.meeting);
+  seen.triangles = extract.triangles;
+  std::sort(seen.triangles.begin(), seen.triangles.end());
+  std::erase_if(seen.met, [&](const auto& pair) {
+    const auto isGone = [&](const StripCorners& triangle) {
+      return !std::binary_search(seen.triangles.begin(), seen.triangles.end(), triangle);
+    };
+    return isGone(pair.first) || isGone(pair.second);
+  });
+  for (const auto& [a, b] : mend::findPairs(mend::Surface(mesh, job_), suspects, job_)) {
+    const StripCorners& later = extract.triangles[b - first];
+    seen.met.emplace_back(a < first ? later : extract.triangles[a - first], later);
+  }
+  for (const auto& [a, b] : seen.met) {
+    note(a, faults.meeting);
+    note(b, faults.meeting);
   }
 }
 

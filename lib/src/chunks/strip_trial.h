@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -23,12 +24,19 @@ class StripTrial {
   StripTrial(const Mesh& before, const Seams& seams, const std::vector<openvdb::Coord>& vertexCells,
              const ChunkCells& chunks, const base::Affine& affine, base::Job& job);
 
-  /// What is not sound beside the curves `begin` to `end`, which are those of one face.
-  [[nodiscard]] LineFaults faults(std::size_t begin, std::size_t end, const SeamLines& lines) const;
+  /// A trial of the curves `begin` to `end`, which are those of one face.
+  [[nodiscard]] FaceTrial ofFace(std::size_t begin, std::size_t end) const;
 
  private:
+  using StripCorners = std::array<VertexIndex, 3>;
+  // What was seen of a side of a face in the trials before.
+  struct Seen {
+    std::vector<StripCorners> triangles;                     ///< sorted
+    std::vector<std::pair<StripCorners, StripCorners>> met;  ///< of pairs; a polygon that is not of
+                                                             ///< a strip is like the other one
+  };
   void lookAtSide(std::size_t begin, std::size_t end, bool above, const SeamLines& lines,
-                  LineFaults& faults) const;
+                  Seen& seen, LineFaults& faults) const;
 
   const std::vector<Quad>& quads_;
   const Seams& seams_;
