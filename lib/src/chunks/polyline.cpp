@@ -17,10 +17,9 @@ using openvdb::Coord;
 using openvdb::Vec3d;
 
 constexpr std::size_t kLeastOfLoop = 3;
-// A segment may be so many times longer than the limit, in arcs; at faults it is split while it is
-// so many times longer.
+// A segment may be so many times longer than the limit, in arcs; where strips would be folded it is
+// split down to the limit.
 constexpr double kLongest = 4;
-constexpr double kLongestAtFolds = 1.5;
 // What an arc more adds to the length that a segment may have.
 constexpr double kGrowth = 1;
 // How much of the way to a side that faces the other way a line may go.
@@ -79,7 +78,7 @@ class Line {
 
   // The same for one that is long still.
   bool splitLong(std::size_t from, std::size_t to) {
-    return isLonger(from, to, kLongestAtFolds) && split(from, to);
+    return isLonger(from, to, 1) && split(from, to);
   }
 
   // Names the vertex that stands for each arc.

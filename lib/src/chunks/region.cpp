@@ -28,6 +28,8 @@ constexpr double kLineShare = 0.5;
 // And never more than this, in voxels: where the surface is nearly flat on the face, what lies
 // beside the polyline would be on its other side.
 constexpr double kMostOff = 1.5;
+// Up to so far from its curve, in voxels, a line is near the base mesh beside it.
+constexpr double kNearLine = 1;
 // After so many rounds no cells are split any more because polygons meet: where they still do, as
 // on white noise, smaller cells do not help.
 constexpr int kMostRounds = 12;
@@ -125,7 +127,9 @@ class RegionMaker {
       };
       LineTrial tried;
       if (options.repair) {
-        tried = [&](std::size_t begin, std::size_t end) { return trial.ofFace(begin, end); };
+        tried = [&](std::size_t begin, std::size_t end) {
+          return trial.ofFace(begin, end, kLineShare * tolerance > kNearLine);
+        };
       }
       lines_.push_back(simplifySeams(seams_, base_.affine, allowed, tried));
     }

@@ -70,11 +70,15 @@ StripTrial::StripTrial(const Mesh& before, const Seams& seams,
   std::sort(quadsAt_.begin(), quadsAt_.end());
 }
 
-FaceTrial StripTrial::ofFace(std::size_t begin, std::size_t end) const {
-  return [this, begin, end, seen = std::array<Seen, 2>()](const SeamLines& lines) mutable {
+FaceTrial StripTrial::ofFace(std::size_t begin, std::size_t end, bool far) const {
+  return [this, begin, end, far, seen = std::array<Seen, 2>()](const SeamLines& lines) mutable {
     LineFaults faults;
     for (const bool above : {false, true}) {
       lookAtSide(begin, end, above, lines, seen[above ? 1 : 0], faults);
+    }
+    if (far) {
+      faults.folded.insert(faults.folded.end(), faults.meeting.begin(), faults.meeting.end());
+      faults.meeting.clear();
     }
     for (std::vector<SeamIndex>* found : {&faults.meeting, &faults.folded}) {
       std::sort(found->begin(), found->end());

@@ -24,8 +24,10 @@ class StripTrial {
   StripTrial(const Mesh& before, const Seams& seams, const std::vector<openvdb::Coord>& vertexCells,
              const ChunkCells& chunks, const base::Affine& affine, base::Job& job);
 
-  /// A trial of the curves `begin` to `end`, which are those of one face.
-  [[nodiscard]] FaceTrial ofFace(std::size_t begin, std::size_t end) const;
+  /// A trial of the curves `begin` to `end`, which are those of one face. Where lines may be `far`
+  /// from the base mesh's own curves they meet polygons that larger cells will not have: then
+  /// triangles that meet others count as folded ones do.
+  [[nodiscard]] FaceTrial ofFace(std::size_t begin, std::size_t end, bool far) const;
 
  private:
   using StripCorners = std::array<VertexIndex, 3>;
