@@ -84,7 +84,8 @@ void LevelCollapser<TreeT>::collapse(LevelMeshes& meshes, const Level& level,
       next.transition = withStripsOf(meshes.transition, next.regular, region_.seams,
                                      level.nextLines, region_.chunks);
     }
-    if (repair != nullptr) region_.mender.mend(next, level.alone, Movable::Clusters);
+    LevelMender::Clean clean;
+    if (repair != nullptr) region_.mender.mend(next, level.alone, Movable::Clusters, clean);
     measure(next, level);
     std::vector<std::uint8_t> worse = findWorse(meshes, next, level);
     if (std::find(worse.begin(), worse.end(), 1) == worse.end()) {

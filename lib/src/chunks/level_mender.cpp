@@ -1,6 +1,7 @@
 #include "chunks/level_mender.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "base/single_precision.h"
@@ -31,6 +32,54 @@ std::vector<mend::PolygonIndex> stripSuspectsOf(const SeamedCut& mesh,
   return suspects;
 }
 
+// Digits of a polygon's corners in their order. Of two different polygons all are as good as never
+// the same.
+std::array<std::uint64_t, 2> digitsOf(const Mesh& mesh, mend::Corners corners) {
+  std::array<std::uint64_t, 2> digits{corners.size(), 0};
+  for (const VertexIndex vertex : corners) {
+    const Position& p = mesh.positions[vertex];
+    for (const double x : {p.x, p.y, p.z}) {
+      const auto bits = std::bit_cast<std::uint64_t>(x);
+      digits[0] = (digits[0] ^ bits) * 0x9E3779B97F4A7C15U;
+      digits[0] ^= digits[0] >> 32;
+      digits[1] = (digits[1] + bits) * 0xC2B2AE3D27D4EB4FU;
+      digits[1] ^= digits[1] >> 29;
+    }
+  }
+  return digits;
+}
+
+template <class Body>
+void forPolygons(const Mesh& mesh, const Body& body) {
+  mend::PolygonIndex polygon = 0;
+  for (const Quad& quad : mesh.quads) body(polygon++, mend::Corners(quad.vertices));
+  for (const Triangle& triangle : mesh.triangles) body(polygon++, mend::Corners(triangle.vertices));
+}
+
+// Those that are not as they were when nothing met them.
+std::vector<mend::PolygonIndex> findNew(const Mesh& mesh, const LevelMender::Clean& clean) {
+  std::vector<mend::PolygonIndex> found;
+  forPolygons(mesh, [&](mend::PolygonIndex polygon, mend::Corners corners) {
+    if (!std::binary_search(clean.begin(), clean.end(), digitsOf(mesh, corners))) {
+      found.push_back(polygon);
+    }
+  });
+  return found;
+}
+
+LevelMender::Clean findClean(const Mesh& mesh, const std::vector<mend::PolygonPair>& pairs) {
+  std::vector<mend::PolygonIndex> meeting = mend::polygonsOf(pairs);
+  std::sort(meeting.begin(), meeting.end());
+  LevelMender::Clean clean;
+  forPolygons(mesh, [&](mend::PolygonIndex polygon, mend::Corners corners) {
+    if (!std::binary_search(meeting.begin(), meeting.end(), polygon)) {
+      clean.push_back(digitsOf(mesh, corners));
+    }
+  });
+  std::sort(clean.begin(), clean.end());
+  return clean;
+}
+
 // Makes of one mesh, but for seams and strips, what another of the same cut is. Returns whether
 // that changed anything.
 bool takeShared(const SeamedCut& from, SeamedCut& to) {
@@ -55,14 +104,17 @@ bool LevelMender::isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable mov
          !chunks.own.isInside(chunks.chunkOf(region_.cells[ref.cluster]));
 }
 
-std::vector<mend::PolygonPair> LevelMender::mend(
-    SeamedCut& mesh, Movable movable, const std::vector<mend::PolygonIndex>& suspects) const {
+std::vector<mend::PolygonPair> LevelMender::mend(SeamedCut& mesh, Movable movable,
+                                                 std::vector<mend::PolygonIndex> suspects,
+                                                 Clean* clean) const {
   std::vector<Position>& positions = mesh.made.mesh.positions;
   for (VertexIndex i = 0; i < positions.size(); ++i) {
     Position& p = positions[i];
     p = mesh.isOnSeam(i) ? region_.seamPositions[mesh.seamAt(i)] : region_.affine.toWorld(p);
     if (region_.singlePrecision) p = base::toSingle(p);
   }
+  // Also those of the base mesh: they may meet what was clean before.
+  if (clean != nullptr && !clean->empty()) suspects = findNew(mesh.made.mesh, *clean);
   mend::Source source;
   source.singlePrecision = region_.singlePrecision;
   source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
@@ -74,23 +126,25 @@ std::vector<mend::PolygonPair> LevelMender::mend(
   source.voxelSize = region_.affine.voxelSize();
   source.toTheFloor = false;
   mend::MendReport report = mend::mend(mesh.made.mesh, suspects, source, job_);
+  if (clean != nullptr) *clean = findClean(mesh.made.mesh, report.left);
   for (Position& p : positions) p = region_.affine.fromWorld(p);
   return std::move(report.left);
 }
 
-void LevelMender::mendRegular(LevelMeshes& meshes, Movable movable) const {
+void LevelMender::mendRegular(LevelMeshes& meshes, Movable movable, Clean& clean) const {
   const SeamedCut& mesh = meshes.regular;
-  meshes.pairs = mend(meshes.regular, movable,
-                      certify::suspectsOf(mesh.made, mesh.cut, region_.baseSuspects, mesh.altered));
+  meshes.pairs =
+      mend(meshes.regular, movable,
+           certify::suspectsOf(mesh.made, mesh.cut, region_.baseSuspects, mesh.altered), &clean);
 }
 
-void LevelMender::mendInTurn(LevelMeshes& meshes, Movable movable) const {
+void LevelMender::mendInTurn(LevelMeshes& meshes, Movable movable, Clean& clean) const {
   const auto stripSuspects = [&] { return stripSuspectsOf(meshes.transition, meshes.pairs); };
   for (int turn = 0; turn < kMostTurns; ++turn) {
     if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
-    meshes.transitionPairs = mend(meshes.transition, movable, stripSuspects());
+    meshes.transitionPairs = mend(meshes.transition, movable, stripSuspects(), nullptr);
     if (!takeShared(meshes.transition, meshes.regular)) return;
-    mendRegular(meshes, movable);
+    mendRegular(meshes, movable, clean);
   }
   if (takeShared(meshes.regular, meshes.transition)) {
     const mend::Surface surface(meshes.transition.made.mesh, job_);
@@ -98,10 +152,10 @@ void LevelMender::mendInTurn(LevelMeshes& meshes, Movable movable) const {
   }
 }
 
-void LevelMender::mend(LevelMeshes& meshes, bool alone, Movable movable) const {
-  mendRegular(meshes, movable);
+void LevelMender::mend(LevelMeshes& meshes, bool alone, Movable movable, Clean& clean) const {
+  mendRegular(meshes, movable, clean);
   if (alone) return;
-  mendInTurn(meshes, movable);
+  mendInTurn(meshes, movable, clean);
   meshes.mixedPairs =
       findMixedPairs(meshes.regular, meshes.transition, region_.seams, region_.seamPositions,
                      region_.affine, region_.singlePrecision, job_);

@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,18 +33,23 @@ class LevelMender {
     bool singlePrecision;  ///< positions are rounded to floats
   };
 
+  /// The polygons of a level's regular mesh that met no others when it was mended last, by digits
+  /// of their corners; sorted. Where all is as it was then, nothing is searched again.
+  using Clean = std::vector<std::array<std::uint64_t, 2>>;
+
   LevelMender(const Region& region, base::Job& job) : region_(region), job_(job) {}
 
   /// Moves vertices and turns quads until no polygons meet, as they will be written, where that can
   /// be; says which pairs are left. The two meshes of the level, which share all but their strips,
   /// are mended in turn; or the regular one `alone`. Pairs of a strip of each are found only.
-  void mend(LevelMeshes& meshes, bool alone, Movable movable) const;
+  void mend(LevelMeshes& meshes, bool alone, Movable movable, Clean& clean) const;
 
  private:
-  void mendInTurn(LevelMeshes& meshes, Movable movable) const;
-  void mendRegular(LevelMeshes& meshes, Movable movable) const;
-  [[nodiscard]] std::vector<mend::PolygonPair> mend(
-      SeamedCut& mesh, Movable movable, const std::vector<mend::PolygonIndex>& suspects) const;
+  void mendInTurn(LevelMeshes& meshes, Movable movable, Clean& clean) const;
+  void mendRegular(LevelMeshes& meshes, Movable movable, Clean& clean) const;
+  [[nodiscard]] std::vector<mend::PolygonPair> mend(SeamedCut& mesh, Movable movable,
+                                                    std::vector<mend::PolygonIndex> suspects,
+                                                    Clean* clean) const;
   [[nodiscard]] bool isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const;
 
   Region region_;

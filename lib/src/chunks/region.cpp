@@ -155,6 +155,7 @@ class RegionMaker {
       transition->setIgnored(beyond_);
     }
     SideFlags direct, directNext;
+    LevelMender::Clean clean;
     for (int round = 0;; ++round) {
       const cut::CellFlags merged =
           cut::mergeCells(forest_, base_.topology, cutRule, forbidden, job_);
@@ -167,14 +168,14 @@ class RegionMaker {
         if (splitFar(meshes.transition, *transition, forbidden)) continue;
       }
       if (options_.repair) {
-        mender_.mend(meshes, alone, Movable::Clusters);
+        mender_.mend(meshes, alone, Movable::Clusters, clean);
         if (splitPairs(meshes, forbidden) && round < kMostRounds) continue;
         if (straighten(meshes.regular, meshes.pairs, direct) |
             straighten(meshes.transition, meshes.transitionPairs, directNext)) {
           continue;
         }
         if (!meshes.pairs.empty() || !meshes.transitionPairs.empty()) {
-          mender_.mend(meshes, alone, Movable::All);
+          mender_.mend(meshes, alone, Movable::All, clean);
         }
         bool split = splitFar(meshes.regular, regular, forbidden);
         if (!alone) split |= splitFar(meshes.transition, *transition, forbidden);
