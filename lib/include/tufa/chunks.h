@@ -106,8 +106,8 @@ struct ChunkIndex {
   [[nodiscard]] TUFA_API std::ptrdiff_t neighbour(std::size_t chunk, int face) const;
 };
 
-/// Takes the chunks, one at a time, from the calling thread, in the order they are made. The index
-/// has everything but its `chunks`.
+/// Takes the chunks, one at a time, from the calling thread, in an order that is always the same.
+/// The index has everything but its `chunks`.
 using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
 
 /// Divides the surface of `grid` into chunks, each at several levels of detail. Whatever level each
@@ -116,7 +116,7 @@ using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
 /// normals. See contour() for what is kept and for the errors thrown; throws Error(InvalidArgument)
 /// for options out of their range, too.
 ///
-/// Memory holds the grid and a few chunks.
+/// Memory holds the grid, and for each thread a region of 128 voxels and the chunks of some more.
 TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                                 const ChunkSink& sink, ContourReport* report = nullptr);
 

@@ -170,10 +170,9 @@ class RegionMaker {
       if (options_.repair) {
         mender_.mend(meshes, alone, Movable::Clusters, clean);
         if (splitPairs(meshes, forbidden) && round < kMostRounds) continue;
-        if (straighten(meshes.regular, meshes.pairs, direct) |
-            straighten(meshes.transition, meshes.transitionPairs, directNext)) {
-          continue;
-        }
+        bool straightened = straighten(meshes.regular, meshes.pairs, direct);
+        straightened |= straighten(meshes.transition, meshes.transitionPairs, directNext);
+        if (straightened) continue;
         if (!meshes.pairs.empty() || !meshes.transitionPairs.empty()) {
           mender_.mend(meshes, alone, Movable::All, clean);
         }
