@@ -35,6 +35,12 @@ class FlatTriangle {
     squared = height * height;
     return true;
   }
+  /// Squared distance of the point to the triangle's plane, not more than to the triangle; 0
+  /// without a plane.
+  [[nodiscard]] double squaredHeight(const openvdb::Vec3d& point) const {
+    const double height = normal_.dot(point - corners_[0]);
+    return height * height;
+  }
   /// Squared distance of the point.
   [[nodiscard]] double squaredDistance(const openvdb::Vec3d& point) const {
     double squared = 0;
@@ -57,5 +63,37 @@ class FlatTriangle {
   openvdb::Vec3d normal_;
   std::array<openvdb::Vec3d, 3> inward_;  ///< across each side, of any length
 };
+
+/// Squared distance of a point to a triangle that is asked one question: to the side, the corner or
+/// the inside that the point is nearest to (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
+[[nodiscard]] inline double squaredDistanceTo(const openvdb::Vec3d& point, const openvdb::Vec3d& a,
+                                              const openvdb::Vec3d& b, const openvdb::Vec3d& c) {
+  const openvdb::Vec3d ab = b - a, ac = c - a, ap = point - a, bp = point - b, cp = point - c;
+  const auto toSide = [](const openvdb::Vec3d& from, const openvdb::Vec3d& side, double along) {
+    const double length = side.lengthSqr();
+    const double share = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
+    return (from - side * share).lengthSqr();
+  };
+  const double abAtA = ab.dot(ap), acAtA = ac.dot(ap), abAtB = ab.dot(bp), acAtB = ac.dot(bp),
+               abAtC = ab.dot(cp), acAtC = ac.dot(cp);
+  // Shares of the corners a, b and c in the foot of the point, times one area. Those of a triangle
+  // without an area are but rounding.
+  constexpr double kThin = 1e-12;
+  const double ofC = abAtA * acAtB - abAtB * acAtA, ofB = abAtC * acAtA - abAtA * acAtC,
+               ofA = abAtB * acAtC - abAtC * acAtB, sum = ofA + ofB + ofC;
+  const bool isThin = !(sum > kThin * ab.lengthSqr() * ac.lengthSqr());
+  if (!isThin && ofA > 0 && ofB > 0 && ofC > 0) {
+    return (ap - ab * (ofB / sum) - ac * (ofC / sum)).lengthSqr();
+  }
+  // The nearest point lies on a side that the foot is beyond.
+  double squared = std::numeric_limits<double>::infinity();
+  if (isThin || ofC <= 0) squared = std::min(squared, toSide(ap, ab, abAtA));
+  if (isThin || ofB <= 0) squared = std::min(squared, toSide(ap, ac, acAtA));
+  if (isThin || ofA <= 0) {
+    const openvdb::Vec3d bc = c - b;
+    squared = std::min(squared, toSide(bp, bc, bc.dot(bp)));
+  }
+  return squared;
+}
 
 }  // namespace tufa::base

@@ -172,7 +172,7 @@ double BaseSurface<TreeT>::distanceToQuad(const Vec3d& point, std::size_t quad) 
                       vectorOf(base_.mesh.positions[v[2]]), vectorOf(base_.mesh.positions[v[3]])};
   double best = std::numeric_limits<double>::infinity();
   for (int i = 1; i <= 2; ++i) {
-    best = std::min(best, base::FlatTriangle(p[0], p[i], p[i + 1]).squaredDistance(point));
+    best = std::min(best, base::squaredDistanceTo(point, p[0], p[i], p[i + 1]));
   }
   return std::sqrt(best);
 }

@@ -181,7 +181,9 @@ bool Certifier<TreeT>::findAround(VertexIndex vertex, const Vec3d& point, double
     return true;
   }
   for (std::uint32_t i = begin; i < end; ++i) {
-    const double distance = pieces_[around_[i]].shape.squaredDistance(point);
+    const base::FlatTriangle& shape = pieces_[around_[i]].shape;
+    if (shape.squaredHeight(point) >= squared) continue;
+    const double distance = shape.squaredDistance(point);
     if (distance >= squared) continue;
     squared = distance;
     nearest = around_[i];

@@ -7,7 +7,6 @@
 
 namespace tufa::simplify {
 
-using base::FlatTriangle;
 using openvdb::Vec3d;
 
 namespace {
@@ -26,7 +25,7 @@ std::uint32_t locateSample(const EdgeMesh& mesh, const Mesh& given, const Sample
   const auto look = [&](std::uint32_t t) {
     const Vec3d &a = mesh.point(mesh.corner(t)), &b = mesh.point(mesh.corner(t + 1)),
                 &c = mesh.point(mesh.corner(t + 2));
-    const double squared = FlatTriangle(a, b, c).squaredDistance(at);
+    const double squared = base::squaredDistanceTo(at, a, b, c);
     if (squared >= least) return;
     least = squared;
     nearest = t;
