@@ -35,6 +35,9 @@ struct Collapsed {
   double looseness = 1;                ///< what `allowed` was multiplied by to get so far
   std::vector<std::uint32_t> sampleTriangles;  ///< for a next collapse
   std::vector<Step> steps;                     ///< in order, for a next collapse
+  /// Steps that may be made at the same time: of each phase, one after another, the ends of its
+  /// groups in `steps`.
+  std::vector<std::vector<std::size_t>> phases;
 };
 
 /// What bounds a collapse.
@@ -70,7 +73,8 @@ struct Bounds {
 /// stay). A collapse is not made if a triangle around it would turn over or become a needle, if a
 /// sample near those triangles would be farther from them than is allowed, or the new vertex from
 /// the surface at its nearest sample. Last, edges are turned that make needles, see turnNeedles().
-/// Quads of which nothing was changed stay quads. One thread.
+/// Quads of which nothing was changed stay quads.
+/// Large meshes are collapsed in regions; the result does not depend on the number of threads.
 [[nodiscard]] Collapsed collapse(const Mesh& mesh, const std::vector<PlaneSum>& planes,
                                  const Bounds& bounds, base::Job& job);
 

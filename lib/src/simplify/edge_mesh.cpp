@@ -11,8 +11,7 @@ EdgeMesh::EdgeMesh(const Mesh& mesh)
     : ranks_(mesh.positions.size()),
       order_(mesh.positions.size()),
       first_(mesh.positions.size(), kNone),
-      vertexOf_(mesh.positions.size()),
-      marks_(mesh.positions.size(), 0) {
+      vertexOf_(mesh.positions.size()) {
   points_.reserve(mesh.positions.size());
   for (const Position& p : mesh.positions) points_.emplace_back(p.x, p.y, p.z);
   std::iota(vertexOf_.begin(), vertexOf_.end(), VertexIndex{0});
@@ -76,30 +75,30 @@ std::vector<std::uint8_t> EdgeMesh::widened(const std::vector<std::uint8_t>& mar
   return wider;
 }
 
-bool EdgeMesh::mayCollapse(VertexIndex a, VertexIndex b) {
-  if (mark_ > kNone - 2) {
-    std::fill(marks_.begin(), marks_.end(), 0);
-    mark_ = 0;
-  }
-  const std::uint32_t atA = ++mark_, atB = ++mark_;
-  // A neighbour met twice is at an edge of four triangles, as a quad's diagonal may be.
-  bool twice = false;
+bool LinkCheck::mayCollapse(const EdgeMesh& mesh, VertexIndex a, VertexIndex b) {
+  const auto collect = [&](VertexIndex own, std::vector<VertexIndex>& around) {
+    around.clear();
+    mesh.forTriangles(own, [&](std::uint32_t, VertexIndex x, VertexIndex) { around.push_back(x); });
+    std::sort(around.begin(), around.end());
+    // A neighbour met twice is at an edge of four triangles, as a quad's diagonal may be.
+    return std::adjacent_find(around.begin(), around.end()) == around.end();
+  };
+  if (!collect(a, aroundA_) || !collect(b, aroundB_)) return false;
   std::array<VertexIndex, 2> beside{kNone, kNone};
-  std::size_t shared = 0, common = 0;
-  forTriangles(a, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
-    twice |= marks_[x] == atA;
-    marks_[x] = atA;
+  std::size_t shared = 0;
+  mesh.forTriangles(a, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
     if (x == b || y == b) beside[std::min<std::size_t>(shared++, 1)] = x == b ? y : x;
   });
-  if (twice || shared != 2 || beside[0] == beside[1]) return false;
-  forTriangles(b, [&](std::uint32_t, VertexIndex x, VertexIndex) {
-    twice |= marks_[x] == atB;
-    common += marks_[x] == atA ? 1 : 0;
-    marks_[x] = atB;
-  });
-  if (twice || common != 2) return false;
-  return std::all_of(beside.begin(), beside.end(),
-                     [&](VertexIndex vertex) { return degree(vertex) > 3; });
+  if (shared != 2 || beside[0] == beside[1]) return false;
+  std::size_t common = 0;
+  for (std::size_t i = 0, j = 0; i < aroundA_.size() && j < aroundB_.size();) {
+    const VertexIndex x = aroundA_[i], y = aroundB_[j];
+    common += x == y ? 1 : 0;
+    i += x <= y ? 1 : 0;
+    j += y <= x ? 1 : 0;
+  }
+  return common == 2 && std::all_of(beside.begin(), beside.end(),
+                                    [&](VertexIndex vertex) { return mesh.degree(vertex) > 3; });
 }
 
 void EdgeMesh::collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d& point) {
@@ -107,7 +106,6 @@ void EdgeMesh::collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d
   forTriangles(drop, [&](std::uint32_t t, VertexIndex x, VertexIndex y) {
     if (x != keep && y != keep) return;
     std::fill_n(&corners_[t], 3, kNone);
-    --alive_;
   });
   std::uint32_t last = kNone;
   for (std::uint32_t place = first_[drop]; place != kNone; place = next_[place]) {

@@ -52,11 +52,11 @@ class EdgeMesh {
   /// The marks of vertices, and of all that share a triangle with a marked one.
   [[nodiscard]] std::vector<std::uint8_t> widened(const std::vector<std::uint8_t>& marks) const;
 
-  /// Whether the topology stays the same without the edge: the link condition for an edge off the
-  /// boundary, and no vertex left with two triangles.
-  [[nodiscard]] bool mayCollapse(VertexIndex a, VertexIndex b);
-  /// Lets `drop` go into its neighbour `keep`, and that to `point`.
+  /// Lets `drop` go into its neighbour `keep`, and that to `point`. Does not count: collapses of
+  /// edges without a common neighbour may be made at the same time.
   void collapse(VertexIndex keep, VertexIndex drop, const openvdb::Vec3d& point);
+  /// Takes the triangles of so many collapses, two each, from their number.
+  void countCollapses(std::size_t count) { alive_ -= 2 * count; }
   /// Makes the triangles t = (a, b, c) and u = (b, a, d) into (a, d, c) and (b, c, d).
   void turn(std::uint32_t t, std::uint32_t u, VertexIndex a, VertexIndex b, VertexIndex c,
             VertexIndex d);
@@ -71,8 +71,17 @@ class EdgeMesh {
   std::vector<std::uint32_t> first_, next_;  // the corners at each vertex, as lists
   std::vector<VertexIndex> vertexOf_;        // what a vertex went into
   std::size_t alive_ = 0;
-  std::vector<std::uint32_t> marks_;  // of the vertices around an edge
-  std::uint32_t mark_ = 0;
+};
+
+/// Whether edges may be collapsed.
+class LinkCheck {
+ public:
+  /// Whether the topology stays the same without the edge: the link condition for an edge off the
+  /// boundary, and no vertex left with two triangles.
+  [[nodiscard]] bool mayCollapse(const EdgeMesh& mesh, VertexIndex a, VertexIndex b);
+
+ private:
+  std::vector<VertexIndex> aroundA_, aroundB_;
 };
 
 }  // namespace tufa::simplify

@@ -19,6 +19,7 @@ class Rim {
 
   /// Says what a vertex stands for. Stretches of one vertex are of different curves.
   void add(VertexIndex vertex, const Stretch& stretch);
+  [[nodiscard]] bool empty() const { return stretches_.empty(); }
   [[nodiscard]] bool mayJoin(VertexIndex a, VertexIndex b) const;
   /// `keep` stands for what `drop` stood for, too.
   void join(VertexIndex keep, VertexIndex drop);

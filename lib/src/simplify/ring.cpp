@@ -116,12 +116,8 @@ Vec3d Ring::normalAcross(const EdgeMesh& mesh, VertexIndex x, VertexIndex y, con
 }
 
 bool Ring::isNear(const Vec3d& point, double enough) const {
-  for (const base::FlatTriangle& shape : shapes_) {
-    double squared = 0;
-    if (shape.isAbove(point, squared) && squared <= enough) return true;
-  }
   return std::any_of(shapes_.begin(), shapes_.end(), [&](const base::FlatTriangle& shape) {
-    return shape.squaredDistance(point) <= enough;
+    return shape.squaredHeight(point) <= enough && shape.squaredDistance(point) <= enough;
   });
 }
 
@@ -137,6 +133,7 @@ std::pair<std::size_t, double> Ring::nearest(const Vec3d& point, std::size_t fir
   }
   if (!std::isinf(best.second)) return best;
   for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    if (shapes_[i].squaredHeight(point) >= best.second) continue;
     const double squared = shapes_[i].squaredDistance(point);
     if (squared < best.second) best = {i, squared};
   }

@@ -43,8 +43,8 @@ Problem problemOf(Shape shape, double voxelSize, double allowed) {
   return problem;
 }
 
-Collapsed solve(const Problem& problem) {
-  base::Job job(1, {});
+Collapsed solve(const Problem& problem, int threads = 1) {
+  base::Job job(threads, {});
   return collapse(problem.mesh, problem.planes, problem.bounds, job);
 }
 
@@ -176,6 +176,46 @@ TEST(Collapse, UndoesStepsAndThoseThatNeedThem) {
   EXPECT_LT(some.mesh.triangleCount(), problem.mesh.triangleCount());
   problem.bounds.undone.assign(first.steps.size(), 1);
   EXPECT_EQ(solve(problem).mesh.positions, problem.mesh.positions);
+}
+
+void expectSame(const Collapsed& one, const Collapsed& other) {
+  EXPECT_EQ(one.mesh.positions, other.mesh.positions);
+  EXPECT_EQ(one.mesh.triangles, other.mesh.triangles);
+  EXPECT_EQ(one.mesh.quads, other.mesh.quads);
+  EXPECT_EQ(one.vertexOf, other.vertexOf);
+  EXPECT_EQ(one.sampleTriangles, other.sampleTriangles);
+  EXPECT_EQ(one.phases, other.phases);
+}
+
+TEST(Collapse, TakesLargeMeshesInRegions) {
+  const Problem problem = problemOf(Shape::Torus, 0.02, 0.3);
+  const Collapsed one = solve(problem);
+  ASSERT_GT(one.phases.size(), 2U);
+  EXPECT_GT(one.phases.front().size(), 2U);
+  EXPECT_EQ(one.phases.back().back(), one.steps.size());
+  const test::MeshTopology topology = test::inspect(test::triangulated(one.mesh));
+  EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
+  EXPECT_EQ(topology.euler(), 0);
+  EXPECT_LT(one.mesh.triangleCount(), problem.mesh.triangleCount() / 4);
+  for (const int threads : {2, 3}) expectSame(solve(problem, threads), one);
+}
+
+TEST(Collapse, RepeatsAResultOfRegions) {
+  Problem problem = problemOf(Shape::Torus, 0.02, 0.3);
+  const Collapsed first = solve(problem);
+  problem.bounds.before = &first;
+  const Collapsed second = solve(problem, 2);
+  EXPECT_EQ(second.mesh.positions, first.mesh.positions);
+  EXPECT_EQ(second.mesh.triangles, first.mesh.triangles);
+  // Where some are undone, others take their place.
+  problem.bounds.undone.assign(first.steps.size(), 0);
+  for (std::size_t i = 0; i < first.steps.size(); i += 100) problem.bounds.undone[i] = 1;
+  const Collapsed one = solve(problem, 1);
+  EXPECT_NE(one.mesh.positions, first.mesh.positions);
+  expectSame(solve(problem, 2), one);
+  const test::MeshTopology topology = test::inspect(test::triangulated(one.mesh));
+  EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
+  EXPECT_EQ(topology.euler(), 0);
 }
 
 // A pyramid that stands on its top; c lies almost on the edge from a to b.
