@@ -29,7 +29,7 @@ using openvdb::Coord;
 // less is made twice at their borders. Which region a chunk is in depends on its index alone.
 constexpr int kLeastRegion = 128;
 // Around a region two blocks more are read: an ambiguous face depends on no cell more than six
-// away, and a vertex that is moved to a crease on none more than fifteen.
+// away, and a vertex that is moved to a crease on none more than fourteen.
 constexpr int kMargin = 2 * blocks::kBlockSize;
 constexpr double kIndexEnd = 0.02;
 // So many regions' chunks are kept at most until those before them are handed out. More would make

@@ -19,9 +19,8 @@ constexpr int kMostTurns = 3;
 // mesh with the same clusters has.
 std::vector<mend::PolygonIndex> stripSuspectsOf(const SeamedCut& mesh,
                                                 const std::vector<mend::PolygonPair>& shared) {
-  const Mesh& own = mesh.made.mesh;
-  const auto count = static_cast<mend::PolygonIndex>(own.quads.size() + own.triangles.size());
-  const auto firstStrip = count - static_cast<mend::PolygonIndex>(mesh.strips.size());
+  const auto firstStrip = static_cast<mend::PolygonIndex>(mesh.firstStripPolygon());
+  const auto count = firstStrip + static_cast<mend::PolygonIndex>(mesh.strips.size());
   std::vector<mend::PolygonIndex> suspects;
   for (const auto& [a, b] : shared) {
     if (a < firstStrip && b < firstStrip) suspects.push_back(a);

@@ -18,10 +18,6 @@ Face faceOf(const StripPlace& place, const Seams& seams) {
   return {chunk, 2 * curve.axis + (place.above ? 0 : 1)};
 }
 
-std::size_t firstStripOf(const SeamedCut& mesh) {
-  return mesh.made.mesh.triangles.size() - mesh.strips.size();
-}
-
 }  // namespace
 
 std::vector<mend::PolygonPair> findMixedPairs(const SeamedCut& regular, const SeamedCut& transition,
@@ -41,7 +37,7 @@ std::vector<mend::PolygonPair> findMixedPairs(const SeamedCut& regular, const Se
   for (const Position& p : seamPositions) addPosition(p);
   std::vector<Face> faces;
   const auto addStrips = [&](const SeamedCut& mesh) {
-    const std::size_t first = firstStripOf(mesh);
+    const std::size_t first = mesh.firstStrip();
     for (std::size_t i = 0; i < mesh.strips.size(); ++i) {
       Triangle triangle = mesh.made.mesh.triangles[first + i];
       for (VertexIndex& vertex : triangle.vertices) {
@@ -62,11 +58,9 @@ std::vector<mend::PolygonPair> findMixedPairs(const SeamedCut& regular, const Se
         return (a < count) != (b < count) && faces[a].number != faces[b].number &&
                faces[a].chunk == faces[b].chunk;
       });
-  const auto quadsOf = [](const SeamedCut& mesh) { return mesh.made.mesh.quads.size(); };
   for (mend::PolygonPair& pair : pairs) {
-    pair.a += static_cast<mend::PolygonIndex>(quadsOf(regular) + firstStripOf(regular));
-    pair.b +=
-        static_cast<mend::PolygonIndex>(quadsOf(transition) + firstStripOf(transition)) - count;
+    pair.a += static_cast<mend::PolygonIndex>(regular.firstStripPolygon());
+    pair.b += static_cast<mend::PolygonIndex>(transition.firstStripPolygon()) - count;
   }
   return pairs;
 }

@@ -37,6 +37,7 @@ using LineTrial = std::function<FaceTrial(std::size_t begin, std::size_t end)>;
 ///
 /// What becomes of a curve depends on what lies on its face alone, and not on the order of
 /// anything.
+///
 /// Polylines are made finer at vertices that `trial` finds faults at, see StripTrial, until there
 /// are none or nothing can be made finer.
 [[nodiscard]] SeamLines simplifySeams(

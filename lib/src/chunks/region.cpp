@@ -246,8 +246,7 @@ class RegionMaker {
   // mesh. Returns whether there are any.
   bool straighten(const SeamedCut& mesh, const std::vector<mend::PolygonPair>& pairs,
                   SideFlags& direct) const {
-    const Mesh& own = mesh.made.mesh;
-    const std::size_t firstStrip = own.quads.size() + own.triangles.size() - mesh.strips.size();
+    const std::size_t firstStrip = mesh.firstStripPolygon();
     direct.resize(2 * seams_.curves.size(), 0);
     bool any = false;
     for (const mend::PolygonIndex polygon : mend::polygonsOf(pairs)) {

@@ -83,7 +83,7 @@ simplify::Rim rimOf(const SeamedCut& mesh, const Seams& seams, std::vector<std::
 
 void fixEars(const SeamedCut& mesh, std::vector<std::uint8_t>& fixed) {
   const std::vector<Triangle>& triangles = mesh.made.mesh.triangles;
-  for (std::size_t i = triangles.size() - mesh.strips.size(); i < triangles.size(); ++i) {
+  for (std::size_t i = mesh.firstStrip(); i < triangles.size(); ++i) {
     const auto& v = triangles[i].vertices;
     if (std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return mesh.isOnSeam(k); })) continue;
     for (const VertexIndex k : v) fixed[k] = 1;

@@ -145,7 +145,7 @@ SideFlags findClosed(const SeamedCut& before, const std::vector<StripLeft>& left
 // Adds what is left of the strips that are kept.
 void keepStrips(const SeamedCut& before, const std::vector<StripLeft>& left, const SideFlags& kept,
                 SeamedCut& result) {
-  const std::size_t first = before.made.mesh.triangles.size() - before.strips.size();
+  const std::size_t first = before.firstStrip();
   for (const StripLeft& strip : left) {
     const StripPlace& place = before.strips[strip.strip];
     if (kept[place.number()] == 0) continue;
@@ -162,8 +162,7 @@ void partDiagonals(SeamedCut& result) {
   const auto edge = [](VertexIndex a, VertexIndex b) {
     return std::pair(std::min(a, b), std::max(a, b));
   };
-  for (std::size_t i = mesh.triangles.size() - result.strips.size(); i < mesh.triangles.size();
-       ++i) {
+  for (std::size_t i = result.firstStrip(); i < mesh.triangles.size(); ++i) {
     const auto& v = mesh.triangles[i].vertices;
     for (int k = 0; k < 3; ++k) {
       const VertexIndex a = v[k], b = v[(k + 1) % 3];
@@ -214,7 +213,7 @@ std::vector<StripLeft> stripsLeft(const SeamedCut& before, const cut::Cut& now) 
     numbers[before.cut.vertexOf[i]] = now.vertexOf[i];
   }
   const std::vector<Triangle>& triangles = before.made.mesh.triangles;
-  const std::size_t first = triangles.size() - before.strips.size();
+  const std::size_t first = before.firstStrip();
   std::vector<StripLeft> left;
   for (std::size_t i = 0; i < before.strips.size(); ++i) {
     const auto& v = triangles[first + i].vertices;
@@ -238,7 +237,7 @@ SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh, const Sea
   }
   result.made = mesh.made;
   Mesh& own = result.made.mesh;
-  own.triangles.resize(own.triangles.size() - mesh.strips.size());
+  own.triangles.resize(mesh.firstStrip());
   result.made.triangleSources.resize(own.triangles.size());
   own.positions.resize(mesh.clusterCount);
   own.normals.resize(mesh.clusterCount);

@@ -35,6 +35,13 @@ struct SeamedCut {
       altered;       ///< vertices of pieces and seams: not as the base mesh has them
   SideFlags direct;  ///< sides whose strips run as the arcs do, see stitch()
 
+  /// The first triangle that is in a strip, counted among triangles and among all polygons.
+  [[nodiscard]] std::size_t firstStrip() const {
+    return made.mesh.triangles.size() - strips.size();
+  }
+  [[nodiscard]] std::size_t firstStripPolygon() const {
+    return made.mesh.quads.size() + firstStrip();
+  }
   [[nodiscard]] bool isOnSeam(VertexIndex vertex) const { return vertex >= clusterCount; }
   [[nodiscard]] SeamIndex seamAt(VertexIndex vertex) const { return seamOf[vertex - clusterCount]; }
 };

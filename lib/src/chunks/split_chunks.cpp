@@ -73,7 +73,7 @@ void ChunkSplitter::countPairs(const LevelMeshes& meshes,
   for (const auto& [a, b] : meshes.pairs) count(std::max(ofRegular[a], ofRegular[b]));
   for (const auto& [a, b] : meshes.mixedPairs) count(ofRegular[a]);
   const std::vector<std::int32_t> ofTransition = chunksOf(meshes.transition, transition);
-  const std::size_t firstStrip = ofTransition.size() - meshes.transition.strips.size();
+  const std::size_t firstStrip = meshes.transition.firstStripPolygon();
   for (const auto& [a, b] : meshes.transitionPairs) {
     if (b >= firstStrip) count(std::max(ofTransition[a], ofTransition[b]));
   }
@@ -98,7 +98,7 @@ void ChunkSplitter::sortPieces(const SeamedCut& mesh,
   }
   const Mesh& own = mesh.made.mesh;
   const std::size_t count = own.quads.size() + own.triangles.size();
-  const std::size_t firstStrip = count - mesh.strips.size();
+  const std::size_t firstStrip = mesh.firstStripPolygon();
   for (std::uint32_t polygon = 0; polygon < count; ++polygon) {
     int corners = 0;
     std::int32_t chunk = ChunkCells::kNotOwn;
