@@ -11,24 +11,26 @@ using base::Box;
 
 namespace {
 
-// A quick answer for most polygons that share one vertex or none.
+// A quick answer for most polygons that share two vertices or less.
 bool areParted(std::span<const Position> positions, Corners a, Corners b) {
   std::array<Position, 4> ofA, ofB;
+  std::array<Position, 2> common;
   std::size_t countA = 0, shared = 0;
-  Position at = positions[a.empty() ? 0 : a[0]];
   for (const VertexIndex vertex : a) {
     if (std::find(b.begin(), b.end(), vertex) == b.end()) {
       ofA[countA++] = positions[vertex];
     } else {
-      at = positions[vertex];
-      if (++shared > 1) return false;
+      if (shared == 2) return false;
+      common[shared++] = positions[vertex];
     }
   }
   std::size_t countB = 0;
   for (const VertexIndex vertex : b) {
     if (std::find(a.begin(), a.end(), vertex) == a.end()) ofB[countB++] = positions[vertex];
   }
-  return arePartedAt(at, {ofA.data(), countA}, {ofB.data(), countB}, shared == 1);
+  const std::span<const Position> ownA(ofA.data(), countA), ownB(ofB.data(), countB);
+  if (shared == 2) return arePartedAlong(common[0], common[1], ownA, ownB);
+  return arePartedAt(shared == 1 ? common[0] : positions[a[0]], ownA, ownB, shared == 1);
 }
 
 }  // namespace

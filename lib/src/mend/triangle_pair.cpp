@@ -140,6 +140,31 @@ bool arePartedAt(const Position& at, std::span<const Position> a, std::span<cons
   return common ? leastA > margin && mostB < -margin : leastA - mostB > 2 * margin;
 }
 
+bool arePartedAlong(const Position& from, const Position& to, std::span<const Position> a,
+                    std::span<const Position> b) {
+  const Vec3d edge = between(from, to);
+  const double length = edge.lengthSqr();
+  if (!(length > 0)) return false;
+  const auto directionAcross = [&](std::span<const Position> points) {
+    Vec3d sum(0);
+    for (const Position& p : points) sum += between(from, p);
+    sum -= edge * (sum.dot(edge) / length);
+    return sum / sum.length();  // not a number if they lie on the line
+  };
+  const Vec3d way = directionAcross(a) - directionAcross(b);
+  // As good as at right angles to the edge: the plane that is so has the same points on each side.
+  const double squared = kClearly * kClearly * way.lengthSqr();
+  const double along = way.dot(edge);
+  if (!(4 * along * along < squared * length)) return false;
+  const auto isBeyond = [&](const Position& p, double side) {
+    const Vec3d offset = between(from, p);
+    const double height = side * way.dot(offset);
+    return height > 0 && height * height > squared * offset.lengthSqr();
+  };
+  return std::all_of(a.begin(), a.end(), [&](const Position& p) { return isBeyond(p, 1); }) &&
+         std::all_of(b.begin(), b.end(), [&](const Position& p) { return isBeyond(p, -1); });
+}
+
 bool meetElsewhere(std::span<const Position> positions, const Triangle& a, const Triangle& b) {
   auto va = a.vertices;
   auto vb = b.vertices;

@@ -18,6 +18,11 @@ namespace tufa::mend {
 [[nodiscard]] bool arePartedAt(const Position& at, std::span<const Position> a,
                                std::span<const Position> b, bool common);
 
+/// The same of a plane through the line from one point to another, with none of `a` and `b` on it:
+/// what is spanned by these and by the two points meets on that line alone.
+[[nodiscard]] bool arePartedAlong(const Position& from, const Position& to,
+                                  std::span<const Position> a, std::span<const Position> b);
+
 /// Whether the corners of a triangle lie on a line.
 [[nodiscard]] bool isFlat(std::span<const Position> positions, const Triangle& triangle);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -73,6 +74,43 @@ TEST(TrianglePair, AgreesWithCgalOnRandomPoints) {
       ASSERT_EQ(mend::meetElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
     }
   }
+}
+
+// Two quads over one edge, from nearly flat to folded over, at any place and scale.
+TEST(TrianglePair, WhatIsPartedAlongAnEdgeDoesNotMeet) {
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> coordinate(-1, 1), place(-1e6, 1e6);
+  const Triangle own[] = {{0, 1, 2}, {0, 2, 3}}, other[] = {{1, 0, 4}, {1, 4, 5}};
+  int parted = 0, met = 0;
+  for (int i = 0; i < 20000; ++i) {
+    // Flatter and flatter, so that rounding counts at last.
+    const double flat = std::pow(10.0, -20.0 * (i % 1000) / 1000);
+    const double shift = i % 2 == 0 ? 0 : place(random);
+    std::vector<Position> p = {{shift, 0, 0}, {shift + 1, 0, 0}};
+    for (int k = 2; k < 6; ++k) {
+      const double side = k < 4 ? 1 : -1;
+      const double across = i % 3 == 0 ? coordinate(random) : side * (coordinate(random) + 1.1);
+      p.emplace_back(shift + coordinate(random), across, flat * coordinate(random));
+    }
+    bool meet = false;
+    for (const Triangle& a : own) {
+      for (const Triangle& b : other) meet |= expected(p, a, b);
+    }
+    const bool apart = mend::arePartedAlong(p[0], p[1], {p.data() + 2, 2}, {p.data() + 4, 2});
+    ASSERT_FALSE(apart && meet) << i;
+    parted += apart ? 1 : 0;
+    met += meet ? 1 : 0;
+  }
+  EXPECT_GT(parted, 8000);
+  EXPECT_GT(met, 2000);
+}
+
+TEST(TrianglePair, NothingIsPartedAlongAPoint) {
+  const std::vector<Position> p = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, -1, 0}, {1, 0, 0}};
+  EXPECT_FALSE(mend::arePartedAlong(p[0], p[1], {&p[2], 1}, {&p[3], 1}));
+  EXPECT_TRUE(mend::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[3], 1}));
+  EXPECT_FALSE(mend::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[2], 1}));
+  EXPECT_FALSE(mend::arePartedAlong(p[0], p[4], {&p[4], 1}, {&p[3], 1}));
 }
 
 TEST(TrianglePair, FlatMeansOnALine) {
