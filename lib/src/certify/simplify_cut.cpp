@@ -301,22 +301,40 @@ void compose(const Measured& from, const simplify::Collapsed& collapsed, bool ke
   mesh.made.mesh = collapsed.mesh;
 }
 
-// Marks the vertices around which something is not as in the collapse before, and those that could
-// be, or were not, mended there.
+// Marks the vertices around which something is not as in the collapse before, after it was mended:
+// other clusters, edges turned then or now, quads that mending turned, and polygons that still met.
 std::vector<std::uint8_t> findFresh(const simplify::Collapsed& before, const Measured& was,
                                     const simplify::Collapsed& now) {
-  std::vector<std::uint8_t> mended(before.members.size(), 0), fresh(now.members.size(), 0);
-  for (const VertexIndex vertex : was.altered) mended[vertex] = 1;
-  for (const VertexIndex vertex : was.meeting) mended[vertex] = 1;
+  std::vector<std::uint8_t> other(before.members.size(), 0), fresh(now.members.size(), 0);
+  for (const VertexIndex vertex : was.meeting) other[vertex] = 1;
+  for (const VertexIndex vertex : before.turned) other[vertex] = 1;
+  for (std::size_t i = 0; i < before.mesh.quads.size(); ++i) {
+    const Quad& quad = before.mesh.quads[i];
+    if (quad == was.made.mesh.quads[i]) continue;
+    for (const VertexIndex vertex : quad.vertices) other[vertex] = 1;
+  }
   for (const VertexIndex vertex : now.turned) fresh[vertex] = 1;
   for (std::size_t i = 0; i < now.vertexOf.size(); ++i) {
     const VertexIndex from = before.vertexOf[i], to = now.vertexOf[i];
-    if (mended[from] != 0 || before.members[from] != now.members[to] ||
+    if (other[from] != 0 || before.members[from] != now.members[to] ||
         !(before.mesh.positions[from] == now.mesh.positions[to])) {
       fresh[to] = 1;
     }
   }
   return fresh;
+}
+
+// Moves the vertices that are not fresh to where mending had moved them.
+void moveAsMended(const simplify::Collapsed& before, const Mesh& mended,
+                  const simplify::Collapsed& now, const std::vector<std::uint8_t>& fresh,
+                  Measured& mesh) {
+  for (std::size_t i = 0; i < now.vertexOf.size(); ++i) {
+    const VertexIndex from = before.vertexOf[i], to = now.vertexOf[i];
+    Position& position = mesh.made.mesh.positions[to];
+    if (fresh[to] != 0 || position == mended.positions[from]) continue;
+    position = mended.positions[from];
+    mesh.altered.push_back(to);
+  }
 }
 
 }  // namespace
@@ -350,14 +368,17 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
   for (int round = 1;; ++round) {
     bounds.samples = samples.all();
     simplify::Collapsed next = simplify::collapse(mesh.made.mesh, planes, bounds, job);
+    const bool first = round == 1;
     const std::vector<std::uint8_t> fresh =
-        round == 1 ? std::vector<std::uint8_t>() : findFresh(collapsed, result, next);
-    collapsed = std::move(next);
-    rule.tolerance = tolerance * collapsed.looseness;
+        first ? std::vector<std::uint8_t>() : findFresh(collapsed, result, next);
+    const Mesh mended = std::move(result.made.mesh);
+    rule.tolerance = tolerance * next.looseness;
     certifier.setRule(rule);
-    compose(mesh, collapsed, !goal.fixed.empty(), result, job);
+    compose(mesh, next, !goal.fixed.empty(), result, job);
+    if (!first) moveAsMended(collapsed, mended, next, fresh, result);
+    collapsed = std::move(next);
     const std::size_t count = result.made.mesh.triangleCount();
-    if (round == 1 && goal.giveUp > 0 && count >= goal.giveUp) return result;
+    if (goal.giveUp > 0 && count >= goal.giveUp) return result;
     mendAndMeasure(certifier, repair, result, job, fresh);
     if (!goal.fixed.empty()) forgiveOthers(base, collapsed, result);
     for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);

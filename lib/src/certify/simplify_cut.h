@@ -12,8 +12,8 @@ namespace tufa::certify {
 struct Goal {
   /// If not 0: down to so many triangles, and the tolerance is what comes of it.
   std::size_t triangles = 0;
-  /// If not 0: where the first collapse leaves so many triangles or more, that is the result,
-  /// neither mended nor measured.
+  /// If not 0: where a collapse leaves so many triangles or more, that is the result, neither
+  /// mended nor measured.
   std::size_t giveUp = 0;
   /// Vertices that stay as they are, with all polygons between them. If there are any, those that
   /// the mesh says are altered stay so, what was faulty before is no fault, and some faults may be
