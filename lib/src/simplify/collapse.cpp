@@ -214,8 +214,10 @@ class Collapse {
     bool tooFar = collapsePhase(
         regions,
         [&](Collapser& collapser, std::size_t region) {
-          for (const VertexIndex vertex : regions.vertices[region]) {
-            if (isMarked(vertex)) collapser.proposeAround(vertex, marks.empty());
+          const std::vector<VertexIndex>& own = regions.vertices[region];
+          for (std::size_t i = 0; i < own.size(); ++i) {
+            job_.lookAtTimes(i);
+            if (isMarked(own[i])) collapser.proposeAround(own[i], marks.empty());
           }
         },
         left);
