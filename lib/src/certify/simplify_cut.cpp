@@ -32,6 +32,8 @@ constexpr int kRoundsPerRing = 4;
 constexpr int kMostRings = 8;
 // Faults beside what stays may not be helped at all: after so many rounds they are left.
 constexpr int kRoundsBesideFixed = 8;
+// What is so near to what was too far is mended anew.
+constexpr int kRingsAnew = 2;
 constexpr std::size_t kGrain = 4096;
 
 Vec3d vectorOf(const Position& p) { return {p.x, p.y, p.z}; }
@@ -154,6 +156,18 @@ std::span<const VertexIndex> verticesOfPoint(const forest::Base<TreeT>& base, st
   return {&own, 1};
 }
 
+// Marks the vertices around base points.
+template <class TreeT>
+void markAround(const forest::Base<TreeT>& base, const Measured& mesh,
+                const std::vector<std::uint64_t>& points, std::vector<std::uint8_t>& marks) {
+  for (const std::uint64_t point : points) {
+    VertexIndex vertex = 0;
+    for (const VertexIndex corner : verticesOfPoint(base, point, vertex)) {
+      marks[mesh.cut.vertexOf[corner]] = 1;
+    }
+  }
+}
+
 // Marks vertices of polygons that protrude or meet and those around base points that are too far.
 // Of the latter, samples take care while that is `soft`; and where there is to be a number of
 // triangles, nothing is too far after that.
@@ -164,13 +178,7 @@ std::vector<std::uint8_t> findFaulty(const forest::Base<TreeT>& base, const Meas
   for (const VertexIndex vertex : mesh.meeting) faulty[vertex] = 1;
   if (!soft && counted) return faulty;
   for (const VertexIndex vertex : mesh.deviation.protruding) faulty[vertex] = 1;
-  if (soft) return faulty;
-  for (const std::uint64_t point : mesh.deviation.farPoints) {
-    VertexIndex vertex = 0;
-    for (const VertexIndex corner : verticesOfPoint(base, point, vertex)) {
-      faulty[mesh.cut.vertexOf[corner]] = 1;
-    }
-  }
+  if (!soft) markAround(base, mesh, mesh.deviation.farPoints, faulty);
   return faulty;
 }
 
@@ -302,11 +310,14 @@ void compose(const Measured& from, const simplify::Collapsed& collapsed, bool ke
 }
 
 // Marks the vertices around which something is not as in the collapse before, after it was mended:
-// other clusters, edges turned then or now, quads that mending turned, and polygons that still met.
+// other clusters, edges turned then or now, quads that mending turned, polygons that still met, and
+// all beside what was `tooFar`, which mending may have made so.
 std::vector<std::uint8_t> findFresh(const simplify::Collapsed& before, const Measured& was,
+                                    const std::vector<std::uint8_t>& tooFar,
                                     const simplify::Collapsed& now) {
-  std::vector<std::uint8_t> other(before.members.size(), 0), fresh(now.members.size(), 0);
+  std::vector<std::uint8_t> other = widen(was.made.mesh, tooFar, kRingsAnew);
   for (const VertexIndex vertex : was.meeting) other[vertex] = 1;
+  std::vector<std::uint8_t> fresh(now.members.size(), 0);
   for (const VertexIndex vertex : before.turned) other[vertex] = 1;
   for (std::size_t i = 0; i < before.mesh.quads.size(); ++i) {
     const Quad& quad = before.mesh.quads[i];
@@ -324,17 +335,20 @@ std::vector<std::uint8_t> findFresh(const simplify::Collapsed& before, const Mea
   return fresh;
 }
 
-// Moves the vertices that are not fresh to where mending had moved them.
-void moveAsMended(const simplify::Collapsed& before, const Mesh& mended,
+// Moves the vertices that are not fresh to where mending had moved them. Whether there are any.
+bool moveAsMended(const simplify::Collapsed& before, const Mesh& mended,
                   const simplify::Collapsed& now, const std::vector<std::uint8_t>& fresh,
                   Measured& mesh) {
+  bool any = false;
   for (std::size_t i = 0; i < now.vertexOf.size(); ++i) {
     const VertexIndex from = before.vertexOf[i], to = now.vertexOf[i];
     Position& position = mesh.made.mesh.positions[to];
     if (fresh[to] != 0 || position == mended.positions[from]) continue;
     position = mended.positions[from];
     mesh.altered.push_back(to);
+    any = true;
   }
+  return any;
 }
 
 }  // namespace
@@ -365,17 +379,19 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
   simplify::Collapsed collapsed;
   Measured result;
   int undoRounds = 0;
+  bool keepMended = true;
+  std::vector<std::uint8_t> tooFar;  // vertices, in the round before
   for (int round = 1;; ++round) {
     bounds.samples = samples.all();
     simplify::Collapsed next = simplify::collapse(mesh.made.mesh, planes, bounds, job);
-    const bool first = round == 1;
+    const bool anew = round == 1 || !keepMended;
     const std::vector<std::uint8_t> fresh =
-        first ? std::vector<std::uint8_t>() : findFresh(collapsed, result, next);
+        anew ? std::vector<std::uint8_t>() : findFresh(collapsed, result, tooFar, next);
     const Mesh mended = std::move(result.made.mesh);
     rule.tolerance = tolerance * next.looseness;
     certifier.setRule(rule);
     compose(mesh, next, !goal.fixed.empty(), result, job);
-    if (!first) moveAsMended(collapsed, mended, next, fresh, result);
+    const bool kept = !anew && moveAsMended(collapsed, mended, next, fresh, result);
     collapsed = std::move(next);
     const std::size_t count = result.made.mesh.triangleCount();
     if (goal.giveUp > 0 && count >= goal.giveUp) return result;
@@ -388,6 +404,9 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     const bool soft = round < kSoftRounds && !same;
     farBefore = far;
     const std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, goal.triangles > 0);
+    tooFar.assign(faulty.size(), 0);
+    for (const VertexIndex vertex : result.deviation.protruding) tooFar[vertex] = 1;
+    markAround(base, result, far, tooFar);
     bool any = soft && !result.deviation.farPoints.empty();
     if (soft) {
       any |= takeFreedom(collapsed, faulty, shares, bounds.allowed);
@@ -401,6 +420,11 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     }
     any |= stiffen(collapsed, faulty, bounds.turning);
     bounds.before = &collapsed;
+    if (!any && kept && std::find(faulty.begin(), faulty.end(), 1) != faulty.end()) {
+      // Nothing is left to be undone there: it was what mending had moved.
+      keepMended = false;
+      continue;
+    }
     if (!any || (!goal.fixed.empty() && round >= kRoundsBesideFixed)) return result;
   }
 }
