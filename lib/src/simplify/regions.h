@@ -21,8 +21,7 @@ struct Regions {
 enum class Parting : std::uint8_t { Halves, Thirds };
 
 /// Parts the vertices that went into no other across their longest extent, again and again, until
-/// there are at most `most` in a region. Vertices at the ends of a region, by place, are inner if
-/// no neighbour is beyond.
+/// there are at most `most` in a region. Depends on the mesh alone, not on the number of threads.
 [[nodiscard]] Regions makeRegions(const EdgeMesh& mesh, std::size_t most, Parting parting,
                                   base::Job& job);
 
