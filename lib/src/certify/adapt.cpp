@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "certify/pieces.h"
 #include "certify/split_cells.h"
 
 namespace tufa::certify {
@@ -72,6 +73,10 @@ Measured cutAndMeasure(const forest::Base<TreeT>& base, const forest::Forest& fo
                             forbidden);
     split |= splitCells(mesh.meeting, mesh.cut, rule.minLevel, forbidden);
     if (split) continue;
+    if (repair != nullptr && base.topology.cutEdges == 0 &&
+        splitCells(findMisplaced(mesh.made.mesh, job), mesh.cut, rule.minLevel, forbidden)) {
+      continue;
+    }
     adaptive.leaves = cut::collectLeaves(forest, base.topology, merged);
     return mesh;
   }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+
+#include "certify/pieces.h"
 
 namespace tufa::certify {
 namespace {
@@ -10,26 +11,6 @@ namespace {
 using openvdb::Vec3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// For each vertex the least one of its component.
-std::vector<VertexIndex> componentsOf(const Mesh& mesh) {
-  std::vector<VertexIndex> parents(mesh.positions.size());
-  std::iota(parents.begin(), parents.end(), VertexIndex{0});
-  const auto rootOf = [&](VertexIndex i) {
-    while (parents[i] != i) i = parents[i] = parents[parents[i]];
-    return i;
-  };
-  const auto join = [&](const auto& v) {
-    for (const VertexIndex other : v) {
-      const VertexIndex a = rootOf(v[0]), b = rootOf(other);
-      parents[std::max(a, b)] = std::min(a, b);
-    }
-  };
-  for (const Quad& quad : mesh.quads) join(quad.vertices);
-  for (const Triangle& triangle : mesh.triangles) join(triangle.vertices);
-  for (VertexIndex i = 0; i < parents.size(); ++i) parents[i] = rootOf(i);
-  return parents;
-}
 
 struct Component {
   openvdb::BBoxd box;
@@ -58,7 +39,7 @@ template <class TreeT>
 double dropComponents(const forest::Base<TreeT>& base, const cut::CutRule& rule, Measured& mesh,
                       std::vector<Dropped>& dropped) {
   Mesh& own = mesh.made.mesh;
-  const std::vector<VertexIndex> componentOf = componentsOf(own);
+  const std::vector<VertexIndex> componentOf = piecesOf(own);
   std::vector<Component> components(own.positions.size());
   for (const Quad& quad : own.quads) components[componentOf[quad.vertices[0]]].present = true;
   for (const Triangle& t : own.triangles) components[componentOf[t.vertices[0]]].present = true;

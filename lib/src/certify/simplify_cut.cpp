@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/huge_pages.h"
+#include "certify/pieces.h"
 #include "certify/widen.h"
 #include "simplify/collapse.h"
 
@@ -403,7 +404,7 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     const bool same = !far.empty() && far == farBefore && result.deviation.protruding.empty();
     const bool soft = round < kSoftRounds && !same;
     farBefore = far;
-    const std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, goal.triangles > 0);
+    std::vector<std::uint8_t> faulty = findFaulty(base, result, soft, goal.triangles > 0);
     tooFar.assign(faulty.size(), 0);
     for (const VertexIndex vertex : result.deviation.protruding) tooFar[vertex] = 1;
     markAround(base, result, far, tooFar);
@@ -412,11 +413,16 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
       any |= takeFreedom(collapsed, faulty, shares, bounds.allowed);
     }
     bounds.undone.clear();
-    if (!any) {
+    const auto undoFaulty = [&] {
       const int rings = std::max(0, undoRounds - kUndoRounds) / kRoundsPerRing;
       any = undo(collapsed, result.made.mesh, faulty, rings, strikes, bounds.undone);
       keepUndone(collapsed, bounds);
       bounds.onlyRepeat = ++undoRounds > kUndoRounds;
+    };
+    if (!any) undoFaulty();
+    if (!any && repair != nullptr && base.topology.cutEdges == 0) {
+      for (const VertexIndex vertex : findMisplaced(result.made.mesh, job)) faulty[vertex] = 1;
+      undoFaulty();
     }
     any |= stiffen(collapsed, faulty, bounds.turning);
     bounds.before = &collapsed;

@@ -9,7 +9,10 @@
 #include <tufa/lod.h>
 #include <tufa/shapes.h>
 
+#include <cmath>
+
 #include "support/expect_error.h"
+#include "support/fields.h"
 
 namespace tufa {
 namespace {
@@ -45,7 +48,7 @@ void expectPromises(const LodChain& chain) {
     EXPECT_LE(lod.certificate.maxErrorVoxels, lod.tolerance);
     EXPECT_LE(lod.certificate.meanErrorVoxels, lod.certificate.maxErrorVoxels);
     const CheckReport report = check(lod.mesh);
-    EXPECT_TRUE(report.closed && report.manifold && report.oriented);
+    EXPECT_TRUE(report.watertight());
     EXPECT_EQ(report.selfIntersectingPairs, 0u);
     EXPECT_EQ(report.eulerCharacteristic, lod.certificate.eulerCharacteristic);
     if (i == 0) continue;
@@ -133,6 +136,38 @@ openvdb::FloatGrid::Ptr balls() {
   openvdb::tools::csgUnion(*grid, *ball(1.5, openvdb::Vec3f(15, 0, 0)));
   openvdb::tools::csgUnion(*grid, *ball(4, openvdb::Vec3f(0, 15, 0)));
   return grid;
+}
+
+// A ball with a surface of radius 20 voxels, bubbles close inside of it and balls close outside.
+openvdb::FloatGrid::Ptr ballAmongSmallOnes() {
+  constexpr double kRadius = 20, kSmall = 1.3, kGap = 0.9;
+  constexpr int kCount = 60;
+  std::vector<openvdb::Vec3d> centres;
+  for (int i = 0; i < kCount; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kCount;
+    const double turn = i * 2.399963;  // the golden angle
+    const double ring = std::sqrt(1 - z * z);
+    const double from = i % 2 == 0 ? kRadius - kSmall - kGap : kRadius + kSmall + kGap;
+    centres.push_back(openvdb::Vec3d(ring * std::cos(turn), ring * std::sin(turn), z) * from);
+  }
+  const openvdb::CoordBBox box(openvdb::Coord(-28), openvdb::Coord(28));
+  return test::levelSet<openvdb::FloatGrid>(box, 3, [&](const openvdb::Coord& at) {
+    double distance = at.asVec3d().length() - kRadius;
+    for (std::size_t i = 0; i < centres.size(); ++i) {
+      const double own = (at.asVec3d() - centres[i]).length() - kSmall;
+      distance = i % 2 == 0 ? std::max(distance, -own) : std::min(distance, own);
+    }
+    return distance;
+  });
+}
+
+TEST(LodChain, LeavesSmallPiecesOnTheirSideOfALargeOne) {
+  LodOptions options;
+  options.tolerances = {0.1, 1.6, 4};
+  const LodChain chain = buildLods(*ballAmongSmallOnes(), options);
+  ASSERT_EQ(chain.levels.size(), 3u);
+  EXPECT_GT(check(chain.levels[0].mesh).components.size(), 50u);
+  expectPromises(chain);
 }
 
 TEST(LodChain, DropsComponentsSmallerThanTheTolerance) {
