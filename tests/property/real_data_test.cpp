@@ -7,6 +7,7 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <tufa/lod.h>
 #include <tufa/voxelize.h>
 #include <algorithm>
 #include <cctype>
@@ -65,6 +66,23 @@ CheckReport checkTopology(const Mesh& mesh, bool weld = false) {
   return check(mesh, options);
 }
 
+/// What every level of a chain keeps.
+void expectPromises(const LodChain& chain, const ContourReport& report) {
+  const std::size_t pieces =
+      chain.levels.empty() ? 0 : check(chain.levels[0].mesh).components.size();
+  for (std::size_t i = 0; i < chain.levels.size(); ++i) {
+    const Lod& lod = chain.levels[i];
+    SCOPED_TRACE("level " + std::to_string(i));
+    const CheckReport found = check(lod.mesh);
+    EXPECT_EQ(found.watertight(), report.cutEdges == 0);
+    EXPECT_TRUE(found.manifold && found.oriented);
+    EXPECT_EQ(found.selfIntersectingPairs, 0U);
+    EXPECT_LE(lod.certificate.maxErrorVoxels, lod.tolerance);
+    EXPECT_EQ(found.components.size(), pieces);
+    EXPECT_EQ(lod.certificate.eulerCharacteristic, chain.levels[0].certificate.eulerCharacteristic);
+  }
+}
+
 double extentOf(const Mesh& mesh) {
   openvdb::BBoxd box;
   for (const Position& p : mesh.positions) box.expand(openvdb::Vec3d(p.x, p.y, p.z));
@@ -99,6 +117,19 @@ TEST_P(SampleMesh, ComesBackFromItsVolumeAsAManifold) {
     // The surface is off by less than half a voxel, so the volume by less than that times the area.
     EXPECT_NEAR(found.volume, truth.volume, 0.5 * options.voxelSize * truth.area) << voxels;
   }
+}
+
+TEST_P(SampleMesh, HasAChainThatKeepsItsPromises) {
+  const Mesh input = readMesh(path());
+  VoxelizeOptions options;
+  options.voxelSize = extentOf(input) / 60;
+  LodOptions levels;
+  levels.levels = 3;
+  ContourReport report;
+  const LodChain chain = buildLods(*voxelize(input, options), levels, &report);
+  // A plate thinner than a voxel may have no sample inside.
+  EXPECT_EQ(chain.levels.empty(), report.surfaceCells == 0);
+  expectPromises(chain, report);
 }
 
 class SampleVolume : public Sample {};
