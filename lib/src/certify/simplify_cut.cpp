@@ -420,7 +420,9 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
       bounds.onlyRepeat = ++undoRounds > kUndoRounds;
     };
     if (!any) undoFaulty();
-    if (!any && repair != nullptr && base.topology.cutEdges == 0) {
+    // What stays may have no polygons on its other side.
+    const bool closed = goal.fixed.empty() && base.topology.cutEdges == 0;
+    if (!any && repair != nullptr && closed) {
       for (const VertexIndex vertex : findMisplaced(result.made.mesh, job)) faulty[vertex] = 1;
       undoFaulty();
     }
