@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "certify/pieces.h"
 #include "certify/split_cells.h"
+#include "mend/pieces.h"
 
 namespace tufa::certify {
 namespace {
@@ -74,7 +74,7 @@ Measured cutAndMeasure(const forest::Base<TreeT>& base, const forest::Forest& fo
     split |= splitCells(mesh.meeting, mesh.cut, rule.minLevel, forbidden);
     if (split) continue;
     if (repair != nullptr && base.topology.cutEdges == 0 &&
-        splitCells(findMisplaced(mesh.made.mesh, job), mesh.cut, rule.minLevel, forbidden)) {
+        splitCells(mend::findMisplaced(mesh.made.mesh, job), mesh.cut, rule.minLevel, forbidden)) {
       continue;
     }
     adaptive.leaves = cut::collectLeaves(forest, base.topology, merged);

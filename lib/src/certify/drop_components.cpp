@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "certify/pieces.h"
+#include "mend/pieces.h"
 
 namespace tufa::certify {
 namespace {
@@ -39,7 +39,7 @@ template <class TreeT>
 double dropComponents(const forest::Base<TreeT>& base, const cut::CutRule& rule, Measured& mesh,
                       std::vector<Dropped>& dropped) {
   Mesh& own = mesh.made.mesh;
-  const std::vector<VertexIndex> componentOf = piecesOf(own);
+  const std::vector<VertexIndex> componentOf = mend::piecesOf(own);
   std::vector<Component> components(own.positions.size());
   for (const Quad& quad : own.quads) components[componentOf[quad.vertices[0]]].present = true;
   for (const Triangle& t : own.triangles) components[componentOf[t.vertices[0]]].present = true;

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "base/huge_pages.h"
-#include "certify/pieces.h"
 #include "certify/widen.h"
+#include "mend/pieces.h"
 #include "simplify/collapse.h"
 
 namespace tufa::certify {
@@ -423,7 +423,8 @@ Measured simplifyCut(const forest::Base<TreeT>& base, const Measured& mesh, cut:
     // What stays may have no polygons on its other side.
     const bool closed = goal.fixed.empty() && base.topology.cutEdges == 0;
     if (!any && repair != nullptr && closed) {
-      for (const VertexIndex vertex : findMisplaced(result.made.mesh, job)) faulty[vertex] = 1;
+      for (const VertexIndex vertex : mend::findMisplaced(result.made.mesh, job))
+        faulty[vertex] = 1;
       undoFaulty();
     }
     any |= stiffen(collapsed, faulty, bounds.turning);

@@ -10,11 +10,15 @@
 #include "creases/promote.h"
 #include "level0/lone_samples.h"
 #include "level0/with_grid.h"
+#include "mend/pieces.h"
 #include "polygons/suspects.h"
 #include "vertices/place_vertices.h"
 
 namespace tufa::level0 {
 namespace {
+
+// So often pieces that were passed by another one are put back.
+constexpr int kMostReturns = 3;
 
 // The lowest corner of all blocks: a grid that is moved by whole blocks keeps it in its place.
 template <class TreeT>
@@ -149,17 +153,51 @@ void Level0<TreeT>::repair(base::Job& job) {
   // Rounding moves each of two polygons.
   const double margin = 2 * kMostRounding * affine_.leastHeight();
   suspects_ = polygons::findSuspects(quads(), mesh_, margin, job);
+  mendSuspects(job);
+  for (int i = 0; i < kMostReturns && putBackPieces(job); ++i) mendSuspects(job);
+}
+
+template <class TreeT>
+void Level0<TreeT>::mendSuspects(base::Job& job) {
   mend::Source own = source(job);
   own.crossings = nullptr;  // a forest has no place for the centres of fans
   const mend::MendReport mended = mend::mend(mesh_, suspects_, own, job);
-  std::vector<std::uint32_t> all;
-  std::set_union(suspects_.begin(), suspects_.end(), mended.changed.begin(), mended.changed.end(),
-                 std::back_inserter(all));
-  suspects_ = std::move(all);
-  report_.intersectionsFound = mended.pairsFound;
+  addSuspects(mended.changed);
+  report_.intersectionsFound = std::max(report_.intersectionsFound, mended.pairsFound);
   report_.intersectionsLeft = mended.left.size();
   report_.movedVertices += mended.movedVertices;
-  report_.turnedQuads = mended.turnedQuads;
+  report_.turnedQuads += mended.turnedQuads;
+}
+
+// Vertices that a crease or mending drew out of their cells may have passed small pieces: these and
+// what is beside them goes back into its cells. Whether there are any.
+template <class TreeT>
+bool Level0<TreeT>::putBackPieces(base::Job& job) {
+  if (sides_.sharpCount() == 0 || topology_.cutEdges > 0 || blocks_.isPart()) return false;
+  const std::vector<VertexIndex> misplaced = mend::findMisplaced(mesh_, job);
+  if (misplaced.empty()) return false;
+  const std::vector<Position> havens = source(job).massPoints(misplaced);
+  for (std::size_t i = 0; i < misplaced.size(); ++i) mesh_.positions[misplaced[i]] = havens[i];
+  report_.movedVertices += misplaced.size();
+  std::vector<mend::PolygonIndex> around;
+  for (std::uint32_t i = 0; i < mesh_.quads.size(); ++i) {
+    const auto& v = mesh_.quads[i].vertices;
+    if (std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
+          return std::binary_search(misplaced.begin(), misplaced.end(), vertex);
+        })) {
+      around.push_back(i);
+    }
+  }
+  addSuspects(around);
+  return true;
+}
+
+template <class TreeT>
+void Level0<TreeT>::addSuspects(const std::vector<mend::PolygonIndex>& polygons) {
+  std::vector<std::uint32_t> all;
+  std::set_union(suspects_.begin(), suspects_.end(), polygons.begin(), polygons.end(),
+                 std::back_inserter(all));
+  suspects_ = std::move(all);
 }
 
 template class Level0<openvdb::FloatTree>;

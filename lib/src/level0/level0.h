@@ -68,6 +68,9 @@ class Level0 {
  private:
   void makeMesh(const ContourOptions& options, const StageEnds& ends, base::Job& job);
   void repair(base::Job& job);
+  void mendSuspects(base::Job& job);
+  bool putBackPieces(base::Job& job);
+  void addSuspects(const std::vector<mend::PolygonIndex>& polygons);
 
   blocks::IsoChoice iso_;
   blocks::Blocks<TreeT> blocks_;

@@ -6,6 +6,7 @@
 #include <tufa/shapes.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "creases/promote.h"
 #include "level0/lone_samples.h"
 #include "polygons/suspects.h"
+#include "support/fields.h"
 #include "vertices/place_vertices.h"
 
 namespace tufa {
@@ -229,6 +231,32 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   EXPECT_FALSE(check(mesh).outward);
   EXPECT_EQ(level0::unfoldLonePieces(mesh, source, job), 8U);
   EXPECT_EQ(mesh.positions, good.positions);
+}
+
+// A ring from which a thin shell is taken away leaves bubbles less than a voxel wide beside
+// creases.
+TEST(SmallPieces, StayOnTheirSideOfCreases) {
+  const openvdb::Vec3d ring(15.9290, 18.5124, -4.27051), ball(11.8012, 14.1504, 2.24806);
+  const openvdb::CoordBBox box(openvdb::Coord(-20, -20, -16), openvdb::Coord(50, 50, 14));
+  const auto grid = test::levelSet<openvdb::FloatGrid>(box, 3, [&](const openvdb::Coord& at) {
+    const openvdb::Vec3d from = at.asVec3d() - ring;
+    const double tube = std::hypot(std::hypot(from[0], from[1]) - 19.9708, from[2]) - 4;
+    const double shell = std::abs((at.asVec3d() - ball).length() - 21.8364) - 1;
+    // Cut off by a cube, too.
+    double distance = std::max(tube, -shell);
+    for (int axis = 0; axis < 3; ++axis) {
+      distance = std::max(distance, std::abs(static_cast<double>(at[axis])) - 41);
+    }
+    return distance;
+  });
+  ContourOptions options;
+  options.uniform = true;
+  const CheckReport report = check(contour(*grid, options));
+  EXPECT_GT(report.components.size(), 1U);
+  EXPECT_TRUE(report.watertight());
+  EXPECT_EQ(report.selfIntersectingPairs, 0U);
+  options.repair = false;
+  EXPECT_FALSE(check(contour(*grid, options)).watertight()) << "is no example any more";
 }
 
 // What findSuspects() promises: every pair has a suspect.

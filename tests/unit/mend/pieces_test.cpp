@@ -1,8 +1,8 @@
-#include "certify/pieces.h"
+#include "mend/pieces.h"
 
 #include <gtest/gtest.h>
 
-namespace tufa::certify {
+namespace tufa::mend {
 namespace {
 
 // Adds a tetrahedron that faces outward, or inward.
@@ -81,4 +81,4 @@ TEST(Misplaced, AreFoundWhereRaysPassThroughVertices) {
 }
 
 }  // namespace
-}  // namespace tufa::certify
+}  // namespace tufa::mend

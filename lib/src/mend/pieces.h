@@ -5,14 +5,15 @@
 
 #include "base/job.h"
 
-namespace tufa::certify {
+namespace tufa::mend {
 
 /// For each vertex the least one of its connected piece of surface.
 [[nodiscard]] std::vector<VertexIndex> piecesOf(const Mesh& mesh);
 
 /// Vertices of the pieces of a closed mesh that lie on the wrong side of another one, which face
 /// outward inside a solid or inward outside of all, and of the polygons of other pieces that are
-/// nearest to them; sorted. A coarse surface may have passed a small piece without meeting it.
+/// nearest to them; sorted. A surface that was moved may have passed a small piece without meeting
+/// it. Pieces that meet others are not named.
 [[nodiscard]] std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job);
 
-}  // namespace tufa::certify
+}  // namespace tufa::mend
