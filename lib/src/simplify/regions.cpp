@@ -42,17 +42,15 @@ void part(const EdgeMesh& mesh, std::span<VertexIndex> vertices, std::size_t mos
                      const double x = mesh.point(a)[axis], y = mesh.point(b)[axis];
                      return x < y || (x == y && mesh.isBefore(a, b));
                    });
-  const auto partBoth = [&](auto& behind) {
-    part(mesh, vertices.first(first), most, parting, regions);
-    part(mesh, vertices.subspan(first), most, parting, behind);
-  };
+  const std::span<VertexIndex> before = vertices.first(first), rest = vertices.subspan(first);
   if (vertices.size() < kWorthAThread) {
-    partBoth(regions);
+    part(mesh, before, most, parting, regions);
+    part(mesh, rest, most, parting, regions);
     return;
   }
   std::vector<std::span<VertexIndex>> behind;
-  base::runBoth([&] { part(mesh, vertices.first(first), most, parting, regions); },
-                [&] { part(mesh, vertices.subspan(first), most, parting, behind); });
+  base::runBoth([&] { part(mesh, before, most, parting, regions); },
+                [&] { part(mesh, rest, most, parting, behind); });
   regions.insert(regions.end(), behind.begin(), behind.end());
 }
 
