@@ -1,6 +1,7 @@
 #include "mend/pieces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -155,11 +156,16 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
     return misplaced;
   }
   const Pieces pieces(mesh, names, job);
-  // Vertices that no polygon uses are pieces without volume.
+  // Vertices that no polygon uses are pieces without volume. The piece with the largest lies in no
+  // other one.
   const std::vector<double> volumes = pieces.volumes();
+  const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const double outermost = *std::max_element(volumes.begin(), volumes.end(), isSmaller);
   const auto isWrong = [&](std::size_t vertex) {
     const double volume = volumes[names[vertex]];
-    return volume != 0 && pieces.isInside(static_cast<VertexIndex>(vertex)) != (volume < 0);
+    if (volume == 0) return false;
+    const bool isHole = (volume < 0) != (outermost < 0);
+    return pieces.isInside(static_cast<VertexIndex>(vertex)) != isHole;
   };
   std::vector<std::uint8_t> wrong(names.size(), 0);
   job.forRanges(names.size(), 1024, [&](std::size_t begin, std::size_t end) {

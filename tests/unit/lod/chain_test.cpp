@@ -170,6 +170,28 @@ TEST(LodChain, LeavesSmallPiecesOnTheirSideOfALargeOne) {
   expectPromises(chain);
 }
 
+TEST(LodChain, HasAboutAsManyTrianglesInsideOutOrMirrored) {
+  const auto grid = ballAmongSmallOnes();
+  LodOptions options;
+  options.tolerances = {0.1, 1.6};
+  const LodChain usual = buildLods(*grid, options);
+  options.contour.inside = Inside::Above;
+  const LodChain turned = buildLods(*grid, options);
+  options.contour.inside = Inside::Auto;
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(1));
+  grid->transform().postScale(openvdb::Vec3d(-1, 1, 1));
+  const LodChain mirrored = buildLods(*grid, options);
+  expectPromises(mirrored);
+  for (const LodChain* other : {&turned, &mirrored}) {
+    ASSERT_EQ(other->levels.size(), usual.levels.size());
+    for (std::size_t i = 0; i < usual.levels.size(); ++i) {
+      const auto count = static_cast<double>(usual.levels[i].mesh.triangleCount());
+      EXPECT_NEAR(static_cast<double>(other->levels[i].mesh.triangleCount()), count, 0.25 * count)
+          << i;
+    }
+  }
+}
+
 TEST(LodChain, DropsComponentsSmallerThanTheTolerance) {
   LodOptions options;
   options.tolerances = {0.1, 2, 8, 20};

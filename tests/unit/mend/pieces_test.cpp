@@ -68,6 +68,17 @@ TEST(Misplaced, AreBubblesOutsideOfAll) {
   EXPECT_EQ(misplaced(mesh).size(), 4u + 3u);
 }
 
+// A solid without end around cavities, or a mirrored space.
+TEST(Misplaced, AreToldByTheLargestPiece) {
+  Mesh mesh;
+  addTetrahedron(mesh, {0, 0, 0}, 1, false);
+  addTetrahedron(mesh, {9, 0, 0}, 2, false);
+  addTetrahedron(mesh, {9.2, 0.2, 0.2}, 0.5);
+  EXPECT_EQ(misplaced(mesh), Vertices());
+  addTetrahedron(mesh, {-9, 0.1, 0.1}, 0.2);  // nearest to the triangle at x = 0
+  EXPECT_EQ(misplaced(mesh), (Vertices{0, 2, 3, 12, 13, 14, 15}));
+}
+
 // Above each of its vertices is a vertex or an edge of the larger ones.
 TEST(Misplaced, AreFoundWhereRaysPassThroughVertices) {
   Mesh mesh;
