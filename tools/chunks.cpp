@@ -49,7 +49,7 @@ struct ChunksRun {
   double writeSeconds = 0;
 };
 
-openvdb::Coord readIndex(const std::string& text) {
+tufa::Coord readIndex(const std::string& text) {
   const std::vector<std::string> words = CLI::detail::split(text, ',');
   std::vector<std::int32_t> index;
   for (const std::string& word : words) {
@@ -93,7 +93,7 @@ void keepOthers(ChunkIndex& index, const std::string& folder) {
     throw Error(ErrorCode::InvalidArgument,
                 folder + " holds chunks of another volume or of other options");
   }
-  std::map<openvdb::Coord, ChunkEntry> chunks;
+  std::map<tufa::Coord, ChunkEntry> chunks;
   for (const std::vector<ChunkEntry>* entries : {&before.chunks, &std::as_const(index.chunks)}) {
     for (const ChunkEntry& chunk : *entries) chunks.insert_or_assign(chunk.index, chunk);
   }
@@ -109,7 +109,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   requireVoxels(*grid, arguments.input);
   const ChunkOptions options = chunkOptions(arguments, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
-  std::map<openvdb::Coord, std::vector<std::string>> files;
+  std::map<tufa::Coord, std::vector<std::string>> files;
   const ChunkSink sink = [&](const ChunkIndex& index, Chunk&& chunk) {
     run.writeSeconds += timed([&] {
       makeFolder(arguments.output);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/openvdb_templates.h"
+#include "grid/openvdb_templates.h"
 #include "fuzz.h"
 #include "support/mesh_oracle.h"
 

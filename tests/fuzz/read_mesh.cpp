@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fuzz.h"
-#include "io/mesh_readers.h"
+#include "io/mesh/mesh_readers.h"
 #include "memory_file.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

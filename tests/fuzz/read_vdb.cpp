@@ -5,7 +5,7 @@
 #include <tufa/io.h>
 #include <new>
 
-#include "base/openvdb_templates.h"
+#include "grid/openvdb_templates.h"
 #include "fuzz.h"
 #include "memory_file.h"
 

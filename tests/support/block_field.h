@@ -3,9 +3,9 @@
 #include <openvdb/openvdb.h>
 
 #include "base/job.h"
-#include "blocks/blocks.h"
-#include "blocks/field.h"
-#include "blocks/samples.h"
+#include "grid/blocks.h"
+#include "grid/field.h"
+#include "grid/samples.h"
 #include "support/fields.h"
 
 namespace tufa::test {
@@ -17,28 +17,28 @@ class BlockField {
  public:
   using Tree = typename GridT::TreeType;
 
-  explicit BlockField(typename GridT::Ptr grid, blocks::IsoChoice iso = {})
+  explicit BlockField(typename GridT::Ptr grid, grid::IsoChoice iso = {})
       : grid_(std::move(grid)),
         job_(1, {}),
         blocks_(grid_->tree(), iso, NonFinite::Refuse, job_),
-        scale_(blocks::readFieldScale(*grid_, iso)) {
-    typename blocks::Blocks<Tree>::Accessor accessor(grid_->tree());
-    const blocks::BlockRef block = blocks_.find(openvdb::Coord(0), accessor);
+        scale_(grid::readFieldScale(*grid_, iso)) {
+    typename grid::Blocks<Tree>::Accessor accessor(grid_->tree());
+    const grid::BlockRef block = blocks_.find(openvdb::Coord(0), accessor);
     samples_.gather(blocks_, scale_, block, blocks_.neighbours(block, accessor), accessor);
   }
 
   [[nodiscard]] const GridT& grid() const { return *grid_; }
-  [[nodiscard]] const blocks::Blocks<Tree>& blocks() const { return blocks_; }
-  [[nodiscard]] const blocks::FieldScale& scale() const { return scale_; }
-  [[nodiscard]] const blocks::BlockSamples& samples() const { return samples_; }
+  [[nodiscard]] const grid::Blocks<Tree>& blocks() const { return blocks_; }
+  [[nodiscard]] const grid::FieldScale& scale() const { return scale_; }
+  [[nodiscard]] const grid::BlockSamples& samples() const { return samples_; }
   [[nodiscard]] base::Job& job() { return job_; }
 
  private:
   typename GridT::Ptr grid_;
   base::Job job_;
-  blocks::Blocks<Tree> blocks_;
-  blocks::FieldScale scale_;
-  blocks::BlockSamples samples_;
+  grid::Blocks<Tree> blocks_;
+  grid::FieldScale scale_;
+  grid::BlockSamples samples_;
 };
 
 /// A level set around the block at the origin, of a distance given in index space.

@@ -6,8 +6,8 @@
 #include <compare>
 #include <vector>
 
-#include "blocks/blocks.h"
-#include "components/topology.h"
+#include "grid/blocks.h"
+#include "uniform/cell_topology.h"
 
 namespace tufa::test {
 
@@ -29,11 +29,11 @@ inline openvdb::Coord upperEnd(const LatticeEdge& edge) {
 
 /// The crossed edges that start in a window, sample by sample.
 template <class TreeT>
-std::vector<LatticeEdge> crossedEdgesOf(const TreeT& tree, const blocks::IsoChoice& iso,
+std::vector<LatticeEdge> crossedEdgesOf(const TreeT& tree, const grid::IsoChoice& iso,
                                         const openvdb::CoordBBox& window) {
   openvdb::tree::ValueAccessor<const TreeT> accessor(tree);
   const auto inside = [&](const openvdb::Coord& at) {
-    return blocks::isInside(accessor.getValue(at), iso);
+    return grid::isInside(accessor.getValue(at), iso);
   };
   std::vector<LatticeEdge> edges;
   for (auto at = window.begin(); at; ++at) {
@@ -48,16 +48,16 @@ std::vector<LatticeEdge> crossedEdgesOf(const TreeT& tree, const blocks::IsoChoi
 
 /// The crossed edges that start in a window, as the blocks have them.
 template <class TreeT>
-std::vector<LatticeEdge> crossedEdgesOf(const blocks::Blocks<TreeT>& blocks,
+std::vector<LatticeEdge> crossedEdgesOf(const grid::Blocks<TreeT>& blocks,
                                         const openvdb::CoordBBox& window) {
-  typename blocks::Blocks<TreeT>::Accessor accessor(blocks.tree());
+  typename grid::Blocks<TreeT>::Accessor accessor(blocks.tree());
   std::vector<LatticeEdge> edges;
   for (std::size_t i = 0; i < blocks.count(); ++i) {
-    const auto block = static_cast<blocks::BlockRef>(i);
+    const auto block = static_cast<grid::BlockRef>(i);
     const auto corners = blocks.cornerWords(blocks.upperNeighbours(block, accessor));
-    for (int cell = 0; cell < blocks::kBlockCells; ++cell) {
+    for (int cell = 0; cell < grid::kBlockCells; ++cell) {
       const openvdb::Coord at = blocks.origin(block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
-      const auto crossed = components::crossedEdges(corners, cell >> 6);
+      const auto crossed = uniform::crossedEdges(corners, cell >> 6);
       for (int axis = 0; axis < 3; ++axis) {
         if (((crossed[axis] >> (cell & 63)) & 1) == 0) continue;
         if (window.isInside(at)) edges.push_back({at, axis});

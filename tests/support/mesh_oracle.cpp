@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/openvdb_templates.h"
+#include "grid/openvdb_templates.h"
 
 namespace tufa::test {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/openvdb_templates.h"
+#include "grid/openvdb_templates.h"
 
 // What tests make beside what the library compiles.
 TUFA_TREE_IS_ELSEWHERE(BoolTree);

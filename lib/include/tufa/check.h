@@ -1,9 +1,8 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <tufa/export.h>
 #include <tufa/mesh.h>
+#include <tufa/openvdb_fwd.h>
 #include <tufa/progress.h>
 #include <cstddef>
 #include <optional>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <tufa/contour.h>
+#include <tufa/coord.h>
 #include <tufa/export.h>
 #include <tufa/lod.h>
 #include <tufa/mesh.h>
+#include <tufa/openvdb_fwd.h>
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -28,7 +28,7 @@ struct ChunkOptions {
   int levels = 4;      ///< of each chunk, 1 to 16
   double factor = 4;   ///< each level's tolerance over that of the level before; above 1
   /// The chunks to make; empty: all. A chunk is the same bytes whichever are made with it.
-  std::vector<openvdb::Coord> only;
+  std::vector<Coord> only;
 };
 
 /// A curve in which the surface passes a face of a chunk, as one level of the chunk has it. The
@@ -64,7 +64,7 @@ struct ChunkLevel {
 
 /// A cube of chunkSize voxels along each edge, from index * chunkSize on, that the surface passes.
 struct Chunk {
-  openvdb::Coord index;            ///< in chunks
+  Coord index;                     ///< in chunks
   std::vector<ChunkLevel> levels;  ///< the finest first
 };
 
@@ -84,7 +84,7 @@ struct ChunkLevelEntry {
 
 /// What is known of a chunk without its meshes.
 struct ChunkEntry {
-  openvdb::Coord index;                 ///< in chunks
+  Coord index;                          ///< in chunks
   std::vector<ChunkLevelEntry> levels;  ///< the finest first
 };
 
@@ -101,7 +101,7 @@ struct ChunkIndex {
   std::vector<ChunkEntry> chunks;  ///< sorted by index
 
   /// The place of a chunk in `chunks`, or -1.
-  [[nodiscard]] TUFA_API std::ptrdiff_t find(const openvdb::Coord& index) const;
+  [[nodiscard]] TUFA_API std::ptrdiff_t find(const Coord& index) const;
   /// The place of the chunk beyond a face of a chunk, or -1.
   [[nodiscard]] TUFA_API std::ptrdiff_t neighbour(std::size_t chunk, int face) const;
 };

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <tufa/export.h>
 #include <tufa/mesh.h>
 #include <tufa/octree.h>
+#include <tufa/openvdb_fwd.h>
 #include <tufa/progress.h>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,7 +76,7 @@ struct ContourOptions {
   bool keepLeaves = false;
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
   /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
-  openvdb::FloatGrid::ConstPtr toleranceGrid;
+  std::shared_ptr<const openvdb::GridBase> toleranceGrid;
   /// Look for polygons that pass through each other and mend them: by small moves of vertices,
   /// other diagonals, smaller cells and, rarely, four triangles in place of a quad.
   bool repair = true;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <tufa/export.h>
 #include <tufa/mesh.h>
+#include <tufa/openvdb_fwd.h>
 #include <tufa/progress.h>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -77,11 +77,11 @@ struct GridInfo {
 /// Reads one grid of a .vdb file: by name, or, without one, the first level set that can be meshed,
 /// else the first grid that can be meshed. Throws Error: UnreadableFile, UnknownGrid (the message
 /// lists the names there are), UnsupportedGrid (nothing in the file can be meshed).
-[[nodiscard]] TUFA_API openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
-                                                       const std::optional<std::string>& name = {});
+[[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> readGrid(
+    const std::filesystem::path& path, const std::optional<std::string>& name = {});
 
 /// Writes grids to a .vdb file, whole or not at all. Throws Error(UnwritableFile).
-TUFA_API void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
+TUFA_API void writeGrids(const std::vector<std::shared_ptr<const openvdb::GridBase>>& grids,
                          const std::filesystem::path& path);
 
 }  // namespace tufa

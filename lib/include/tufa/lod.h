@@ -1,10 +1,9 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <tufa/contour.h>
 #include <tufa/export.h>
 #include <tufa/mesh.h>
+#include <tufa/openvdb_fwd.h>
 #include <tufa/progress.h>
 #include <cstddef>
 #include <filesystem>

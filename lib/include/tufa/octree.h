@@ -1,7 +1,7 @@
 #pragma once
 
+#include <tufa/coord.h>
 #include <tufa/export.h>
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,8 +10,8 @@ namespace tufa {
 /// A leaf of the octree behind an adaptive mesh that the surface passes: a cube of 2^level lattice
 /// steps along each edge, aligned to multiples of its size.
 struct LeafCell {
-  std::array<std::int32_t, 3> corner{};  ///< lowest lattice point
-  int level = 0;                         ///< log2 of the size in lattice steps
+  Coord corner;   ///< lowest lattice point
+  int level = 0;  ///< log2 of the size in lattice steps
 };
 
 /// Whether no two leaves that touch, by a face, an edge or a corner, differ by more than one level,

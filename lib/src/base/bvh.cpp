@@ -38,7 +38,7 @@ Bvh::Bvh(std::vector<Box> boxes, Job& job) : items_(boxes.size()), boxes_(boxes.
   if (boxes.empty()) return;
   Box all = Box::empty();
   for (const Box& box : boxes) all.add(box);
-  const openvdb::Vec3d size = all.upper - all.lower;
+  const Vec3 size = all.upper - all.lower;
   const double largest = std::max({size[0], size[1], size[2]});
   const double scale = largest > 0 ? 2097151.0 / largest : 0;
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -10,43 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/box.h"
 #include "base/job.h"
+#include "base/vec3.h"
 
 namespace tufa::base {
-
-/// An axis-aligned box with its faces.
-struct Box {
-  openvdb::Vec3d lower;
-  openvdb::Vec3d upper;
-
-  /// A box that holds nothing and grows from the first point.
-  static Box empty() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return {openvdb::Vec3d(kInfinity), openvdb::Vec3d(-kInfinity)};
-  }
-  void add(const openvdb::Vec3d& point) {
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], point[axis]);
-      upper[axis] = std::max(upper[axis], point[axis]);
-    }
-  }
-  void add(const Box& other) {
-    add(other.lower);
-    add(other.upper);
-  }
-  [[nodiscard]] bool meets(const Box& other) const {
-    return lower[0] <= other.upper[0] && other.lower[0] <= upper[0] && lower[1] <= other.upper[1] &&
-           other.lower[1] <= upper[1] && lower[2] <= other.upper[2] && other.lower[2] <= upper[2];
-  }
-  [[nodiscard]] double distanceSquared(const openvdb::Vec3d& point) const {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double d = std::max({lower[axis] - point[axis], point[axis] - upper[axis], 0.0});
-      sum += d * d;
-    }
-    return sum;
-  }
-};
 
 /// A binary tree of boxes over any items that have boxes. Built from the Morton order of their
 /// centres, so building is one parallel sort and one pass; the same for any number of threads.
@@ -96,7 +62,7 @@ class Bvh {
 
   /// Calls visit(item) for each item whose box is met by the ray from `point` towards +z.
   template <class Visit>
-  void itemsAbove(const openvdb::Vec3d& point, const Visit& visit) const {
+  void itemsAbove(const Vec3& point, const Visit& visit) const {
     const auto met = [&](const Box& box) {
       return box.lower[0] <= point[0] && point[0] <= box.upper[0] && box.lower[1] <= point[1] &&
              point[1] <= box.upper[1] && box.upper[2] >= point[2];
@@ -110,7 +76,7 @@ class Bvh {
   /// The item of least distanceSquared(item) among those nearer than `best`; kNone if there is
   /// none. `best` becomes the squared distance found.
   template <class DistanceSquared>
-  std::uint32_t nearest(const openvdb::Vec3d& point, double& best,
+  std::uint32_t nearest(const Vec3& point, double& best,
                         const DistanceSquared& distanceSquared) const {
     std::uint32_t found = kNone;
     if (empty()) return found;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
+#include <tufa/coord.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -19,17 +19,15 @@ class CoordTable {
   /// Forgets all, and makes room for so many coordinates and no more.
   void reserve(std::size_t count);
   /// Numbers coordinates that have no number yet. Returns the number that they have then.
-  std::uint32_t tryEmplace(const openvdb::Coord& at, std::uint32_t number);
-  [[nodiscard]] std::uint32_t find(const openvdb::Coord& at) const {
-    return entries_[slotOf(at)].number;
-  }
+  std::uint32_t tryEmplace(const Coord& at, std::uint32_t number);
+  [[nodiscard]] std::uint32_t find(const Coord& at) const { return entries_[slotOf(at)].number; }
 
  private:
   struct Entry {
-    openvdb::Coord at;
+    Coord at;
     std::uint32_t number = kNone;
   };
-  [[nodiscard]] std::size_t slotOf(const openvdb::Coord& at) const;
+  [[nodiscard]] std::size_t slotOf(const Coord& at) const;
 
   std::vector<Entry> entries_;  ///< open addressing; a power of two, at most half full
 };

@@ -10,18 +10,17 @@
 #include <vector>
 
 #include "base/job.h"
-#include "blocks/isovalue.h"
-#include "check/frame.h"
-#include "check/iso_samples.h"
 #include "check/sum_ranges.h"
 #include "check/surface_distance.h"
 #include "check/triangle_soup.h"
+#include "grid/isosurface.h"
+#include "grid/isovalue.h"
+#include "grid/voxel_frame.h"
 
 namespace tufa {
 namespace {
 
 using base::Bvh;
-using openvdb::Vec3d;
 
 constexpr std::size_t kGrain = 1024;
 
@@ -56,9 +55,9 @@ struct Tally {
 template <class Measure>
 void sampleTriangle(const checks::TriangleSoup& soup, const Triangle& triangle, int perEdge,
                     const Measure& measure) {
-  const Vec3d& a = soup.point(triangle.vertices[0]);
-  const Vec3d& b = soup.point(triangle.vertices[1]);
-  const Vec3d& c = soup.point(triangle.vertices[2]);
+  const Vec3& a = soup.point(triangle.vertices[0]);
+  const Vec3& b = soup.point(triangle.vertices[1]);
+  const Vec3& c = soup.point(triangle.vertices[2]);
   measure((a + b + c) / 3);
   const int steps = perEdge - 1;
   for (int i = 0; i <= steps; ++i) {
@@ -82,7 +81,7 @@ std::vector<VertexIndex> usedVertices(const checks::TriangleSoup& soup, std::siz
   return used;
 }
 
-Tally measureToMesh(const checks::TriangleSoup& soup, const std::vector<Vec3d>& points,
+Tally measureToMesh(const checks::TriangleSoup& soup, const std::vector<Vec3>& points,
                     base::Job& job) {
   return checks::sumRanges<Tally>(job, points.size(), kGrain,
                                   [&](std::size_t begin, std::size_t end) {
@@ -94,17 +93,17 @@ Tally measureToMesh(const checks::TriangleSoup& soup, const std::vector<Vec3d>& 
                                   });
 }
 
-template <class GridT>
-DistanceReport measure(const Mesh& mesh, const GridT& grid, const DistanceOptions& options,
-                       base::Job& job) {
-  const checks::Frame frame(grid);
-  const blocks::IsoChoice iso = blocks::chooseIsovalue(grid, options.isovalue, Inside::Auto);
+DistanceReport measure(const Mesh& mesh, const openvdb::GridBase& grid,
+                       const DistanceOptions& options, base::Job& job) {
+  const grid::VoxelFrame frame(grid);
+  const grid::IsoChoice iso = grid::chooseIsovalue(grid, options.isovalue, Inside::Auto);
   DistanceReport report;
   report.isovalue = iso.isovalue;
   report.voxelSize = frame.voxelSize();
 
   job.beginStage("isosurface samples", 0.1);
-  std::vector<Vec3d> points = checks::sampleIsosurface(grid, frame, iso, job);
+  const auto surface = grid::isosurfaceOf(grid, frame, iso);
+  std::vector<Vec3> points = surface->samples(job);
   job.beginStage("mesh tree", 0.2);
   const checks::TriangleSoup soup(mesh, frame, job);
   job.beginStage("surface to mesh", 0.45);
@@ -112,16 +111,14 @@ DistanceReport measure(const Mesh& mesh, const GridT& grid, const DistanceOption
 
   job.beginStage("sample tree", 0.5);
   std::vector<base::Box> boxes(points.size());
-  std::transform(points.begin(), points.end(), boxes.begin(), [](const Vec3d& p) {
+  std::transform(points.begin(), points.end(), boxes.begin(), [](const Vec3& p) {
     return base::Box{p, p};
   });
   Bvh tree(std::move(boxes), job);
   const checks::PointCloud cloud{std::move(points), std::move(tree)};
 
-  using Distance = checks::SurfaceDistance<GridT>;
-  const auto newDistance = [&] {
-    return Distance(checks::TrilinearField<GridT>(grid, frame, iso), cloud);
-  };
+  using Distance = checks::SurfaceDistance;
+  const auto newDistance = [&] { return Distance(surface->field(), cloud); };
   job.beginStage("vertices to surface", 0.6);
   const std::vector<VertexIndex> vertices = usedVertices(soup, mesh.positions.size());
   Tally tally = checks::sumRanges<Tally>(job, vertices.size(), kGrain,
@@ -139,25 +136,12 @@ DistanceReport measure(const Mesh& mesh, const GridT& grid, const DistanceOption
         Distance distance = newDistance();
         for (std::size_t t = begin; t < end; ++t) {
           sampleTriangle(soup, soup.triangles()[t], options.samplesPerEdge,
-                         [&](const Vec3d& point) { part.add(distance(point)); });
+                         [&](const Vec3& point) { part.add(distance(point)); });
         }
         return part;
       });
   report.meshToSurface = tally.summary();
   return report;
-}
-
-DistanceReport measureAnyGrid(const Mesh& mesh, const openvdb::GridBase& grid,
-                              const DistanceOptions& options, base::Job& job) {
-  if (grid.isType<openvdb::FloatGrid>()) {
-    return measure(mesh, static_cast<const openvdb::FloatGrid&>(grid), options, job);
-  }
-  if (grid.isType<openvdb::DoubleGrid>()) {
-    return measure(mesh, static_cast<const openvdb::DoubleGrid&>(grid), options, job);
-  }
-  throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() + "\" holds values of type " +
-                                              grid.valueType() +
-                                              "; only float and double grids have an isosurface");
 }
 
 }  // namespace
@@ -172,7 +156,7 @@ DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
   }
   base::Job job(options.threads, options.progress);
   DistanceReport report;
-  job.run([&] { report = measureAnyGrid(mesh, grid, options, job); });
+  job.run([&] { report = measure(mesh, grid, options, job); });
   job.finish();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
@@ -181,7 +165,7 @@ DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
 std::vector<double> distancesTo(const Mesh& mesh, const std::vector<Position>& points,
                                 const DistanceOptions& options) {
   // A grid without a transform of its own makes voxels of the world's units.
-  const checks::Frame frame(*openvdb::FloatGrid::create());
+  const grid::VoxelFrame frame;
   base::Job job(options.threads, options.progress);
   std::vector<double> distances(points.size());
   job.run([&] {

@@ -1,6 +1,5 @@
 #include "check/measures.h"
-
-#include <openvdb/openvdb.h>
+#include "base/vec3.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +9,6 @@
 
 namespace tufa::checks {
 namespace {
-
-using openvdb::Vec3d;
-
-Vec3d toVector(const Position& p) { return {p.x, p.y, p.z}; }
 
 /// Running totals over faces.
 struct Totals {
@@ -33,11 +28,11 @@ struct Totals {
 
 /// The angle between two vectors, in radians. The arc tangent keeps its digits where the arc cosine
 /// loses them, at angles near 0.
-double angleBetween(const Vec3d& a, const Vec3d& b) {
+double angleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).length(), a.dot(b));
 }
 
-void addFace(const Vec3d& a, const Vec3d& b, const Vec3d& c, Totals& totals) {
+void addFace(const Vec3& a, const Vec3& b, const Vec3& c, Totals& totals) {
   constexpr double kSharp = 10 * std::numbers::pi / 180;
   totals.twiceArea += (b - a).cross(c - a).length();
   totals.sixVolumes += a.dot(b.cross(c));
@@ -53,9 +48,9 @@ void measure(const Faces& faces, base::Job& job, CheckReport& report) {
   const std::size_t counted = faces.proper.size() + faces.collapsedCount;
   if (counted == 0) return;
   // Volumes are taken about a vertex of the mesh: far from the world's origin they would cancel.
-  const Vec3d origin =
-      faces.proper.empty() ? Vec3d(0) : toVector(faces.positions[faces.proper[0].vertices[0]]);
-  const auto corner = [&](VertexIndex v) { return toVector(faces.positions[v]) - origin; };
+  const Vec3 origin =
+      faces.proper.empty() ? Vec3(0) : Vec3(faces.positions[faces.proper[0].vertices[0]]);
+  const auto corner = [&](VertexIndex v) { return Vec3(faces.positions[v]) - origin; };
   const auto totals =
       sumRanges<Totals>(job, faces.proper.size(), 4096, [&](std::size_t begin, std::size_t end) {
         Totals part;

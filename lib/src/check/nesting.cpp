@@ -12,10 +12,6 @@
 namespace tufa::checks {
 namespace {
 
-using openvdb::Vec3d;
-
-Vec3d toVector(const Position& p) { return {p.x, p.y, p.z}; }
-
 /// Rays to settle by majority whether a piece lies in a hole; odd, so that there is one.
 constexpr std::size_t kMostRays = 33;
 
@@ -48,10 +44,10 @@ std::vector<double> pieceVolumes(const Faces& faces, const Pieces& pieces, const
   std::vector<double> volumes(pieces.count);
   for (const Triangle& face : faces.proper) {
     const VertexIndex piece = pieces.ofVertex[face.vertices[0]];
-    const Vec3d origin = toVector(faces.positions[members.of(piece).front()]);
-    const Vec3d a = toVector(faces.positions[face.vertices[0]]) - origin;
-    const Vec3d b = toVector(faces.positions[face.vertices[1]]) - origin;
-    const Vec3d c = toVector(faces.positions[face.vertices[2]]) - origin;
+    const Vec3 origin = Vec3(faces.positions[members.of(piece).front()]);
+    const Vec3 a = Vec3(faces.positions[face.vertices[0]]) - origin;
+    const Vec3 b = Vec3(faces.positions[face.vertices[1]]) - origin;
+    const Vec3 c = Vec3(faces.positions[face.vertices[2]]) - origin;
     volumes[piece] += a.dot(b.cross(c));
   }
   return volumes;
@@ -61,7 +57,7 @@ std::vector<double> pieceVolumes(const Faces& faces, const Pieces& pieces, const
 std::size_t depthOf(VertexIndex vertex, const Faces& faces, const Pieces& pieces, const Bvh& tree) {
   const Position& from = faces.positions[vertex];
   std::vector<VertexIndex> crossed;
-  tree.itemsAbove(toVector(from), [&](std::uint32_t item) {
+  tree.itemsAbove(Vec3(from), [&](std::uint32_t item) {
     const Triangle& face = faces.solid()[item];
     const VertexIndex piece = pieces.ofVertex[face.vertices[0]];
     if (piece != pieces.ofVertex[vertex] && liesAbove(faces.positions, face, from)) {

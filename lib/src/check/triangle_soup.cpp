@@ -9,10 +9,8 @@
 namespace tufa::checks {
 namespace {
 
-using openvdb::Vec3d;
-
-std::vector<Vec3d> pointsOf(const Mesh& mesh, const Frame& frame) {
-  std::vector<Vec3d> points(mesh.positions.size());
+std::vector<Vec3> pointsOf(const Mesh& mesh, const grid::VoxelFrame& frame) {
+  std::vector<Vec3> points(mesh.positions.size());
   std::transform(mesh.positions.begin(), mesh.positions.end(), points.begin(),
                  [&](const Position& p) { return frame.fromWorld(p); });
   return points;
@@ -24,17 +22,17 @@ std::vector<Triangle> validTriangles(const Mesh& mesh) {
   return triangles;
 }
 
-double segmentDistanceSquared(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
-  const Vec3d along = b - a;
-  const double length = along.lengthSqr();
+double segmentDistanceSquared(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double length = along.squaredLength();
   const double t = length > 0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
-  return (p - a - along * t).lengthSqr();
+  return (p - a - along * t).squaredLength();
 }
 
 /// Right for triangles without area too: these are their edges.
-double triangleDistanceSquared(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d normal = (b - a).cross(c - a);
-  const double size = normal.lengthSqr();
+double triangleDistanceSquared(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = (b - a).cross(c - a);
+  const double size = normal.squaredLength();
   const bool beyondAb = (b - a).cross(p - a).dot(normal) < 0;
   const bool beyondBc = (c - b).cross(p - b).dot(normal) < 0;
   const bool beyondCa = (a - c).cross(p - c).dot(normal) < 0;
@@ -51,7 +49,7 @@ double triangleDistanceSquared(const Vec3d& p, const Vec3d& a, const Vec3d& b, c
 
 }  // namespace
 
-TriangleSoup::TriangleSoup(const Mesh& mesh, const Frame& frame, base::Job& job)
+TriangleSoup::TriangleSoup(const Mesh& mesh, const grid::VoxelFrame& frame, base::Job& job)
     : points_(pointsOf(mesh, frame)), triangles_(validTriangles(mesh)), tree_(boxes(job), job) {}
 
 std::vector<Box> TriangleSoup::boxes(base::Job& job) const {
@@ -65,12 +63,12 @@ std::vector<Box> TriangleSoup::boxes(base::Job& job) const {
   return result;
 }
 
-double TriangleSoup::distanceSquared(const Vec3d& from, std::uint32_t triangle) const {
+double TriangleSoup::distanceSquared(const Vec3& from, std::uint32_t triangle) const {
   const auto& v = triangles_[triangle].vertices;
   return triangleDistanceSquared(from, points_[v[0]], points_[v[1]], points_[v[2]]);
 }
 
-double TriangleSoup::distance(const Vec3d& from, std::uint32_t& hint) const {
+double TriangleSoup::distance(const Vec3& from, std::uint32_t& hint) const {
   double best =
       hint == Bvh::kNone ? std::numeric_limits<double>::infinity() : distanceSquared(from, hint);
   const std::uint32_t found = tree_.nearest(

@@ -10,27 +10,28 @@
 #include <utility>
 
 #include "base/bits.h"
+#include "base/box.h"
 #include "base/job.h"
-#include "blocks/blocks.h"
-#include "blocks/field.h"
-#include "chunks/chunk_cells.h"
-#include "chunks/region.h"
-#include "cut/cut_rule.h"
-#include "level0/level0.h"
-#include "level0/with_grid.h"
+#include "base/run_call.h"
+#include "chunks/levels/region.h"
+#include "chunks/seams/chunk_cells.h"
+#include "grid/blocks.h"
+#include "grid/field.h"
+#include "octree/cut_rule.h"
+#include "refine/rounding.h"
+#include "refine/surface_model.h"
 
 namespace tufa {
 namespace {
 
 using chunks::ChunkCells;
-using openvdb::Coord;
 
 // Chunks are made together in regions of at least this many voxels, aligned to their size, so that
 // less is made twice at their borders. Which region a chunk is in depends on its index alone.
 constexpr int kLeastRegion = 128;
 // Around a region two blocks more are read: an ambiguous face depends on no cell more than six
 // away, and a vertex that is moved to a crease on none more than fourteen.
-constexpr int kMargin = 2 * blocks::kBlockSize;
+constexpr int kMargin = 2 * grid::kBlockSize;
 constexpr double kIndexEnd = 0.02;
 // So many regions' chunks are kept at most until those before them are handed out. More would make
 // threads wait less for each other, at the cost of memory.
@@ -54,15 +55,14 @@ void requireOptions(const ChunkOptions& options) {
 }
 
 // Regions that hold blocks, and of these the ones with chunks that are asked for.
-template <class TreeT>
-std::set<Coord> findRegions(const blocks::Blocks<TreeT>& blocks, const ChunkOptions& options,
+std::set<Coord> findRegions(const grid::Blocks& blocks, const ChunkOptions& options,
                             int regionLevel) {
   const auto regionOf = [&](const Coord& voxel) {
     return Coord(voxel[0] >> regionLevel, voxel[1] >> regionLevel, voxel[2] >> regionLevel);
   };
   std::set<Coord> regions;
   for (std::size_t i = 0; i < blocks.count(); ++i) {
-    regions.insert(regionOf(blocks.origin(static_cast<blocks::BlockRef>(i))));
+    regions.insert(regionOf(blocks.origin(static_cast<grid::BlockRef>(i))));
   }
   if (options.only.empty()) return regions;
   std::set<Coord> asked;
@@ -74,46 +74,39 @@ std::set<Coord> findRegions(const blocks::Blocks<TreeT>& blocks, const ChunkOpti
 }
 
 // Whether all positions of the grid may be rounded to floats; the same for every region.
-template <class TreeT>
-bool fitsSinglePrecision(const blocks::Blocks<TreeT>& blocks,
-                         const openvdb::math::Transform& transform) {
+bool fitsSinglePrecision(const grid::Blocks& blocks, const grid::Transform& transform) {
   double largest = 0;
   for (std::size_t i = 0; i < blocks.count(); ++i) {
-    const openvdb::Vec3d corner = blocks.origin(static_cast<blocks::BlockRef>(i)).asVec3d();
+    const Vec3 corner(blocks.origin(static_cast<grid::BlockRef>(i)));
     for (int c = 0; c < 8; ++c) {
-      const openvdb::Vec3d step((c & 4) * 2.0, (c & 2) * 4.0, (c & 1) * 8.0);
-      const openvdb::Vec3d world = transform.indexToWorld(corner + step);
+      const Vec3 step((c & 4) * 2.0, (c & 2) * 4.0, (c & 1) * 8.0);
+      const Vec3 world = transform.indexToWorld(corner + step);
       largest = std::max({largest, std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
     }
   }
   const double rounding = 0.5 * std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * largest;
-  return rounding <= level0::kMostRounding * base::Affine(transform).leastHeight();
+  return rounding <= refine::kMostRounding * grid::Affine(transform).leastHeight();
 }
 
 // The middle of all blocks, in world space and in whole floats, if positions need one.
-template <class TreeT>
-Position middleOf(const blocks::Blocks<TreeT>& blocks, const openvdb::math::Transform& transform) {
-  openvdb::CoordBBox box;
+Position middleOf(const grid::Blocks& blocks, const grid::Transform& transform) {
+  base::IndexBox box;
   for (std::size_t i = 0; i < blocks.count(); ++i) {
-    box.expand(blocks.origin(static_cast<blocks::BlockRef>(i)));
+    box.add(blocks.origin(static_cast<grid::BlockRef>(i)));
   }
-  const openvdb::Vec3d world = transform.indexToWorld(box.getCenter());
+  const Vec3 world = transform.indexToWorld(box.centre());
   return {std::round(world[0]), std::round(world[1]), std::round(world[2])};
 }
 
-ChunkIndex describe(const openvdb::GridBase& grid, const ChunkOptions& options) {
+ChunkIndex describe(const grid::Transform& transform, const ChunkOptions& options) {
   ChunkIndex index;
-  index.grid = grid.getName();
   index.chunkSize = options.chunkSize;
   double tolerance = options.contour.tolerance;
   for (int i = 0; i < options.levels; ++i, tolerance *= options.factor) {
     index.tolerances.push_back(tolerance);
   }
-  index.voxelSize = base::Affine(grid.transform()).voxelSize();
-  const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) index.transform[row][column] = matrix[row][column];
-  }
+  index.voxelSize = grid::Affine(transform).voxelSize();
+  index.transform = transform.matrix();
   return index;
 }
 
@@ -127,11 +120,11 @@ ChunkEntry entryOf(const chunks::MadeChunk& made) {
     out.interiorTriangles = level.interior.size();
     for (const auto& strip : level.regular) out.regularTriangles += strip.size();
     for (const auto& strip : level.transition) out.transitionTriangles += strip.size();
-    openvdb::BBoxd box;
-    for (const Position& p : level.positions) box.expand(openvdb::Vec3d(p.x, p.y, p.z));
-    if (box.empty()) box = openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(0));
-    out.least = {box.min()[0], box.min()[1], box.min()[2]};
-    out.greatest = {box.max()[0], box.max()[1], box.max()[2]};
+    base::Box box = base::Box::empty();
+    for (const Position& p : level.positions) box.add(p);
+    if (box.isEmpty()) box = {Vec3(0), Vec3(0)};
+    out.least = box.lower;
+    out.greatest = box.upper;
     out.maxErrorVoxels = level.maxErrorVoxels;
     out.transitionErrorVoxels = level.transitionErrorVoxels;
     out.intersectionsLeft = made.pairsLeft[i];
@@ -139,10 +132,9 @@ ChunkEntry entryOf(const chunks::MadeChunk& made) {
   return entry;
 }
 
-template <class TreeT>
 class ChunkBuilder {
  public:
-  ChunkBuilder(const openvdb::Grid<TreeT>& grid, const ChunkOptions& options, const ChunkSink& sink,
+  ChunkBuilder(const openvdb::GridBase& grid, const ChunkOptions& options, const ChunkSink& sink,
                ContourReport& report, base::Job& job)
       : grid_(grid), options_(options), sink_(sink), report_(report), job_(job) {}
 
@@ -151,22 +143,22 @@ class ChunkBuilder {
     contour.uniform = false;
     contour.normals = Normals::Gradient;
     chunkLevel_ = std::countr_zero(static_cast<unsigned>(options_.chunkSize));
-    region_.rule = cut::readRule(contour, grid_.transform());
+    region_.rule = octree::readRule(contour, grid::transformOf(grid_));
     region_.rule.maxLevel = std::min(region_.rule.maxLevel, chunkLevel_);
     region_.rule.chunkLevel = chunkLevel_;
     region_.repair = contour.repair;
-    region_.simplify = cut::maySimplify(contour);
+    region_.simplify = octree::maySimplify(contour);
     job_.beginStage("index", kIndexEnd);
-    const blocks::IsoChoice iso = blocks::chooseIsovalue(grid_, contour.isovalue, contour.inside);
-    const blocks::Blocks<TreeT> blocks(grid_.tree(), iso, contour.nonFinite, job_);
-    const blocks::FieldScale scale = blocks::readFieldScale(grid_, iso);
-    ChunkIndex index = describe(grid_, options_);
+    const grid::Volume volume = grid::openVolume(grid_, contour, job_);
+    const grid::Blocks& blocks = volume.blocks;
+    ChunkIndex index = describe(volume.transform, options_);
+    index.grid = grid::nameOf(grid_);
     region_.tolerances = index.tolerances;
-    region_.singlePrecision = fitsSinglePrecision(blocks, grid_.transform());
-    if (!region_.singlePrecision) index.origin = middleOf(blocks, grid_.transform());
-    report_.isovalue = iso.isovalue;
-    report_.insideIsBelow = iso.insideIsBelow;
-    report_.distanceField = scale.distance;
+    region_.singlePrecision = fitsSinglePrecision(blocks, volume.transform);
+    if (!region_.singlePrecision) index.origin = middleOf(blocks, volume.transform);
+    report_.isovalue = blocks.iso().isovalue;
+    report_.insideIsBelow = blocks.iso().insideIsBelow;
+    report_.distanceField = volume.scale.distance;
     report_.activeVoxels = blocks.activeVoxels();
     report_.nonFiniteValues = blocks.nonFiniteValues();
 
@@ -181,7 +173,7 @@ class ChunkBuilder {
       job_.beginStage("chunks", kIndexEnd + (1 - kIndexEnd) * share);
       std::vector<Region> made(end - begin);
       job_.forParts(made.size(), [&](base::Job& part, std::size_t i) {
-        made[i] = makeRegion(blocks, scale, contour, regions[begin + i], regionLevel, part);
+        made[i] = makeRegion(volume, contour, regions[begin + i], regionLevel, part);
       });
       for (Region& region : made) handOut(std::move(region), index);
     }
@@ -198,21 +190,20 @@ class ChunkBuilder {
     std::uint64_t surfaceCells = 0, cutEdges = 0;
   };
 
-  [[nodiscard]] Region makeRegion(const blocks::Blocks<TreeT>& blocks,
-                                  const blocks::FieldScale& scale, const ContourOptions& contour,
+  [[nodiscard]] Region makeRegion(const grid::Volume& volume, const ContourOptions& contour,
                                   const Coord& region, int regionLevel, base::Job& job) const {
     const auto size = static_cast<std::int32_t>(1) << regionLevel;
     const Coord corner(region[0] * size, region[1] * size, region[2] * size);
     ChunkCells cells;
     cells.level = chunkLevel_;
     cells.own = {cells.chunkOf(corner), cells.chunkOf(corner.offsetBy(size - 1))};
-    const openvdb::CoordBBox box(corner.offsetBy(-kMargin), corner.offsetBy(size + kMargin - 1));
-    const level0::StageEnds ends = {0.1, 0.15, 0.3, 0.35, 0.4, 0.45};
-    const level0::Level0<TreeT> level0(grid_.transform(), blocks, box, scale, contour, ends, job);
+    const base::IndexBox box{corner.offsetBy(-kMargin), corner.offsetBy(size + kMargin - 1)};
+    const uniform::StageEnds ends = {0.1, 0.15, 0.3, 0.35, 0.4, 0.45};
+    const refine::SurfaceModel model(grid::partOf(volume, box), contour, ends, job);
     job.beginStage("levels", 1);
     Region made;
-    countOwn(level0, cells, made);
-    made.chunks = chunks::makeRegion(level0, grid_.transform(), cells, region_, job);
+    countOwn(model.view(), cells, made);
+    made.chunks = chunks::makeRegion(model, cells, region_, job);
     std::erase_if(made.chunks,
                   [&](const chunks::MadeChunk& chunk) { return !isAskedFor(chunk.chunk.index); });
     return made;
@@ -233,14 +224,13 @@ class ChunkBuilder {
 
   // Counts what lies in the region itself: the margin is in other regions too, and the surface is
   // cut open where it ends.
-  static void countOwn(const level0::Level0<TreeT>& level0, const ChunkCells& cells, Region& made) {
-    const forest::Base<TreeT> base = level0.base(false);
+  static void countOwn(const uniform::SurfaceView& base, const ChunkCells& cells, Region& made) {
     for (std::size_t i = 0; i < base.topology.blocks.size(); ++i) {
-      const components::SurfaceBlock& block = base.topology.blocks[i];
-      if (!cells.own.isInside(cells.chunkOf(base.origin(i)))) continue;
+      const uniform::SurfaceBlock& block = base.topology.blocks[i];
+      if (!cells.own.contains(cells.chunkOf(base.origin(i)))) continue;
       made.surfaceCells += block.cellCount;
       if (block.special < 0) continue;
-      for (const blocks::BlockBits& cut : base.topology.specials[block.special].cut) {
+      for (const grid::BlockBits& cut : base.topology.specials[block.special].cut) {
         for (const std::uint64_t slab : cut.slabs) {
           made.cutEdges += static_cast<std::size_t>(base::countBits(slab));
         }
@@ -253,7 +243,7 @@ class ChunkBuilder {
            std::find(options_.only.begin(), options_.only.end(), chunk) != options_.only.end();
   }
 
-  const openvdb::Grid<TreeT>& grid_;
+  const openvdb::GridBase& grid_;
   const ChunkOptions& options_;
   const ChunkSink& sink_;
   ContourReport& report_;
@@ -268,11 +258,10 @@ class ChunkBuilder {
 ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                        const ChunkSink& sink, ContourReport* report) {
   requireOptions(options);
-  return level0::withGrid<ChunkIndex>(
-      grid, options.contour, report, [&](const auto& own, ContourReport& out, base::Job& job) {
-        using TreeT = typename std::decay_t<decltype(own)>::TreeType;
-        return ChunkBuilder<TreeT>(own, options, sink, out, job).build();
-      });
+  grid::requireMeshable(grid);
+  return base::runCall(options.contour, report, [&](ContourReport& out, base::Job& job) {
+    return ChunkBuilder(grid, options, sink, out, job).build();
+  });
 }
 
 }  // namespace tufa

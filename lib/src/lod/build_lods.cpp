@@ -5,18 +5,18 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/box.h"
 #include "base/job.h"
-#include "certify/adapt.h"
-#include "cut/cut_rule.h"
-#include "forest/forest.h"
-#include "level0/finish.h"
-#include "level0/level0.h"
-#include "level0/with_grid.h"
+#include "base/run_call.h"
+#include "octree/cut_rule.h"
+#include "refine/adapt.h"
+#include "refine/finish.h"
+#include "refine/surface_model.h"
 
 namespace tufa {
 namespace {
 
-constexpr level0::StageEnds kEnds = {0.08, 0.15, 0.33, 0.4, 0.42, 0.45};
+constexpr uniform::StageEnds kEnds = {0.08, 0.15, 0.33, 0.4, 0.42, 0.45};
 constexpr double kForestEnd = 0.55;
 // Triangles of a level fall at least with this power of its tolerance, up to this many times that
 // of the level before.
@@ -39,7 +39,7 @@ struct Target {
 
 std::vector<Target> budgetsOf(const LodOptions& options) {
   if (!options.tolerances.empty()) refuse("tolerances and triangles exclude each other");
-  if (!cut::maySimplify(options.contour)) {
+  if (!octree::maySimplify(options.contour)) {
     refuse(
         "numbers of triangles are met by collapsing edges: not without simplifying, or with "
         "bounds on angles or cells");
@@ -107,15 +107,13 @@ std::size_t tooMany(const Target& target, const Lod& before) {
 
 void setBounds(LodChain& chain) {
   if (chain.levels.empty()) return;
-  openvdb::BBoxd box;
-  for (const Position& p : chain.levels.front().mesh.positions) {
-    box.expand(openvdb::Vec3d(p.x, p.y, p.z));
-  }
-  const openvdb::Vec3d centre = box.empty() ? openvdb::Vec3d(0) : box.getCenter();
-  chain.centre = {centre[0], centre[1], centre[2]};
+  base::Box box = base::Box::empty();
+  for (const Position& p : chain.levels.front().mesh.positions) box.add(p);
+  const Vec3 centre = box.isEmpty() ? Vec3(0) : box.centre();
+  chain.centre = centre;
   double squared = 0;
   for (const Position& p : chain.levels.front().mesh.positions) {
-    squared = std::max(squared, (openvdb::Vec3d(p.x, p.y, p.z) - centre).lengthSqr());
+    squared = std::max(squared, (p - centre).squaredLength());
   }
   chain.radius = std::sqrt(squared);
 }
@@ -129,60 +127,54 @@ void setCoverage(LodChain& chain, const LodOptions& options) {
   }
 }
 
-template <class TreeT>
-LodChain buildChain(const openvdb::Grid<TreeT>& grid, const LodOptions& options,
-                    ContourReport& report, base::Job& job) {
+LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, ContourReport& report,
+                    base::Job& job) {
   const Clock::time_point start = Clock::now();
   const std::vector<Target> targets = targetsOf(options);
   ContourOptions contour = options.contour;
   contour.uniform = false;
-  cut::CutRule rule = cut::readRule(contour, grid.transform());
-  const level0::Level0<TreeT> level0(grid, contour, kEnds, job);
-  report = level0.report();
+  octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid));
+  job.beginStage("blocks", kEnds.blocks);
+  refine::SurfaceModel model(grid::openVolume(grid, contour, job), contour, kEnds, job);
+  report = model.report();
   LodChain chain;
-  chain.voxelSize = level0.affine().voxelSize();
-  if (level0.mesh().positions.empty()) return chain;
-  const forest::Base<TreeT> base = level0.base(contour.maxAngle < 180);
+  chain.voxelSize = model.affine().voxelSize();
+  if (model.mesh().positions.empty()) return chain;
   job.beginStage("forest", kForestEnd);
-  const forest::Forest forest = forest::buildForest(base, rule.maxLevel, job);
-  const certify::Repair repair{level0.suspects(), level0.source(job)};
-  const certify::BaseSurface<TreeT> surface(base, forest.levels[0], job);
+  model.buildClusters(rule, job);
+  const auto repair = model.repair(job);
   chain.sharedSeconds = secondsSince(start);
 
-  const bool collapses = cut::maySimplify(contour);
-  certify::Measured kept;
+  const bool collapses = octree::maySimplify(contour);
+  refine::Measured kept;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Clock::time_point begin = Clock::now();
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
     job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
     const Target& target = targets[i];
     const std::size_t most = i > 0 ? tooMany(target, chain.levels.back()) : 0;
-    const certify::Goal goal{target.triangles, target.triangles > 0 ? 0 : most};
-    const certify::AdaptOptions how{contour.repair ? &repair : nullptr, collapses, goal,
-                                    options.allowTopologyChange};
+    const refine::Goal goal{target.triangles, target.triangles > 0 ? 0 : most};
+    const refine::AdaptOptions how{repair ? &*repair : nullptr, collapses, goal,
+                                   options.allowTopologyChange};
     rule.tolerance = target.triangles > 0 && i > 0 ? rule.tolerance : target.tolerance;
-    certify::AdaptiveMesh adaptive = i > 0 && collapses
-                                         ? coarsen(base, surface, rule, how, job, kept)
-                                         : adapt(base, forest, surface, rule, how, job, &kept);
+    refine::AdaptiveMesh adaptive = i > 0 && collapses ? coarsen(model, rule, how, job, kept)
+                                                       : adapt(model, rule, how, job, &kept);
     rule.tolerance = adaptive.tolerance;
-    const std::size_t triangles = adaptive.mesh.triangleCount();
+    const std::size_t triangles = adaptive.extracted.mesh.triangleCount();
     const bool coarser = i == 0 || triangles < most;
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
       chain.stopped = stopOf(i, target, triangles);
       break;
     }
     Lod lod;
-    lod.certificate = certify::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves);
+    lod.certificate = refine::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves);
     lod.tolerance = target.triangles > 0 ? lod.certificate.maxErrorVoxels : target.tolerance;
-    for (const certify::Dropped& piece : adaptive.dropped) {
-      lod.dropped.push_back(
-          {level0.affine().toWorld(Position(piece.centre[0], piece.centre[1], piece.centre[2])),
-           piece.size});
+    for (const refine::Dropped& piece : adaptive.dropped) {
+      lod.dropped.push_back({model.affine().toWorld(piece.centre), piece.size});
       if (target.triangles > 0) lod.tolerance = std::max(lod.tolerance, piece.size);
     }
-    lod.mesh = std::move(adaptive.mesh);
-    const level0::Origins origins{std::move(adaptive.baseVertices), std::move(adaptive.baseQuads)};
-    level0::finishMesh(level0, contour, origins, adaptive.suspects, lod.mesh, report, job);
+    refine::finishMesh(model, contour, adaptive.extracted, report, job);
+    lod.mesh = std::move(adaptive.extracted.mesh);
     lod.intersectionsLeft = report.intersectionsLeft;
     lod.seconds = secondsSince(begin);
     chain.levels.push_back(std::move(lod));
@@ -199,16 +191,14 @@ LodChain buildLods(const openvdb::GridBase& grid, const LodOptions& options,
   if (!(options.pixelError > 0) || options.screenHeight < 1) {
     throw Error(ErrorCode::InvalidArgument, "pixelError and screenHeight must be above 0");
   }
-  return level0::withGrid<LodChain>(grid, options.contour, report,
-                                    [&](const auto& own, ContourReport& out, base::Job& job) {
-                                      return buildChain(own, options, out, job);
-                                    });
+  grid::requireMeshable(grid);
+  return base::runCall(options.contour, report, [&](ContourReport& out, base::Job& job) {
+    return buildChain(grid, options, out, job);
+  });
 }
 
 std::size_t selectLod(const LodChain& chain, const Camera& camera, double pixelError) {
-  const openvdb::Vec3d way(camera.eye.x - chain.centre.x, camera.eye.y - chain.centre.y,
-                           camera.eye.z - chain.centre.z);
-  const double distance = way.length() - chain.radius;
+  const double distance = (Vec3(camera.eye) - chain.centre).length() - chain.radius;
   if (!(distance > 0)) return 0;
   const double pixelsPerUnit =
       camera.screenHeight / (2 * std::tan(camera.verticalAngle / 2) * distance);

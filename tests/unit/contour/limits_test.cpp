@@ -6,7 +6,7 @@
 #include <tufa/contour.h>
 #include <limits>
 
-#include "io/mesh_format.h"
+#include "io/mesh/mesh_format.h"
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"

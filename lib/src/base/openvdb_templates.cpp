@@ -1,4 +1,0 @@
-#include "base/openvdb_templates.h"
-
-TUFA_TREE_IS_HERE(FloatTree);
-TUFA_TREE_IS_HERE(DoubleTree);

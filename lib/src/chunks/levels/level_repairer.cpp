@@ -1,0 +1,164 @@
+#include "chunks/levels/level_repairer.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "base/single_precision.h"
+#include "chunks/levels/mixed_pairs.h"
+#include "refine/measured.h"
+#include "refine/repair/repair.h"
+
+namespace tufa::chunks {
+namespace {
+
+// How often the two meshes of a level are mended in turn.
+constexpr int kMostTurns = 3;
+
+// Polygons of which each pair that meets has one: those of strips and of the pairs that another
+// mesh with the same clusters has.
+std::vector<intersect::PolygonIndex> stripSuspectsOf(
+    const SeamedCut& mesh, const std::vector<intersect::PolygonPair>& shared) {
+  const auto firstStrip = static_cast<intersect::PolygonIndex>(mesh.firstStripPolygon());
+  const auto count = firstStrip + static_cast<intersect::PolygonIndex>(mesh.strips.size());
+  std::vector<intersect::PolygonIndex> suspects;
+  for (const auto& [a, b] : shared) {
+    if (a < firstStrip && b < firstStrip) suspects.push_back(a);
+  }
+  std::sort(suspects.begin(), suspects.end());
+  suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
+  for (intersect::PolygonIndex i = firstStrip; i < count; ++i) suspects.push_back(i);
+  return suspects;
+}
+
+// Digits of a polygon's corners in their order. Of two different polygons all are as good as never
+// the same.
+std::array<std::uint64_t, 2> digitsOf(const Mesh& mesh, intersect::Corners corners) {
+  std::array<std::uint64_t, 2> digits{corners.size(), 0};
+  for (const VertexIndex vertex : corners) {
+    const Position& p = mesh.positions[vertex];
+    for (const double x : {p.x, p.y, p.z}) {
+      const auto bits = std::bit_cast<std::uint64_t>(x);
+      digits[0] = (digits[0] ^ bits) * 0x9E3779B97F4A7C15U;
+      digits[0] ^= digits[0] >> 32;
+      digits[1] = (digits[1] + bits) * 0xC2B2AE3D27D4EB4FU;
+      digits[1] ^= digits[1] >> 29;
+    }
+  }
+  return digits;
+}
+
+template <class Body>
+void forPolygons(const Mesh& mesh, const Body& body) {
+  intersect::PolygonIndex polygon = 0;
+  for (const Quad& quad : mesh.quads) body(polygon++, intersect::Corners(quad.vertices));
+  for (const Triangle& triangle : mesh.triangles)
+    body(polygon++, intersect::Corners(triangle.vertices));
+}
+
+// Those that are not as they were when nothing met them.
+std::vector<intersect::PolygonIndex> findNew(const Mesh& mesh, const LevelMender::Clean& clean) {
+  std::vector<intersect::PolygonIndex> found;
+  forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
+    if (!std::binary_search(clean.begin(), clean.end(), digitsOf(mesh, corners))) {
+      found.push_back(polygon);
+    }
+  });
+  return found;
+}
+
+LevelMender::Clean findClean(const Mesh& mesh, const std::vector<intersect::PolygonPair>& pairs) {
+  std::vector<intersect::PolygonIndex> meeting = intersect::polygonsOf(pairs);
+  std::sort(meeting.begin(), meeting.end());
+  LevelMender::Clean clean;
+  forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
+    if (!std::binary_search(meeting.begin(), meeting.end(), polygon)) {
+      clean.push_back(digitsOf(mesh, corners));
+    }
+  });
+  std::sort(clean.begin(), clean.end());
+  return clean;
+}
+
+// Makes of one mesh, but for seams and strips, what another of the same cut is. Returns whether
+// that changed anything.
+bool takeShared(const SeamedCut& from, SeamedCut& to) {
+  const Mesh& mesh = from.made.mesh;
+  Mesh& own = to.made.mesh;
+  const auto end = mesh.positions.begin() + static_cast<std::ptrdiff_t>(from.clusterCount);
+  if (std::equal(mesh.positions.begin(), end, own.positions.begin()) && mesh.quads == own.quads) {
+    return false;
+  }
+  std::copy(mesh.positions.begin(), end, own.positions.begin());
+  own.quads = mesh.quads;
+  return true;
+}
+
+}  // namespace
+
+bool LevelMender::isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const {
+  const octree::ClusterRef& ref = mesh.cut.clusters[vertex];
+  if (ref.level != 0) return false;
+  const ChunkCells& chunks = region_.chunks;
+  return movable == Movable::Clusters || mesh.isOnSeam(vertex) ||
+         !chunks.own.contains(chunks.chunkOf(region_.cells[ref.cluster]));
+}
+
+std::vector<intersect::PolygonPair> LevelMender::mend(SeamedCut& mesh, Movable movable,
+                                                      std::vector<intersect::PolygonIndex> suspects,
+                                                      Clean* clean) const {
+  std::vector<Position>& positions = mesh.made.mesh.positions;
+  for (VertexIndex i = 0; i < positions.size(); ++i) {
+    Position& p = positions[i];
+    p = mesh.isOnSeam(i) ? region_.seamPositions[mesh.seamAt(i)] : region_.affine.toWorld(p);
+    if (region_.singlePrecision) p = base::toSingle(p);
+  }
+  // Also those of the base mesh: they may meet what was clean before.
+  if (clean != nullptr && !clean->empty()) suspects = findNew(mesh.made.mesh, *clean);
+  refine::Source source;
+  source.singlePrecision = region_.singlePrecision;
+  source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
+    std::vector<Position> points;
+    for (const VertexIndex vertex : vertices) points.push_back(positions[vertex]);
+    return points;
+  };
+  source.isFixed = [&](VertexIndex vertex) { return isFixed(mesh, vertex, movable); };
+  source.voxelSize = region_.affine.voxelSize();
+  source.toTheFloor = false;
+  refine::MendReport report = refine::mend(mesh.made.mesh, suspects, source, job_);
+  if (clean != nullptr) *clean = findClean(mesh.made.mesh, report.left);
+  for (Position& p : positions) p = region_.affine.fromWorld(p);
+  return std::move(report.left);
+}
+
+void LevelMender::mendRegular(LevelMeshes& meshes, Movable movable, Clean& clean) const {
+  const SeamedCut& mesh = meshes.regular;
+  meshes.pairs =
+      mend(meshes.regular, movable,
+           refine::suspectsOf(mesh.made, mesh.cut, region_.baseSuspects, mesh.altered), &clean);
+}
+
+void LevelMender::mendInTurn(LevelMeshes& meshes, Movable movable, Clean& clean) const {
+  const auto stripSuspects = [&] { return stripSuspectsOf(meshes.transition, meshes.pairs); };
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
+    meshes.transitionPairs = mend(meshes.transition, movable, stripSuspects(), nullptr);
+    if (!takeShared(meshes.transition, meshes.regular)) return;
+    mendRegular(meshes, movable, clean);
+  }
+  if (takeShared(meshes.regular, meshes.transition)) {
+    const intersect::Surface surface(meshes.transition.made.mesh, job_);
+    meshes.transitionPairs = intersect::findPairs(surface, stripSuspects(), job_);
+  }
+}
+
+void LevelMender::mend(LevelMeshes& meshes, bool alone, Movable movable, Clean& clean) const {
+  mendRegular(meshes, movable, clean);
+  if (alone) return;
+  mendInTurn(meshes, movable, clean);
+  meshes.mixedPairs =
+      findMixedPairs(meshes.regular, meshes.transition, region_.seams, region_.seamPositions,
+                     region_.affine, region_.singlePrecision, job_);
+}
+
+}  // namespace tufa::chunks

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <tufa/chunks.h>
+#include <vector>
+
+#include "base/job.h"
+#include "chunks/levels/split_chunks.h"
+#include "chunks/seams/chunk_cells.h"
+#include "octree/cut_rule.h"
+#include "refine/surface_model.h"
+
+namespace tufa::chunks {
+
+/// How the chunks of a region are made.
+struct RegionOptions {
+  octree::CutRule rule;            ///< but for its tolerance
+  std::vector<double> tolerances;  ///< of the levels, voxels
+  bool repair = true;              ///< split cells until no two polygons meet
+  bool simplify = true;            ///< collapse edges inside the chunks
+  bool singlePrecision = false;    ///< positions are rounded to floats
+};
+
+/// Makes the chunks of a region that the surface passes, in the order of their indices. `level0`
+/// must hold all blocks of these chunks and those that touch them.
+///
+/// Each level is a cut of the region's forest in which every chunk is a cut of its own. It is
+/// measured, and cells are split, with the seams of its level and with those of the next.
+[[nodiscard]] std::vector<MadeChunk> makeRegion(const refine::SurfaceModel& model,
+                                                const ChunkCells& chunks,
+                                                const RegionOptions& options, base::Job& job);
+
+}  // namespace tufa::chunks

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <vector>
+
+#include "base/job.h"
+#include "chunks/seams/polyline.h"
+#include "chunks/seams/seams.h"
+#include "octree/cluster_forest.h"
+#include "octree/cut.h"
+#include "octree/cut_polygons.h"
+
+namespace tufa::chunks {
+
+/// A side of a curve.
+struct StripPlace {
+  std::uint32_t curve = 0;  ///< in Seams::curves
+  bool above = false;       ///< in the chunk above the face
+
+  /// A number for each side of each curve.
+  [[nodiscard]] std::size_t number() const { return std::size_t{2} * curve + (above ? 1 : 0); }
+};
+
+/// A flag for each side of each curve, by StripPlace::number(); empty: none is set.
+using SideFlags = std::vector<std::uint8_t>;
+
+/// The mesh of a cut, parted at the seams.
+struct SeamedCut {
+  octree::Cut cut;  ///< of the base mesh with the seams' vertices
+  octree::CutMesh made;
+  /// The strip that each of the last triangles is in: all others are inside their chunks.
+  std::vector<StripPlace> strips;
+  VertexIndex clusterCount = 0;   ///< vertices from here on are on seams
+  std::vector<SeamIndex> seamOf;  ///< of each of these
+  std::vector<VertexIndex>
+      altered;       ///< vertices of pieces and seams: not as the base mesh has them
+  SideFlags direct;  ///< sides whose strips run as the arcs do, see stitch()
+
+  /// The first triangle that is in a strip, counted among triangles and among all polygons.
+  [[nodiscard]] std::size_t firstStrip() const {
+    return made.mesh.triangles.size() - strips.size();
+  }
+  [[nodiscard]] std::size_t firstStripPolygon() const {
+    return made.mesh.quads.size() + firstStrip();
+  }
+  [[nodiscard]] bool isOnSeam(VertexIndex vertex) const { return vertex >= clusterCount; }
+  [[nodiscard]] SeamIndex seamAt(VertexIndex vertex) const { return seamOf[vertex - clusterCount]; }
+};
+
+/// Takes the mesh of `cut`, which is one of the base mesh, with its seams as `lines` have them and
+/// strips along these in the chunks to be made, those of `direct` as their arcs run. `vertexCells`
+/// has the cell of each base vertex.
+[[nodiscard]] SeamedCut meshWithSeams(const octree::Forest& forest, octree::Cut cut,
+                                      const Seams& seams, const SeamLines& lines,
+                                      const std::vector<Coord>& vertexCells,
+                                      const ChunkCells& chunks, const grid::Affine& affine,
+                                      SideFlags direct, base::Job& job);
+
+/// What became of a triangle in a strip where vertices of its mesh were joined.
+struct StripLeft {
+  std::size_t strip = 0;  ///< its number in SeamedCut::strips
+  Triangle triangle;      ///< in the mesh as it is now
+};
+
+/// The triangles in strips of `before` that have three vertices still, in order; `now` is a cut of
+/// the same base vertices.
+[[nodiscard]] std::vector<StripLeft> stripsLeft(const SeamedCut& before, const octree::Cut& now);
+
+/// The inside of a mesh with the lines of another one, `before`, which shared all but lines and
+/// strips with what became the mesh by joining vertices. Strips are what became of those of
+/// `before`; where that does not close the surface, as may be along a closed curve, they are made
+/// anew.
+[[nodiscard]] SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh,
+                                     const Seams& seams, const SeamLines& lines,
+                                     const ChunkCells& chunks);
+
+/// Moves the vertices of clusters off the faces of their chunks.
+void keepInChunks(const std::vector<Coord>& vertexCells, const ChunkCells& chunks,
+                  const grid::Affine& affine, SeamedCut& mesh);
+
+}  // namespace tufa::chunks

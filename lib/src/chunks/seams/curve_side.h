@@ -1,0 +1,34 @@
+#pragma once
+
+#include <tufa/chunks.h>
+#include <algorithm>
+#include <utility>
+
+#include "chunks/seams/polyline.h"
+#include "chunks/seams/seams.h"
+
+namespace tufa::chunks {
+
+/// One side of a curve as the chunk there sees it. tileOf(base vertex) and vertexOf(seam vertex)
+/// give the numbers that the side has for them.
+template <class TileOf, class VertexOf>
+[[nodiscard]] ChunkSeam sideOf(const SeamCurve& curve, bool above, const Seams& seams,
+                               const SeamLines& lines, const TileOf& tileOf,
+                               const VertexOf& vertexOf) {
+  ChunkSeam side;
+  for (const SeamIndex arc : curve.arcs) {
+    side.tiles.push_back(tileOf(above ? seams.arcs[arc].above : seams.arcs[arc].below));
+    side.line.push_back(vertexOf(lines[arc]));
+  }
+  if (curve.begin != kNoSeam) side.begin = vertexOf(curve.begin);
+  if (curve.end != kNoSeam) side.end = vertexOf(curve.end);
+  side.closed = curve.closed;
+  if (above) {
+    std::reverse(side.tiles.begin(), side.tiles.end());
+    std::reverse(side.line.begin(), side.line.end());
+    std::swap(side.begin, side.end);
+  }
+  return side;
+}
+
+}  // namespace tufa::chunks

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <array>
+#include <vector>
+
+#include "base/flat_triangle.h"
+#include "base/job.h"
+#include "base/vec3.h"
+#include "distance/reference.h"
+#include "octree/cluster_forest.h"
+#include "octree/cut.h"
+#include "octree/cut_polygons.h"
+
+namespace tufa::distance {
+
+/// How far a mesh is from the base mesh, both ways, and where it is too far.
+struct Deviation {
+  double largest = 0;               ///< voxels; of what is within the tolerance
+  double worst = 0;                 ///< voxels; of all
+  double mean = 0;                  ///< voxels, over the vertices and quads of the base mesh
+  std::vector<VertexIndex> coarse;  ///< vertices whose cells must be split, sorted
+  /// What is too far, apart: base vertices and, behind them, base quads by their middles; and
+  /// vertices of polygons that are too far from the base mesh, sorted.
+  std::vector<std::uint64_t> farPoints;
+  std::vector<VertexIndex> protruding;
+};
+
+/// The rule's tolerance at a point of the mesh, voxels.
+[[nodiscard]] double toleranceAt(const octree::CutRule& rule, const grid::Affine& affine,
+                                 const Vec3& point);
+
+/// Measures meshes taken from cuts against their base mesh: every base vertex and the middle of
+/// every base quad against the polygons around its own clusters; the vertices and samples inside
+/// every polygon against the base polygons below it. Each distance is one to a point found, so none
+/// is too small. The bound is the rule's tolerance.
+///
+/// From one cut to the next only what changed is measured again.
+class Certifier {
+ public:
+  /// `surface` is that of the base mesh.
+  Certifier(const uniform::SurfaceView& base, const BaseSurface& surface,
+            const octree::CutRule& rule, base::Job& job);
+  /// From now on. Rules differ in their tolerance only.
+  void setRule(const octree::CutRule& rule) { rule_ = rule; }
+
+  /// From now on. A flag for each base quad whose middle the meshes do not reach; empty: none.
+  void setIgnored(std::vector<std::uint8_t> quads) { ignored_ = std::move(quads); }
+
+  /// World distance from a point of a mesh whose normal there is `facing` to the base mesh;
+  /// infinite if that is nowhere near. No nearer place is looked for than one nearer than `enough`.
+  [[nodiscard]] double distanceToBase(const Vec3& point, const Vec3& facing, double enough) const {
+    return surface_.distance(point, facing, reachOf(enough / base_.affine.voxelSize()), enough);
+  }
+
+  /// The next mesh, of a cut or of one whose vertices were joined further. `altered`: vertices of
+  /// polygons that are not as the cut alone would have them. `largest` counts samples of the meshes
+  /// before, too.
+  [[nodiscard]] Deviation measure(const octree::Cut& cut, const octree::CutMesh& made,
+                                  const std::vector<VertexIndex>& altered = {});
+  /// Of the mesh measured last, if it was the first: for each vertex the largest distance found on
+  /// its polygons or of a base point that it or one of them stands for, voxels.
+  [[nodiscard]] std::vector<float> errorsAtVertices() const;
+
+ private:
+  // A triangle of the mesh that the base mesh does not have.
+  struct Piece {
+    // The corners of its polygon: the triangle's first, then a quad's fourth or the first again.
+    std::array<VertexIndex, 4> corners;
+    std::uint32_t source;  ///< the base quad its polygon comes from
+    base::FlatTriangle shape;
+  };
+  // What a range of points or triangles found.
+  struct Part {
+    double largest = 0;
+    double worst = 0;
+    double sum = 0;
+    std::vector<VertexIndex> coarse;
+    std::vector<std::uint64_t> farPoints;
+  };
+
+  [[nodiscard]] bool isFine(VertexIndex vertex) const {
+    return cut_->clusters[vertex].level == 0 && altered_[vertex] == 0;
+  }
+  void collectPieces();
+  void findChanges();
+  void measureVertex(std::size_t index, Part& part);
+  void measureQuad(std::size_t index, Part& part);
+  void measurePiece(std::size_t index, Part& part);
+  void measureCorner(VertexIndex vertex, Part& part);
+  [[nodiscard]] bool findAround(VertexIndex vertex, const Vec3& point, double enough,
+                                double& squared, std::uint32_t& nearest) const;
+  void walkNearer(const Vec3& point, double enough, double& squared, std::uint32_t& nearest) const;
+  [[nodiscard]] float distanceAround(const VertexIndex* vertices, int count, const Vec3& point,
+                                     std::uint8_t& wandered, Part& part) const;
+  void note(const Vec3& point, double voxels, const VertexIndex* corners, int count,
+            Part& part) const;
+  [[nodiscard]] Vec3 facing(const VertexIndex* vertices, int count) const;
+  void noteFar(std::uint64_t index, const Vec3& point, double voxels, Part& part) const;
+  [[nodiscard]] double toleranceAt(const Vec3& point) const;
+  [[nodiscard]] double distanceBelow(const Vec3& point, const Vec3& outward,
+                                     std::uint32_t source) const;
+  [[nodiscard]] static int reachOf(double voxels);
+  template <class Body>
+  void forChunks(std::size_t count, const Body& body, Deviation& total, double& sum);
+
+  const uniform::SurfaceView base_;
+  const BaseSurface& surface_;
+  octree::CutRule rule_;
+  std::vector<std::uint8_t> ignored_;
+  base::Job& job_;
+  const octree::Cut* cut_ = nullptr;
+  const octree::CutMesh* made_ = nullptr;
+  std::vector<std::uint8_t> altered_;      ///< vertices that are not as the cut has them
+  std::vector<Position> positions_;        ///< of the mesh before
+  std::vector<VertexIndex> vertexOf_;      ///< of the mesh before
+  std::vector<std::uint8_t> alteredKept_;  ///< of the mesh before
+  std::vector<std::uint8_t> changed_;      ///< vertices that the mesh before did not have
+  std::vector<std::uint8_t> touched_;      ///< these and their neighbours
+  std::vector<float> vertexErrors_;        ///< of the base vertices, voxels
+  /// Base vertices, then quads, for which more was looked at than what is around their clusters.
+  std::vector<std::uint8_t> wandered_;
+  std::vector<float> quadErrors_;  ///< of the base quads, voxels
+  double largestKept_ = 0;         ///< of the samples of polygons, over all cuts
+  std::vector<Piece> pieces_;
+  std::vector<float> pieceErrors_;          ///< of those measured last, voxels
+  std::vector<float> cornerErrors_;         ///< of the vertices measured last, voxels
+  std::vector<std::uint32_t> firstAround_;  ///< of each vertex, its pieces in around_
+  std::vector<std::uint32_t> around_;
+};
+
+}  // namespace tufa::distance

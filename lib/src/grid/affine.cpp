@@ -1,0 +1,55 @@
+#include "grid/affine.h"
+
+#include <openvdb/math/Mat3.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "grid/vdb_coord.h"
+
+namespace tufa::grid {
+
+Affine::Affine(const Transform& transform, const Coord& origin) : origin_(origin) {
+  const Vec3 zero = transform.indexToWorld(Vec3(0));
+  const Vec3 start = transform.indexToWorld(Vec3(origin));
+  openvdb::math::Mat3d linear;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 unit(0);
+    unit[axis] = 1;
+    linear.setCol(axis, toVdb(transform.indexToWorld(unit) - zero));
+  }
+  const double size = std::cbrt(std::abs(linear.det()));
+  const openvdb::math::Mat3d inverse = linear.inverse();
+  for (int i = 0; i < 3; ++i) {
+    world_[i] = start[i];
+    for (int j = 0; j < 3; ++j) {
+      m_[i][j] = linear(i, j);
+      inverse_[i][j] = inverse(i, j);
+      // The inverse transpose, scaled to the size of a rotation so that single precision serves.
+      normals_[i][j] = static_cast<float>(inverse(j, i) * size);
+    }
+  }
+  voxelSize_ = size;
+  mirrored_ = linear.det() < 0;
+}
+
+Normal Affine::normal(float gx, float gy, float gz) const {
+  const float x = normals_[0][0] * gx + normals_[0][1] * gy + normals_[0][2] * gz;
+  const float y = normals_[1][0] * gx + normals_[1][1] * gy + normals_[1][2] * gz;
+  const float z = normals_[2][0] * gx + normals_[2][1] * gy + normals_[2][2] * gz;
+  const float squared = x * x + y * y + z * z;
+  if (squared == 0) return {0, 0, 0};
+  const float scale = 1 / std::sqrt(squared);
+  return {x * scale, y * scale, z * scale};
+}
+
+double Affine::leastHeight() const {
+  const double volume = std::abs(axis(0).dot(axis(1).cross(axis(2))));
+  double largestFace = 0;
+  for (int i = 0; i < 3; ++i) {
+    largestFace = std::max(largestFace, axis(i).cross(axis((i + 1) % 3)).length());
+  }
+  return volume / largestFace;
+}
+
+}  // namespace tufa::grid

@@ -1,0 +1,175 @@
+#include "grid/blocks.h"
+
+#include <tufa/error.h>
+
+#include <algorithm>
+#include <mutex>
+#include <sstream>
+
+#include "base/huge_pages.h"
+
+namespace tufa::grid {
+
+Blocks::Blocks(std::shared_ptr<const Tree> tree, const IsoChoice& iso, NonFinite nonFinite,
+               base::Job& job)
+    : tree_(std::move(tree)), iso_(iso) {
+  const std::size_t leaves = tree_->leafCount();
+  base::resizeLarge(origins_, leaves, job);
+  base::resizeLarge(leaves_, leaves, job);
+  job.forRanges(leaves, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      leaves_[i] = static_cast<LeafRef>(i);
+      origins_[i] = tree_->leafOrigin(leaves_[i]);
+    }
+  });
+  summary_ = tree_->readSides(iso, inside_, job);
+  if (summary_.nonFiniteValues > 0 && nonFinite == NonFinite::Refuse) refuseNonFinite();
+  tree_->findPlaces(iso, places_, job);
+  addTileBlocks(job);
+}
+
+Blocks::Blocks(const Blocks& whole, const base::IndexBox& box)
+    : tree_(whole.tree_), iso_(whole.iso_), part_(true) {
+  summary_.nonFiniteValues = whole.summary_.nonFiniteValues;
+  const auto accessor = whole.accessor();
+  places_.buildBox(box.grownBy(kBlockSize), [&](const Coord& origin) {
+    const BlockRef block = whole.find(origin, *accessor);
+    if (block < 0) return block;
+    if (!box.contains(origin)) return kMissingBlock;
+    origins_.push_back(origin);
+    leaves_.push_back(whole.leaves_[block]);
+    inside_.push_back(whole.inside_[block]);
+    return static_cast<BlockRef>(origins_.size() - 1);
+  });
+}
+
+std::uint64_t Blocks::active(BlockRef block, int x, Accessor& accessor) const {
+  if (leaves_[block] != kNoLeaf) return tree_->leafActive(leaves_[block], x);
+  return accessor.isActive(origins_[block]) ? ~std::uint64_t{0} : 0;
+}
+
+void Blocks::refuseNonFinite() const {
+  std::ostringstream message;
+  message << "the grid holds " << summary_.nonFiniteValues << " NaN or infinite "
+          << (summary_.nonFiniteValues == 1 ? "value" : "values") << ", the first at index ("
+          << summary_.firstNonFinite[0] << ", " << summary_.firstNonFinite[1] << ", "
+          << summary_.firstNonFinite[2]
+          << "); repair the grid or treat them as outside (--nan outside)";
+  throw Error(ErrorCode::NonFiniteValues, message.str());
+}
+
+BlockRef Blocks::find(const Coord& origin, Accessor& accessor) const {
+  const BlockRef block = places_.find(origin);
+  if (block != BlockPlaces::kUnknown) return block;
+  return isInside(accessor.value(origin), iso_) ? kInsideTile : kOutsideTile;
+}
+
+Neighbours Blocks::neighbours(BlockRef block, Accessor& accessor) const {
+  Neighbours all;
+  const Coord& origin = origins_[block];
+  if (places_.forNear(origin, [&](int i, BlockRef near) { all[i] = near; })) return all;
+  for (int i = 0; i < 27; ++i) {
+    all[i] = find(origin.offsetBy((i / 9 - 1) * kBlockSize, (i / 3 % 3 - 1) * kBlockSize,
+                                  (i % 3 - 1) * kBlockSize),
+                  accessor);
+  }
+  return all;
+}
+
+Neighbours Blocks::upperNeighbours(BlockRef block, Accessor& accessor) const {
+  Neighbours upper{};
+  if (places_.forNear(origins_[block], [&](int i, BlockRef near) { upper[i] = near; })) {
+    return upper;
+  }
+  upper[neighbourIndex(0, 0, 0)] = block;
+  for (int i = 1; i < 8; ++i) {
+    const int dx = i >> 2, dy = (i >> 1) & 1, dz = i & 1;
+    upper[neighbourIndex(dx, dy, dz)] =
+        find(origins_[block].offsetBy(dx * kBlockSize, dy * kBlockSize, dz * kBlockSize), accessor);
+  }
+  return upper;
+}
+
+// A missing block goes on as the one before it ends: there is no surface to be found.
+std::uint64_t Blocks::sides(const Neighbours& neighbours, int dx, int dy, int dz, int x) const {
+  constexpr std::uint64_t kFirstZ = 0x0101010101010101u;
+  const BlockRef block = neighbours[neighbourIndex(dx, dy, dz)];
+  if (block >= 0) return inside_[block].slabs[x];
+  if (block != kMissingBlock) return block == kInsideTile ? ~std::uint64_t{0} : 0;
+  if (dx != 0) return sides(neighbours, 0, dy, dz, kBlockSize - 1);
+  if (dy != 0) return sides(neighbours, 0, 0, dz, x) >> 56;
+  return (sides(neighbours, 0, 0, 0, x) >> 7) & kFirstZ;
+}
+
+CornerWords Blocks::cornerWords(const Neighbours& neighbours) const {
+  const auto slab = [&](int dx, int dy, int dz, int x) { return sides(neighbours, dx, dy, dz, x); };
+  CornerWords corners;
+  for (int x = 0; x <= kBlockSize; ++x) {
+    const int dx = x == kBlockSize ? 1 : 0;
+    const int local = x & 7;
+    const std::uint64_t here = slab(dx, 0, 0, local);
+    const std::uint64_t aboveY = slab(dx, 1, 0, local);
+    const std::uint64_t z = stepZ(here, slab(dx, 0, 1, local));
+    const std::uint64_t aboveYz = stepZ(aboveY, slab(dx, 1, 1, local));
+    corners.words[x] = {here, z, stepY(here, aboveY), stepY(z, aboveYz)};
+  }
+  return corners;
+}
+
+// Where a leaf's first layers differ from a tile below them, that tile's block holds surface cells.
+void Blocks::tilesBelowLeaf(BlockRef block, Accessor& accessor, std::vector<Coord>& found) const {
+  constexpr std::uint64_t kFirstY = 0xff;
+  constexpr std::uint64_t kFirstZ = 0x0101010101010101u;
+  const BlockBits& bits = inside_[block];
+  const Neighbours around = neighbours(block, accessor);
+  for (int direction = 1; direction < 8; ++direction) {
+    const int dx = direction >> 2, dy = (direction >> 1) & 1, dz = direction & 1;
+    const Coord below =
+        origins_[block].offsetBy(-dx * kBlockSize, -dy * kBlockSize, -dz * kBlockSize);
+    const BlockRef tile = around[neighbourIndex(-dx, -dy, -dz)];
+    if (tile >= 0) continue;
+    const std::uint64_t touching =
+        (dy != 0 ? kFirstY : ~std::uint64_t{0}) & (dz != 0 ? kFirstZ : ~std::uint64_t{0});
+    const std::uint64_t side = tile == kInsideTile ? ~std::uint64_t{0} : 0;
+    std::uint64_t differs = 0;
+    for (int x = 0; x < (dx != 0 ? 1 : kBlockSize); ++x) {
+      differs |= (bits.slabs[x] ^ side) & touching;
+    }
+    if (differs != 0) found.push_back(below);
+  }
+}
+
+void Blocks::addTileBlocks(base::Job& job) {
+  std::vector<Coord> tiles = tree_->tileContacts(iso_, job);
+  std::mutex mutex;
+  job.forRanges(origins_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    const auto accessor = this->accessor();
+    std::vector<Coord> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      tilesBelowLeaf(static_cast<BlockRef>(i), *accessor, found);
+    }
+    const std::scoped_lock lock(mutex);
+    tiles.insert(tiles.end(), found.begin(), found.end());
+  });
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  const auto accessor = this->accessor();
+  const std::size_t leafCount = origins_.size();
+  std::vector<BlockRef> sides;
+  for (const Coord& tile : tiles) {
+    const BlockRef side = find(tile, *accessor);
+    if (side >= 0) continue;
+    origins_.push_back(tile);
+    sides.push_back(side);
+  }
+  if (origins_.size() == leafCount) return;
+  leaves_.resize(origins_.size(), kNoLeaf);
+  inside_.resize(origins_.size());
+  for (std::size_t i = leafCount; i < origins_.size(); ++i) {
+    inside_[i].slabs.fill(sides[i - leafCount] == kInsideTile ? ~std::uint64_t{0} : 0);
+  }
+  places_.addTileBlocks({origins_.begin() + static_cast<std::ptrdiff_t>(leafCount), origins_.end()},
+                        static_cast<BlockRef>(leafCount));
+}
+
+}  // namespace tufa::grid

@@ -1,0 +1,69 @@
+#include "grid/isovalue.h"
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <cmath>
+
+namespace tufa::grid {
+namespace {
+
+// Half way between the least and the greatest finite value; the background counts as one.
+template <class GridT>
+double middleValue(const GridT& grid) {
+  double least = grid.background();
+  double greatest = least;
+  for (auto value = grid.cbeginValueOn(); value; ++value) {
+    const double v = *value;
+    if (!std::isfinite(v)) continue;
+    least = std::min(least, v);
+    greatest = std::max(greatest, v);
+  }
+  return std::midpoint(least, greatest);
+}
+
+template <class GridT>
+IsoChoice choose(const GridT& grid, std::optional<double> isovalue, Inside inside) {
+  const openvdb::GridClass gridClass = grid.getGridClass();
+  IsoChoice choice;
+  if (isovalue) {
+    choice.isovalue = *isovalue;
+  } else if (gridClass != openvdb::GRID_LEVEL_SET) {
+    choice.isovalue = middleValue(grid);
+  }
+  switch (inside) {
+    case Inside::Below:
+      choice.insideIsBelow = true;
+      break;
+    case Inside::Above:
+      choice.insideIsBelow = false;
+      break;
+    case Inside::Auto:
+      choice.insideIsBelow =
+          gridClass == openvdb::GRID_LEVEL_SET ||
+          (gridClass != openvdb::GRID_FOG_VOLUME && grid.background() >= choice.isovalue);
+      break;
+  }
+  return choice;
+}
+
+}  // namespace
+
+IsoChoice chooseIsovalue(const openvdb::GridBase& grid, std::optional<double> isovalue,
+                         Inside inside) {
+  if (isovalue && !std::isfinite(*isovalue)) {
+    throw Error(ErrorCode::InvalidArgument, "the isovalue is not a finite number");
+  }
+  if (grid.isType<openvdb::FloatGrid>()) {
+    return choose(static_cast<const openvdb::FloatGrid&>(grid), isovalue, inside);
+  }
+  if (grid.isType<openvdb::DoubleGrid>()) {
+    return choose(static_cast<const openvdb::DoubleGrid&>(grid), isovalue, inside);
+  }
+  throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() + "\" holds values of type " +
+                                              grid.valueType() +
+                                              "; only float and double grids have an isosurface");
+}
+
+}  // namespace tufa::grid

@@ -1,0 +1,199 @@
+#include "grid/tile_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+
+#include "grid/block_bits.h"
+
+namespace tufa::grid {
+namespace {
+
+using openvdb::Coord;
+
+// Only tiles on the other side than the background are walked: where two tiles of different sides
+// touch, one of them is such a tile.
+template <class TreeT>
+class TileContacts {
+  using Accessor = openvdb::tree::ValueAccessor<const TreeT>;
+  using UpperNode = typename TreeT::RootNodeType::ChildNodeType;
+  using LowerNode = typename UpperNode::ChildNodeType;
+
+  static constexpr int kLowerBlocks = 1 << LowerNode::LOG2DIM;    // blocks along a lower node
+  static constexpr int kUpperChildren = 1 << UpperNode::LOG2DIM;  // lower nodes along an upper
+  static constexpr int kLowerSize = kLowerBlocks * kBlockSize;    // voxels along a lower node
+  static constexpr int kLeafDepth = 3;
+  static constexpr int kPadded = kLowerBlocks + 2;
+
+  enum class State : signed char { Outside, Inside, Leaf };
+
+ public:
+  TileContacts(const TreeT& tree, const IsoChoice& iso)
+      : tree_(tree), iso_(iso), walked_(!isInside(tree.background(), iso)) {}
+
+  std::vector<Coord> find(base::Job& job) {
+    for (auto tile = tree_.root().cbeginValueAll(); tile; ++tile) {
+      if (isInside(*tile, iso_) == walked_) collectRootTile(tile.getCoord());
+    }
+    std::vector<const UpperNode*> uppers;
+    std::vector<const LowerNode*> lowers;
+    tree_.getNodes(uppers);
+    tree_.getNodes(lowers);
+    for (const UpperNode* node : uppers) {
+      for (auto tile = node->cbeginValueAll(); tile; ++tile) {
+        if (isInside(*tile, iso_) == walked_) bigTiles_.push_back(tile.getCoord());
+      }
+    }
+    job.forRanges(bigTiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      Accessor accessor(tree_);
+      std::vector<Coord> found;
+      for (std::size_t i = begin; i < end; ++i) walkBigTile(bigTiles_[i], accessor, found);
+      keep(found);
+    });
+    job.forRanges(lowers.size(), 4, [&](std::size_t begin, std::size_t end) {
+      Accessor accessor(tree_);
+      std::vector<Coord> found;
+      for (std::size_t i = begin; i < end; ++i) walkLowerNode(*lowers[i], accessor, found);
+      keep(found);
+    });
+    std::sort(found_.begin(), found_.end());
+    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    return std::move(found_);
+  }
+
+ private:
+  void keep(const std::vector<Coord>& found) {
+    const std::scoped_lock lock(mutex_);
+    found_.insert(found_.end(), found.begin(), found.end());
+  }
+
+  // The outer lower-node-sized pieces of a root tile: only they can touch something else.
+  void collectRootTile(const Coord& origin) {
+    for (int i = 0; i < kUpperChildren; ++i) {
+      for (int j = 0; j < kUpperChildren; ++j) {
+        const bool shell = i == 0 || j == 0 || i == kUpperChildren - 1 || j == kUpperChildren - 1;
+        for (int k = 0; k < kUpperChildren; k += shell ? 1 : kUpperChildren - 1) {
+          bigTiles_.push_back(origin.offsetBy(i * kLowerSize, j * kLowerSize, k * kLowerSize));
+        }
+      }
+    }
+  }
+
+  // Cells that touch a sample of a block lie in it and in the seven blocks below it.
+  static void addWithLowerBlocks(const Coord& block, std::vector<Coord>& found) {
+    for (int corner = 0; corner < 8; ++corner) {
+      found.push_back(block.offsetBy(-kBlockSize * (corner >> 2), -kBlockSize * ((corner >> 1) & 1),
+                                     -kBlockSize * (corner & 1)));
+    }
+  }
+
+  State stateAt(const Coord& block, Accessor& accessor) const {
+    if (accessor.getValueDepth(block) == kLeafDepth) return State::Leaf;
+    return isInside(accessor.getValue(block), iso_) ? State::Inside : State::Outside;
+  }
+
+  // A tile as large as a lower node: its outer blocks against what lies around it.
+  void walkBigTile(const Coord& origin, Accessor& accessor, std::vector<Coord>& found) const {
+    const State other = walked_ ? State::Outside : State::Inside;
+    for (int direction = 0; direction < 27; ++direction) {
+      const std::array<int, 3> d = {direction / 9 - 1, direction / 3 % 3 - 1, direction % 3 - 1};
+      if (direction == 13) continue;
+      const Coord around = origin.offsetBy(d[0] * kLowerSize, d[1] * kLowerSize, d[2] * kLowerSize);
+      // A region of the same side in one piece: the common case inside a solid.
+      if (accessor.getValueDepth(around) < kLeafDepth - 1 &&
+          isInside(accessor.getValue(around), iso_) == walked_) {
+        continue;
+      }
+      std::array<int, 3> first{}, last{};
+      for (int axis = 0; axis < 3; ++axis) {
+        first[axis] = d[axis] > 0 ? kLowerBlocks - 1 : 0;
+        last[axis] = d[axis] < 0 ? 0 : kLowerBlocks - 1;
+      }
+      for (int i = first[0]; i <= last[0]; ++i) {
+        for (int j = first[1]; j <= last[1]; ++j) {
+          for (int k = first[2]; k <= last[2]; ++k) {
+            const Coord block = origin.offsetBy(i * kBlockSize, j * kBlockSize, k * kBlockSize);
+            if (touches(block, other, accessor)) addWithLowerBlocks(block, found);
+          }
+        }
+      }
+    }
+  }
+
+  bool touches(const Coord& block, State other, Accessor& accessor) const {
+    for (int direction = 0; direction < 27; ++direction) {
+      const Coord around =
+          block.offsetBy((direction / 9 - 1) * kBlockSize, (direction / 3 % 3 - 1) * kBlockSize,
+                         (direction % 3 - 1) * kBlockSize);
+      if (stateAt(around, accessor) == other) return true;
+    }
+    return false;
+  }
+
+  // A lower node's own tiles, with one layer of blocks around it.
+  void walkLowerNode(const LowerNode& node, Accessor& accessor, std::vector<Coord>& found) const {
+    const State mine = walked_ ? State::Inside : State::Outside;
+    const State other = walked_ ? State::Outside : State::Inside;
+    const auto at = [](int i, int j, int k) { return (i * kPadded + j) * kPadded + k; };
+    std::array<State, kPadded * kPadded * kPadded> states;
+    states.fill(State::Leaf);
+    bool some = false;
+    for (auto tile = node.cbeginValueAll(); tile; ++tile) {
+      Coord local;
+      LowerNode::offsetToLocalCoord(tile.pos(), local);
+      const State state = isInside(*tile, iso_) ? State::Inside : State::Outside;
+      states[at(local[0] + 1, local[1] + 1, local[2] + 1)] = state;
+      some |= state == mine;
+    }
+    if (!some) return;
+    const auto isPadding = [](int i) { return i == 0 || i == kPadded - 1; };
+    for (int i = 0; i < kPadded; ++i) {
+      for (int j = 0; j < kPadded; ++j) {
+        const bool shell = isPadding(i) || isPadding(j);
+        for (int k = 0; k < kPadded; k += shell ? 1 : kPadded - 1) {
+          states[at(i, j, k)] = stateAt(blockOf(node, i, j, k), accessor);
+        }
+      }
+    }
+    for (int i = 1; i <= kLowerBlocks; ++i) {
+      for (int j = 1; j <= kLowerBlocks; ++j) {
+        for (int k = 1; k <= kLowerBlocks; ++k) {
+          if (states[at(i, j, k)] != mine) continue;
+          bool near = false;
+          for (int a = i - 1; a <= i + 1; ++a) {
+            for (int b = j - 1; b <= j + 1; ++b) {
+              for (int c = k - 1; c <= k + 1; ++c) near |= states[at(a, b, c)] == other;
+            }
+          }
+          if (near) addWithLowerBlocks(blockOf(node, i, j, k), found);
+        }
+      }
+    }
+  }
+
+  static Coord blockOf(const LowerNode& node, int i, int j, int k) {
+    return node.origin().offsetBy((i - 1) * kBlockSize, (j - 1) * kBlockSize, (k - 1) * kBlockSize);
+  }
+
+  const TreeT& tree_;
+  IsoChoice iso_;
+  bool walked_;  // side of the tiles to walk: inside or not
+  std::vector<Coord> bigTiles_;
+  std::vector<Coord> found_;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+template <class TreeT>
+std::vector<openvdb::Coord> findTileContacts(const TreeT& tree, const IsoChoice& iso,
+                                             base::Job& job) {
+  return TileContacts<TreeT>(tree, iso).find(job);
+}
+
+template std::vector<openvdb::Coord> findTileContacts(const openvdb::FloatTree&, const IsoChoice&,
+                                                      base::Job&);
+template std::vector<openvdb::Coord> findTileContacts(const openvdb::DoubleTree&, const IsoChoice&,
+                                                      base::Job&);
+
+}  // namespace tufa::grid

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <vector>
+
+#include "base/job.h"
+#include "grid/isovalue.h"
+
+namespace tufa::grid {
+
+/// Origins of the blocks without a leaf in which two tiles of different sides may touch (the
+/// background counts as a tile): sorted, each once. It may hold blocks in which none do.
+template <class TreeT>
+[[nodiscard]] std::vector<openvdb::Coord> findTileContacts(const TreeT& tree, const IsoChoice& iso,
+                                                           base::Job& job);
+
+}  // namespace tufa::grid

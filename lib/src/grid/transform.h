@@ -1,0 +1,29 @@
+#pragma once
+
+#include <tufa/openvdb_fwd.h>
+
+#include <array>
+#include <memory>
+
+#include "base/vec3.h"
+
+namespace tufa::grid {
+
+/// A copy of a grid's transform between index and world space.
+class Transform {
+ public:
+  explicit Transform(const openvdb::math::Transform& transform);
+
+  [[nodiscard]] Vec3 indexToWorld(const Vec3& index) const;
+  [[nodiscard]] Vec3 worldToIndex(const Vec3& world) const;
+  /// The same as a matrix: row vectors of index space times it are row vectors of world space.
+  [[nodiscard]] std::array<std::array<double, 4>, 4> matrix() const;
+
+ private:
+  std::shared_ptr<const openvdb::math::Transform> transform_;
+};
+
+/// The transform of a grid.
+[[nodiscard]] Transform transformOf(const openvdb::GridBase& grid);
+
+}  // namespace tufa::grid

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <tufa/coord.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/job.h"
+#include "grid/block_bits.h"
+#include "grid/block_places.h"
+#include "grid/field.h"
+#include "grid/isovalue.h"
+#include "tufa/openvdb_fwd.h"
+
+namespace tufa::grid {
+
+/// A leaf of the tree behind a block, by its place in the order of the tree; kNoLeaf where a tile
+/// is.
+using LeafRef = std::int32_t;
+inline constexpr LeafRef kNoLeaf = -1;
+
+/// Reads values of a tree; remembers the nodes on its way. For one thread.
+class Accessor {
+ public:
+  virtual ~Accessor() = default;
+
+  [[nodiscard]] virtual double value(const Coord& at) = 0;
+  [[nodiscard]] virtual bool isActive(const Coord& at) = 0;
+  /// Writes the samples of a block and of one layer below and two above it on each axis, scaled to
+  /// voxels, in the order of BlockSamples. `leaves` are those of the block at `origin` and of the
+  /// 26 around it.
+  virtual void gather(const std::array<LeafRef, 27>& leaves, const Coord& origin,
+                      const FieldScale& scale, float* samples) = 0;
+};
+
+/// A tree of an OpenVDB grid: the one place where the type of its values is known. What goes
+/// through a virtual call is a block or a rare single value, never a loop over samples.
+class Tree {
+ public:
+  virtual ~Tree() = default;
+
+  /// What there is to know of all values before the surface is looked for.
+  struct Summary {
+    std::size_t activeVoxels = 0;  ///< those of tiles included
+    std::size_t nonFiniteValues = 0;
+    Coord firstNonFinite;
+  };
+
+  [[nodiscard]] virtual std::size_t leafCount() const = 0;
+  [[nodiscard]] virtual Coord leafOrigin(LeafRef leaf) const = 0;
+  /// The 512 values of a leaf as double: one of them.
+  [[nodiscard]] virtual double leafValue(LeafRef leaf, int cell) const = 0;
+  /// Slab x of the mask of active values.
+  [[nodiscard]] virtual std::uint64_t leafActive(LeafRef leaf, int x) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<Accessor> accessor() const = 0;
+
+  /// Reads every value once: side bits of all leaves, and what the summary holds. Throws
+  /// Error(NonFiniteValues) for a background that is not finite.
+  virtual Summary readSides(const IsoChoice& iso, std::vector<BlockBits>& inside,
+                            base::Job& job) const = 0;
+  /// Notes the place of every leaf and the sides of tiles as large as one.
+  virtual void findPlaces(const IsoChoice& iso, BlockPlaces& places, base::Job& job) const = 0;
+  /// Blocks in tiles with cells that the surface passes because tiles of two sides touch; see
+  /// tile_contacts.h.
+  [[nodiscard]] virtual std::vector<Coord> tileContacts(const IsoChoice& iso,
+                                                        base::Job& job) const = 0;
+};
+
+/// The tree of a float or double grid, which must outlive it.
+[[nodiscard]] std::shared_ptr<const Tree> treeOf(const openvdb::GridBase& grid, base::Job& job);
+
+}  // namespace tufa::grid

@@ -1,0 +1,272 @@
+#include <openvdb/openvdb.h>
+
+#include <tufa/error.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <mutex>
+
+#include "base/huge_pages.h"
+#include "grid/openvdb_templates.h"
+#include "grid/samples.h"
+#include "grid/tile_contacts.h"
+#include "grid/tree.h"
+#include "grid/vdb_coord.h"
+
+namespace tufa::grid {
+namespace {
+
+// The value v such that "below v" (or "above v") in T means the same as below (above) the isovalue.
+template <class T>
+T threshold(const IsoChoice& iso) {
+  const T rounded = static_cast<T>(iso.isovalue);
+  const T infinity = std::numeric_limits<T>::infinity();
+  if (iso.insideIsBelow) {
+    return rounded < iso.isovalue ? std::nextafter(rounded, infinity) : rounded;
+  }
+  return rounded > iso.isovalue ? std::nextafter(rounded, -infinity) : rounded;
+}
+
+// Side bits of 512 samples. Bytes first, then eight bytes to eight bits by one multiplication: the
+// compiler vectorizes the first part and the second is short.
+template <bool kBelow, class T>
+void packSides(const T* values, T limit, BlockBits& bits) {
+  constexpr std::uint64_t kGather = 0x0102040810204080u;
+  for (int slab = 0; slab < kBlockSize; ++slab) {
+    alignas(64) std::array<std::uint8_t, 64> sides;
+    const T* from = values + slab * 64;
+    for (int i = 0; i < 64; ++i) sides[i] = kBelow ? from[i] < limit : from[i] > limit;
+    std::uint64_t word = 0;
+    for (int row = 0; row < 8; ++row) {
+      std::uint64_t bytes;
+      std::memcpy(&bytes, &sides[row * 8], 8);
+      word |= ((bytes * kGather) >> 56) << (row * 8);
+    }
+    bits.slabs[slab] = word;
+  }
+}
+
+template <class T>
+bool allFinite(const T* values) {
+  // x * 0 is 0 for finite x and NaN otherwise; NaN stays in a sum.
+  std::array<T, 16> sums{};
+  for (int i = 0; i < kBlockCells; i += 16) {
+    for (int lane = 0; lane < 16; ++lane) sums[lane] += values[i + lane] * T(0);
+  }
+  T sum = 0;
+  for (const T lane : sums) sum += lane;
+  return sum == T(0);
+}
+
+// The samples of one block: those of a leaf, or eight equal ones that stand for each row of a tile.
+template <class T>
+struct Source {
+  const T* values = nullptr;
+  int mask = 0;  // keeps the row's part of an index in a leaf, drops it in a tile
+  std::array<T, kBlockSize> tileRow;
+
+  [[nodiscard]] const T* row(int first) const { return values + (first & mask); }
+};
+
+template <class T>
+float scaled(T value, T isovalue, T factor) {
+  return static_cast<float>((value - isovalue) * factor);
+}
+
+template <class TreeT>
+class VdbAccessor final : public Accessor {
+  using T = typename TreeT::ValueType;
+
+ public:
+  VdbAccessor(const TreeT& tree, const std::vector<const T*>& values)
+      : accessor_(tree), values_(values) {}
+
+  double value(const Coord& at) override { return accessor_.getValue(toVdb(at)); }
+  bool isActive(const Coord& at) override { return accessor_.isValueOn(toVdb(at)); }
+
+  void gather(const std::array<LeafRef, 27>& leaves, const Coord& origin, const FieldScale& scale,
+              float* samples) override {
+    std::array<Source<T>, 27> sources;
+    for (int i = 0; i < 27; ++i) {
+      Source<T>& source = sources[i];
+      source.mask = ~0;
+      if (leaves[i] != kNoLeaf) {
+        source.values = values_[leaves[i]];
+        continue;
+      }
+      const Coord there = origin.offsetBy((i / 9 - 1) * kBlockSize, (i / 3 % 3 - 1) * kBlockSize,
+                                          (i % 3 - 1) * kBlockSize);
+      source.tileRow.fill(accessor_.getValue(toVdb(there)));
+      source.values = source.tileRow.data();
+      source.mask = 0;
+    }
+    const T isovalue = static_cast<T>(scale.isovalue);
+    const T factor = static_cast<T>(scale.factor);
+    for (int x = -1; x <= kBlockSize + 1; ++x) {
+      for (int y = -1; y <= kBlockSize + 1; ++y) {
+        const Source<T>* along = &sources[neighbourIndex(x >> 3, y >> 3, -1)];
+        const int first = cellIndex(x & 7, y & 7, 0);
+        const T* below = along[0].row(first);
+        const T* here = along[1].row(first);
+        const T* above = along[2].row(first);
+        float* to = &samples[BlockSamples::index(x, y, -1)];
+        to[0] = scaled(below[kBlockSize - 1], isovalue, factor);
+        for (int z = 0; z < kBlockSize; ++z) to[z + 1] = scaled(here[z], isovalue, factor);
+        to[9] = scaled(above[0], isovalue, factor);
+        to[10] = scaled(above[1], isovalue, factor);
+      }
+    }
+  }
+
+ private:
+  openvdb::tree::ValueAccessor<const TreeT> accessor_;
+  const std::vector<const T*>& values_;
+};
+
+template <class TreeT>
+class VdbTree final : public Tree {
+  using T = typename TreeT::ValueType;
+  using Leaf = typename TreeT::LeafNodeType;
+  using Node = typename TreeT::RootNodeType::ChildNodeType::ChildNodeType;
+  static_assert(Leaf::LOG2DIM == 3 && Node::LOG2DIM == BlockPlaces::kNodeBits);
+
+ public:
+  VdbTree(const TreeT& tree, base::Job& job) : tree_(tree) {
+    std::vector<const Leaf*> leaves;
+    tree.getNodes(leaves);
+    base::resizeLarge(values_, leaves.size(), job);
+    base::resizeLarge(leaves_, leaves.size(), job);
+    job.forRanges(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        leaves_[i] = leaves[i];
+        values_[i] = leaves[i]->buffer().data();  // reads a leaf that waits in its file
+      }
+    });
+  }
+
+  [[nodiscard]] std::size_t leafCount() const override { return leaves_.size(); }
+  [[nodiscard]] Coord leafOrigin(LeafRef leaf) const override {
+    return fromVdb(leaves_[leaf]->origin());
+  }
+  [[nodiscard]] double leafValue(LeafRef leaf, int cell) const override {
+    return values_[leaf][cell];
+  }
+  [[nodiscard]] std::uint64_t leafActive(LeafRef leaf, int x) const override {
+    return leaves_[leaf]->getValueMask().template getWord<std::uint64_t>(x);
+  }
+  [[nodiscard]] std::unique_ptr<Accessor> accessor() const override {
+    return std::make_unique<VdbAccessor<TreeT>>(tree_, values_);
+  }
+
+  Summary readSides(const IsoChoice& iso, std::vector<BlockBits>& inside,
+                    base::Job& job) const override {
+    Summary summary = readLeaves(iso, inside, job);
+    readTiles(summary);
+    return summary;
+  }
+
+  void findPlaces(const IsoChoice& iso, BlockPlaces& places, base::Job& job) const override {
+    std::vector<const Node*> nodes;
+    tree_.getNodes(nodes);
+    std::vector<Coord> origins;
+    std::vector<BlockRef> firstLeaf;
+    BlockRef leaves = 0;
+    for (const Node* node : nodes) {
+      origins.push_back(fromVdb(node->origin()));
+      firstLeaf.push_back(leaves);
+      leaves += static_cast<BlockRef>(node->getChildMask().countOn());
+    }
+    places.setNodes(origins, job);
+    job.forRanges(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        BlockRef* place = places.node(i);
+        for (auto tile = nodes[i]->cbeginValueAll(); tile; ++tile) {
+          place[tile.pos()] = isInside(*tile, iso) ? kInsideTile : kOutsideTile;
+        }
+        BlockRef next = firstLeaf[i];
+        for (auto leaf = nodes[i]->cbeginChildOn(); leaf; ++leaf) place[leaf.pos()] = next++;
+      }
+    });
+  }
+
+  [[nodiscard]] std::vector<Coord> tileContacts(const IsoChoice& iso,
+                                                base::Job& job) const override {
+    std::vector<Coord> contacts;
+    for (const openvdb::Coord& block : findTileContacts(tree_, iso, job)) {
+      contacts.push_back(fromVdb(block));
+    }
+    return contacts;
+  }
+
+ private:
+  // Side bits of the leaves; values that are not finite are outside.
+  Summary readLeaves(const IsoChoice& iso, std::vector<BlockBits>& inside, base::Job& job) const {
+    base::resizeLarge(inside, values_.size(), job);
+    const T limit = threshold<T>(iso);
+    Summary summary;
+    std::mutex mutex;
+    std::size_t firstBad = values_.size();
+    std::atomic<std::size_t> active{0};
+    job.forRanges(values_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      std::size_t activeHere = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        const T* values = values_[i];
+        activeHere += leaves_[i]->getValueMask().countOn();
+        if (iso.insideIsBelow) {
+          packSides<true>(values, limit, inside[i]);
+        } else {
+          packSides<false>(values, limit, inside[i]);
+        }
+        if (allFinite(values)) continue;
+        const std::scoped_lock lock(mutex);
+        for (int cell = 0; cell < kBlockCells; ++cell) {
+          if (std::isfinite(values[cell])) continue;
+          ++summary.nonFiniteValues;
+          inside[i].slabs[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
+          if (i < firstBad) {
+            firstBad = i;
+            summary.firstNonFinite =
+                leafOrigin(static_cast<LeafRef>(i)).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
+          }
+        }
+      }
+      active += activeHere;
+    });
+    summary.activeVoxels = active;
+    return summary;
+  }
+
+  void readTiles(Summary& summary) const {
+    if (!std::isfinite(tree_.background())) {
+      throw Error(ErrorCode::NonFiniteValues,
+                  "the grid's background is not a finite number; set a finite background");
+    }
+    auto tile = tree_.cbeginValueAll();
+    tile.setMaxDepth(tile.getLeafDepth() - 1);
+    for (; tile; ++tile) {
+      if (tile.isValueOn()) summary.activeVoxels += tile.getVoxelCount();
+      if (std::isfinite(*tile)) continue;
+      if (summary.nonFiniteValues++ == 0) summary.firstNonFinite = fromVdb(tile.getCoord());
+    }
+  }
+
+  const TreeT& tree_;
+  std::vector<const T*> values_;     ///< the 512 values of each leaf
+  std::vector<const Leaf*> leaves_;  ///< in the order of the tree
+};
+
+}  // namespace
+
+std::shared_ptr<const Tree> treeOf(const openvdb::GridBase& grid, base::Job& job) {
+  if (grid.isType<openvdb::FloatGrid>()) {
+    return std::make_shared<VdbTree<openvdb::FloatTree>>(
+        static_cast<const openvdb::FloatGrid&>(grid).tree(), job);
+  }
+  return std::make_shared<VdbTree<openvdb::DoubleTree>>(
+      static_cast<const openvdb::DoubleGrid&>(grid).tree(), job);
+}
+
+}  // namespace tufa::grid

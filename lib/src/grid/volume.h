@@ -1,0 +1,38 @@
+#pragma once
+
+#include <tufa/contour.h>
+
+#include <string>
+
+#include "base/index_box.h"
+#include "base/job.h"
+#include "grid/affine.h"
+#include "grid/blocks.h"
+#include "grid/field.h"
+#include "grid/transform.h"
+
+namespace tufa::grid {
+
+/// A grid as the stages read it: what was chosen, its blocks, and how values and places are scaled.
+struct Volume {
+  Blocks blocks;
+  FieldScale scale;
+  Transform transform;
+  Affine affine;  ///< positions are counted from the lowest corner of all blocks of the grid
+};
+
+/// Throws Error(UnsupportedGrid) unless the grid is a float or double grid with a linear transform,
+/// Error(LimitExceeded) if coordinates beside its own could overflow.
+void requireMeshable(const openvdb::GridBase& grid);
+
+/// The name of a grid; empty if it has none.
+[[nodiscard]] std::string nameOf(const openvdb::GridBase& grid);
+
+/// Reads a grid that is meshable. Throws Error as contour() does.
+[[nodiscard]] Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options,
+                                base::Job& job);
+
+/// The blocks of a box alone, see Blocks. Positions are counted from the same point for every box.
+[[nodiscard]] Volume partOf(const Volume& whole, const base::IndexBox& box);
+
+}  // namespace tufa::grid

@@ -1,0 +1,116 @@
+#include "intersect/candidates.h"
+
+#include <algorithm>
+#include <bitset>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "uniform/quad_places.h"
+
+namespace tufa::intersect {
+
+using uniform::kAround;
+using uniform::QuadPlace;
+using uniform::SurfaceBlock;
+
+namespace {
+
+// Which cells of a block, and of the layer of cells below it on each axis, have several vertices.
+class SharedCells {
+ public:
+  void fill(const uniform::Topology& topology, const SurfaceBlock& block) {
+    if (any_) cells_.reset();
+    any_ = false;
+    for (int corner = 0; corner < uniform::kCorners; ++corner) {
+      const int dx = corner >> 2, dy = (corner >> 1) & 1, dz = corner & 1;
+      const uniform::SurfaceBlockIndex index = topology.neighbour(block, -dx, -dy, -dz);
+      if (index == uniform::kNoSurfaceBlock || topology.blocks[index].special < 0) continue;
+      for (const auto& [cell, count, extra] :
+           topology.specials[topology.blocks[index].special].exceptions) {
+        const int x = (cell >> 6) - 8 * dx, y = ((cell >> 3) & 7) - 8 * dy, z = (cell & 7) - 8 * dz;
+        if (count < 2 || x < -1 || y < -1 || z < -1) continue;
+        cells_.set(slotOf(x, y, z));
+        any_ = true;
+      }
+    }
+  }
+
+  [[nodiscard]] bool touch(const QuadPlace& place) const {
+    if (!any_) return false;
+    for (const auto& [du, dv] : kAround) {
+      std::array<int, 3> cell = place.start;
+      cell[(place.axis + 1) % 3] -= du;
+      cell[(place.axis + 2) % 3] -= dv;
+      if (cells_.test(slotOf(cell[0], cell[1], cell[2]))) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr int kSize = grid::kBlockSize + 1;
+  static std::size_t slotOf(int x, int y, int z) {
+    return static_cast<std::size_t>(((x + 1) * kSize + y + 1) * kSize + z + 1);
+  }
+
+  bool any_ = false;
+  std::bitset<kSize * kSize * kSize> cells_;
+};
+
+bool hasStray(const uniform::VertexSides& sides, const Quad& quad) {
+  return std::any_of(quad.vertices.begin(), quad.vertices.end(),
+                     [&](VertexIndex vertex) { return sides.isStray(vertex); });
+}
+
+// Whether `inner` is behind the plane through `p` and `outer` in front, by more than `margin`.
+bool parts(const Vec3& normal, const Vec3& p, const Vec3& inner, const Vec3& outer, double margin) {
+  const double before = normal.dot(outer - p), behind = normal.dot(p - inner);
+  const double least = margin * margin * normal.squaredLength();
+  return before > 0 && behind > 0 && before * before > least && behind * behind > least;
+}
+
+bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, const Vec3& outer,
+                     double margin) {
+  std::array<Vec3, 4> p;
+  for (int i = 0; i < 4; ++i) {
+    const Position& at = mesh.positions[quad.vertices[i]];
+    p[i] = {at.x, at.y, at.z};
+  }
+  const Vec3 diagonal = p[2] - p[0];
+  return parts((p[1] - p[0]).cross(diagonal), p[0], inner, outer, margin) &&
+         parts(diagonal.cross(p[3] - p[0]), p[0], inner, outer, margin);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> findSuspects(const uniform::SurfaceView& context, const Mesh& mesh,
+                                        double margin, base::Job& job) {
+  std::vector<std::uint32_t> suspects;
+  std::mutex mutex;
+  job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> found;
+    SharedCells shared;
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = context.topology.blocks[i];
+      shared.fill(context.topology, block);
+      const Coord& origin = context.blocks.origin(block.block);
+      forQuads(context, block, [&](const QuadPlace& place) {
+        const Quad& quad = mesh.quads[place.quad];
+        const auto [x, y, z] = place.start;
+        const Position start = context.affine.position(origin, x, y, z);
+        const Vec3 lower(start.x, start.y, start.z);
+        const Vec3 upper = lower + context.affine.axis(place.axis);
+        if (hasStray(context.sides, quad) || shared.touch(place) ||
+            !staysInEnvelope(mesh, quad, place.upward ? lower : upper, place.upward ? upper : lower,
+                             margin)) {
+          found.push_back(static_cast<std::uint32_t>(place.quad));
+        }
+      });
+    }
+    const std::scoped_lock lock(mutex);
+    suspects.insert(suspects.end(), found.begin(), found.end());
+  });
+  base::parallelSort(suspects.begin(), suspects.end(), std::less<>());
+  return suspects;
+}
+
+}  // namespace tufa::intersect

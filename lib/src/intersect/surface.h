@@ -1,0 +1,107 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <algorithm>
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/bvh.h"
+#include "base/job.h"
+
+namespace tufa::intersect {
+
+/// Names a polygon of a mesh: its quads come first, then its triangles.
+using PolygonIndex = std::uint32_t;
+
+/// Two polygons that meet elsewhere than in what they share, the lesser index first; equal ones are
+/// a quad that is folded onto itself.
+struct PolygonPair {
+  PolygonIndex a, b;
+  friend auto operator<=>(const PolygonPair&, const PolygonPair&) = default;
+};
+
+/// The vertices of a polygon in order: three, four, or none.
+using Corners = std::span<const VertexIndex>;
+
+/// The triangles of a polygon, a quad split from its first vertex to its third. Returns how many.
+inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
+  if (v.empty()) return 0;
+  out[0] = {v[0], v[1], v[2]};
+  if (v.size() == 3) return 1;
+  out[1] = {v[0], v[2], v[3]};
+  return 2;
+}
+
+/// The polygons of pairs, each as often as it occurs.
+[[nodiscard]] std::vector<PolygonIndex> polygonsOf(const std::vector<PolygonPair>& pairs);
+
+/// The vertices of polygons of a mesh, sorted.
+[[nodiscard]] std::vector<VertexIndex> verticesOf(const Mesh& mesh,
+                                                  const std::vector<PolygonIndex>& polygons);
+
+/// Whether two polygons, or if they are the `same` the triangles of one, meet elsewhere than in
+/// what they share.
+[[nodiscard]] bool meetElsewhere(std::span<const Position> positions, Corners a, Corners b,
+                                 bool same);
+
+/// The polygons of a mesh while they change, and where they lie.
+///
+/// Neighbours in a mesh are mostly neighbours in its arrays too, so runs of consecutive polygons
+/// have small boxes, and these are all the index that is kept. Quads keep their numbers while
+/// others are taken out.
+class Surface {
+ public:
+  Surface(Mesh& mesh, base::Job& job);
+
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] std::size_t size() const { return mesh_.quads.size() + mesh_.triangles.size(); }
+  /// The vertices of a polygon: 3, 4, or none if it was taken out.
+  [[nodiscard]] Corners corners(PolygonIndex polygon) const {
+    if (polygon >= mesh_.quads.size()) {
+      return mesh_.triangles[polygon - mesh_.quads.size()].vertices;
+    }
+    const auto& v = mesh_.quads[polygon].vertices;
+    if (v[0] == v[1]) return {};
+    return v;
+  }
+  [[nodiscard]] base::Box box(PolygonIndex polygon) const;
+  [[nodiscard]] bool isQuad(PolygonIndex polygon) const { return polygon < mesh_.quads.size(); }
+
+  /// Call update() for the polygons around a vertex once it has moved.
+  void move(VertexIndex vertex, const Position& to) { mesh_.positions[vertex] = to; }
+  /// Splits a quad along its other diagonal.
+  void turn(PolygonIndex quad);
+  /// Puts four triangles around a new vertex in place of a quad; they get the last indices.
+  void fan(PolygonIndex quad, const Position& centre);
+  void update(PolygonIndex polygon);
+  /// Leaves no trace of the quads that were taken out. The last call.
+  void finish();
+
+  static constexpr std::size_t kRun = 32;
+  [[nodiscard]] std::size_t runCount() const { return runs_.size(); }
+  [[nodiscard]] const base::Box& runBox(std::size_t run) const { return runs_[run]; }
+  [[nodiscard]] PolygonIndex runBegin(std::size_t run) const {
+    return static_cast<PolygonIndex>(run * kRun);
+  }
+  [[nodiscard]] PolygonIndex runEnd(std::size_t run) const {
+    return static_cast<PolygonIndex>(std::min((run + 1) * kRun, size()));
+  }
+
+ private:
+  Mesh& mesh_;
+  std::vector<base::Box> runs_;
+  bool fanned_ = false;
+};
+
+/// All pairs of which at least one polygon is among `suspects`, sorted; of two polygons for which
+/// `matters` says so, if there is such a function. The result does not depend on the number of
+/// threads.
+[[nodiscard]] std::vector<PolygonPair> findPairs(
+    const Surface& surface, const std::vector<PolygonIndex>& suspects, base::Job& job,
+    const std::function<bool(PolygonIndex, PolygonIndex)>& matters = nullptr);
+
+}  // namespace tufa::intersect

@@ -1,0 +1,189 @@
+#include "intersect/triangle_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/vec3.h"
+#include "intersect/exact.h"
+
+namespace tufa::intersect {
+namespace {
+
+using Corners = std::array<Position, 3>;
+
+// Far above the rounding of a scalar product, relative to its terms.
+constexpr double kRounding = 1e-15;
+// The sine of an angle far above all rounding.
+constexpr double kClearly = 1e-6;
+
+Vec3 between(const Position& from, const Position& to) {
+  return {to.x - from.x, to.y - from.y, to.z - from.z};
+}
+
+// Moves the common vertices of two triangles to their fronts, in the same order; returns how many.
+int alignShared(std::array<VertexIndex, 3>& a, std::array<VertexIndex, 3>& b) {
+  int shared = 0;
+  for (int i = 0; i < 3; ++i) {
+    const auto found = std::find(b.begin() + shared, b.end(), a[i]);
+    if (found == b.end()) continue;
+    std::iter_swap(b.begin() + shared, found);
+    std::swap(a[shared], a[i]);
+    ++shared;
+  }
+  return shared;
+}
+
+// A quick answer for shared edges: surely not folded over, as the third corners lie on opposite
+// sides of the edge.
+bool isUnfolded(const Corners& a, const Corners& b) {
+  const Vec3 edge = between(a[0], a[1]), own = between(a[0], a[2]), other = between(a[0], b[2]);
+  const Vec3 across = own * edge.squaredLength() - edge * own.dot(edge);
+  if (across.length() < kClearly * edge.squaredLength() * own.length()) return false;
+  return across.dot(other) < -kClearly * across.length() * other.length();
+}
+
+// An axis along which the triangle is seen with an area; -1 if its corners lie on a line.
+int facingAxis(const Corners& t) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (orientationAcross(axis, t[0], t[1], t[2]) != 0) return axis;
+  }
+  return -1;
+}
+
+// All in one plane. Two convex figures are apart if a line along a side of one parts them.
+bool meetsInPlane(const Position& p, const Position& q, const Corners& t) {
+  const int axis = facingAxis(t);
+  if (axis < 0) return false;
+  const int turn = orientationAcross(axis, t[0], t[1], t[2]);
+  for (int i = 0; i < 3; ++i) {
+    const Position& from = t[i];
+    const Position& to = t[(i + 1) % 3];
+    if (orientationAcross(axis, from, to, p) == -turn &&
+        orientationAcross(axis, from, to, q) == -turn) {
+      return false;
+    }
+  }
+  const int first = orientationAcross(axis, p, q, t[0]);
+  return first == 0 || first != orientationAcross(axis, p, q, t[1]) ||
+         first != orientationAcross(axis, p, q, t[2]);
+}
+
+bool segmentMeets(const Position& p, const Position& q, const Corners& t) {
+  const int sideP = orientation(t[0], t[1], t[2], p), sideQ = orientation(t[0], t[1], t[2], q);
+  if (sideP == sideQ) return sideP == 0 && meetsInPlane(p, q, t);
+  bool left = false, right = false;
+  for (int i = 0; i < 3; ++i) {
+    const int side = orientation(p, q, t[i], t[(i + 1) % 3]);
+    left |= side > 0;
+    right |= side < 0;
+  }
+  return !(left && right);
+}
+
+// Whether all corners of b but the first `skip` are strictly on one side of the plane of a.
+bool isBeside(const Corners& a, const Corners& b, int skip) {
+  const int side = orientation(a[0], a[1], a[2], b[skip]);
+  if (side == 0) return false;
+  for (int i = skip + 1; i < 3; ++i) {
+    if (orientation(a[0], a[1], a[2], b[i]) != side) return false;
+  }
+  return true;
+}
+
+bool meetAnywhere(const Corners& a, const Corners& b) {
+  if (isBeside(a, b, 0) || isBeside(b, a, 0)) return false;
+  for (int i = 0; i < 3; ++i) {
+    if (segmentMeets(a[i], a[(i + 1) % 3], b) || segmentMeets(b[i], b[(i + 1) % 3], a)) return true;
+  }
+  return false;
+}
+
+bool meetBeyondVertex(const Corners& a, const Corners& b) {
+  if (isBeside(a, b, 1) || isBeside(b, a, 1)) return false;
+  return segmentMeets(b[1], b[2], a) || segmentMeets(a[1], a[2], b);
+}
+
+bool isFoldedOver(const Corners& a, const Corners& b) {
+  if (isUnfolded(a, b)) return false;
+  if (orientation(a[0], a[1], a[2], b[2]) != 0) return false;
+  const int axis = facingAxis(a);
+  return axis >= 0 &&
+         orientationAcross(axis, a[0], a[1], a[2]) == orientationAcross(axis, a[0], a[1], b[2]);
+}
+
+}  // namespace
+
+bool arePartedAt(const Position& at, std::span<const Position> a, std::span<const Position> b,
+                 bool common) {
+  Vec3 toA(0), toB(0);
+  for (const Position& p : a) toA += between(at, p);
+  for (const Position& p : b) toB += between(at, p);
+  const double weightA = common ? toA.length() : static_cast<double>(a.size());
+  const double weightB = common ? toB.length() : static_cast<double>(b.size());
+  if (!(weightA > 0 && weightB > 0)) return false;
+  const Vec3 way = toA / weightA - toB / weightB;
+  double leastA = std::numeric_limits<double>::infinity(), mostB = -leastA, terms = 0;
+  const auto along = [&](const Position& p) {
+    const Vec3 offset = between(at, p);
+    terms = std::max(terms, std::abs(way[0] * offset[0]) + std::abs(way[1] * offset[1]) +
+                                std::abs(way[2] * offset[2]));
+    return way.dot(offset);
+  };
+  for (const Position& p : a) leastA = std::min(leastA, along(p));
+  for (const Position& p : b) mostB = std::max(mostB, along(p));
+  const double margin = kRounding * terms;
+  return common ? leastA > margin && mostB < -margin : leastA - mostB > 2 * margin;
+}
+
+bool arePartedAlong(const Position& from, const Position& to, std::span<const Position> a,
+                    std::span<const Position> b) {
+  const Vec3 edge = between(from, to);
+  const double length = edge.squaredLength();
+  if (!(length > 0)) return false;
+  const auto directionAcross = [&](std::span<const Position> points) {
+    Vec3 sum(0);
+    for (const Position& p : points) sum += between(from, p);
+    sum -= edge * (sum.dot(edge) / length);
+    return sum / sum.length();  // not a number if they lie on the line
+  };
+  const Vec3 way = directionAcross(a) - directionAcross(b);
+  // As good as at right angles to the edge: the plane that is so has the same points on each side.
+  const double squared = kClearly * kClearly * way.squaredLength();
+  const double along = way.dot(edge);
+  if (!(4 * along * along < squared * length)) return false;
+  const auto isBeyond = [&](const Position& p, double side) {
+    const Vec3 offset = between(from, p);
+    const double height = side * way.dot(offset);
+    return height > 0 && height * height > squared * offset.squaredLength();
+  };
+  return std::all_of(a.begin(), a.end(), [&](const Position& p) { return isBeyond(p, 1); }) &&
+         std::all_of(b.begin(), b.end(), [&](const Position& p) { return isBeyond(p, -1); });
+}
+
+bool meetElsewhere(std::span<const Position> positions, const Triangle& a, const Triangle& b) {
+  auto va = a.vertices;
+  auto vb = b.vertices;
+  const int shared = alignShared(va, vb);
+  const Corners pa{positions[va[0]], positions[va[1]], positions[va[2]]};
+  const Corners pb{positions[vb[0]], positions[vb[1]], positions[vb[2]]};
+  const std::size_t skip = shared == 1 ? 1 : 0;
+  if (shared <= 1 &&
+      arePartedAt(pa[0], std::span(pa).subspan(skip), std::span(pb).subspan(skip), shared == 1)) {
+    return false;
+  }
+  const bool meet = shared == 0   ? meetAnywhere(pa, pb)
+                    : shared == 1 ? meetBeyondVertex(pa, pb)
+                    : shared == 2 ? isFoldedOver(pa, pb)
+                                  : true;
+  return meet && facingAxis(pa) >= 0 && facingAxis(pb) >= 0;
+}
+
+bool isFlat(std::span<const Position> positions, const Triangle& triangle) {
+  const auto& v = triangle.vertices;
+  return facingAxis({positions[v[0]], positions[v[1]], positions[v[2]]}) < 0;
+}
+
+}  // namespace tufa::intersect

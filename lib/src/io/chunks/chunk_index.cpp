@@ -1,0 +1,193 @@
+// chunks.json: what is known of all chunks without their meshes.
+
+#include <tufa/chunks.h>
+#include <tufa/error.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "io/chunks/chunk_parts.h"
+#include "io/input_bytes.h"
+#include "io/output_file.h"
+
+namespace tufa {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kVersion = 1;
+
+Json toJson(const Position& p) { return Json::array({p.x, p.y, p.z}); }
+
+Json toJson(const ChunkLevelEntry& level) {
+  return {{"file", level.file},
+          {"vertices", level.vertices},
+          {"triangles",
+           {{"interior", level.interiorTriangles},
+            {"regular", level.regularTriangles},
+            {"transition", level.transitionTriangles}}},
+          {"bounds", {{"min", toJson(level.least)}, {"max", toJson(level.greatest)}}},
+          {"max_error_voxels", level.maxErrorVoxels},
+          {"transition_error_voxels", level.transitionErrorVoxels},
+          {"pairs_left", level.intersectionsLeft}};
+}
+
+Json toJson(const ChunkIndex& index, std::size_t number) {
+  const ChunkEntry& chunk = index.chunks[number];
+  Json json;
+  json["index"] = {chunk.index[0], chunk.index[1], chunk.index[2]};
+  for (int face = 0; face < kChunkFaces; ++face) {
+    json["neighbours"].push_back(index.neighbour(number, face));
+  }
+  for (const ChunkLevelEntry& level : chunk.levels) json["levels"].push_back(toJson(level));
+  return json;
+}
+
+/// All but the chunks.
+Json headOf(const ChunkIndex& index) {
+  return {{"tufa_chunks", kVersion},       {"grid", index.grid},
+          {"chunk_size", index.chunkSize}, {"tolerances_voxels", index.tolerances},
+          {"voxel_size", index.voxelSize}, {"transform", index.transform},
+          {"origin", toJson(index.origin)}};
+}
+
+std::string textOf(const Json& json) {
+  // A name may hold bytes that are not UTF-8; JSON may not.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Turns JSON into an index, and refuses what no index says.
+class IndexReader {
+ public:
+  explicit IndexReader(const io::InputBytes& input) : input_(input) {}
+
+  ChunkIndex read() const {
+    const Json json = Json::parse(input_.view());
+    if (!json.is_object() || !json.contains("tufa_chunks")) input_.fail("it is no list of chunks");
+    if (json["tufa_chunks"] != kVersion) {
+      input_.fail("its version is " + textOf(json["tufa_chunks"]).substr(0, 40) + ", not " +
+                  std::to_string(kVersion));
+    }
+    ChunkIndex index;
+    index.grid = json.at("grid").get<std::string>();
+    index.chunkSize = readChunkSize(json.at("chunk_size"));
+    for (const Json& tolerance : json.at("tolerances_voxels")) {
+      index.tolerances.push_back(error(tolerance));
+    }
+    index.voxelSize = number(json.at("voxel_size"));
+    if (!(index.voxelSize > 0)) input_.fail("the size of voxels is not above 0");
+    require(json.at("transform").size() == 4, "the transform has not four rows");
+    for (std::size_t row = 0; row < 4; ++row) {
+      require(json["transform"][row].size() == 4, "the transform has not four columns");
+      for (std::size_t k = 0; k < 4; ++k)
+        index.transform[row][k] = number(json["transform"][row][k]);
+    }
+    index.origin = position(json.at("origin"));
+    for (const Json& chunk : json.at("chunks")) addChunk(chunk, index);
+    return index;
+  }
+
+ private:
+  void require(bool holds, const char* cause) const {
+    if (!holds) input_.fail(cause);
+  }
+
+  [[nodiscard]] double number(const Json& json) const {
+    require(json.is_number() && std::isfinite(json.get<double>()), "a number is missing");
+    return json.get<double>();
+  }
+
+  [[nodiscard]] double error(const Json& json) const {
+    const double value = number(json);
+    require(value >= 0, "an error is below 0");
+    return value;
+  }
+
+  [[nodiscard]] std::size_t count(const Json& json) const {
+    require(json.is_number_unsigned(), "a count is missing");
+    return json.get<std::size_t>();
+  }
+
+  [[nodiscard]] int readChunkSize(const Json& json) const {
+    const std::size_t size = count(json);
+    require(size >= 8 && size <= 1024 && (size & (size - 1)) == 0,
+            "the size of chunks is no power of two from 8 to 1024");
+    return static_cast<int>(size);
+  }
+
+  [[nodiscard]] Position position(const Json& json) const {
+    require(json.is_array() && json.size() == 3, "a point has not three coordinates");
+    return {number(json[0]), number(json[1]), number(json[2])};
+  }
+
+  [[nodiscard]] Coord coordinates(const Json& json) const {
+    require(json.is_array() && json.size() == 3, "an index has not three numbers");
+    Coord index;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Json& place = json[static_cast<std::size_t>(axis)];
+      constexpr std::int64_t kMost = std::int64_t{1} << 29;  // chunks of 8 reach all of index space
+      require(place.is_number_integer() && place >= -kMost && place <= kMost,
+              "an index is no integer of the lattice");
+      index[axis] = place.get<int>();
+    }
+    return index;
+  }
+
+  [[nodiscard]] ChunkLevelEntry level(const Json& json) const {
+    ChunkLevelEntry entry;
+    entry.file = json.at("file").get<std::string>();
+    // Nothing outside the folder is ever opened.
+    require(entry.file.find('/') == std::string::npos && entry.file != "." && entry.file != ".." &&
+                entry.file.find('\0') == std::string::npos,
+            "a file is not named by its name alone");
+    entry.vertices = count(json.at("vertices"));
+    entry.interiorTriangles = count(json.at("triangles").at("interior"));
+    entry.regularTriangles = count(json["triangles"].at("regular"));
+    entry.transitionTriangles = count(json["triangles"].at("transition"));
+    entry.least = position(json.at("bounds").at("min"));
+    entry.greatest = position(json["bounds"].at("max"));
+    entry.maxErrorVoxels = error(json.at("max_error_voxels"));
+    entry.transitionErrorVoxels = error(json.at("transition_error_voxels"));
+    entry.intersectionsLeft = count(json.at("pairs_left"));
+    return entry;
+  }
+
+  void addChunk(const Json& json, ChunkIndex& index) const {
+    ChunkEntry chunk;
+    chunk.index = coordinates(json.at("index"));
+    require(index.chunks.empty() || index.chunks.back().index < chunk.index,
+            "the chunks are not sorted by index");
+    for (const Json& entry : json.at("levels")) chunk.levels.push_back(level(entry));
+    require(chunk.levels.size() == index.tolerances.size() && !chunk.levels.empty(),
+            "a chunk has not one level for each tolerance");
+    index.chunks.push_back(std::move(chunk));
+  }
+
+  const io::InputBytes& input_;
+};
+
+}  // namespace
+
+void writeChunkIndex(const ChunkIndex& index, const std::string& folder) {
+  std::string text = textOf(headOf(index));
+  text.back() = ',';
+  text += "\"chunks\":[";
+  for (std::size_t i = 0; i < index.chunks.size(); ++i) {
+    text += (i == 0 ? "\n" : ",\n") + textOf(toJson(index, i));
+  }
+  text += "]}\n";
+  io::OutputFile file(io::chunkIndexFile(folder));
+  file.write(text.data(), text.size());
+  file.commit();
+}
+
+ChunkIndex readChunkIndex(const std::string& folder) {
+  const io::InputBytes input(io::chunkIndexFile(folder));
+  try {
+    return IndexReader(input).read();
+  } catch (const Json::exception& error) {
+    input.fail(std::string("its JSON is damaged: ") + error.what());
+  }
+}
+
+}  // namespace tufa

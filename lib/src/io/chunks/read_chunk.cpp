@@ -1,0 +1,122 @@
+// Reads the meshes of a chunk back.
+
+#include <tufa/chunks.h>
+#include <tufa/error.h>
+
+#include <array>
+
+#include "io/chunks/chunk_parts.h"
+#include "io/gltf/glb_file.h"
+#include "io/mesh/mesh_format.h"
+#include "io/mesh/mesh_readers.h"
+
+namespace tufa {
+namespace {
+
+void readGlb(const ChunkIndex& index, const io::InputBytes& input, ChunkLevel& level) {
+  io::glb::File file(input);
+  const nlohmann::json& node = file.document().at("nodes").at(0);
+  const Position& origin = index.origin;
+  if (node.at("translation").get<std::array<double, 3>>() !=
+      std::array<double, 3>{origin.x, origin.y, origin.z}) {
+    input.fail("its origin is not that of chunks.json");
+  }
+  const nlohmann::json& primitives = file.document().at("meshes").at(0).at("primitives");
+  const nlohmann::json& attributes = primitives.at(0).at("attributes");
+  const auto forEachPoint = [&](const char* attribute, const auto& add) {
+    const io::glb::View view = file.viewOf(attributes.at(attribute), "VEC3", 3);
+    for (std::size_t n = 0; n < view.count; ++n) {
+      const Vec3 point = file.pointAt(view, n);
+      if (!point.isFinite()) input.fail("vertex " + std::to_string(n) + " is not finite");
+      add(point);
+    }
+  };
+  forEachPoint("POSITION", [&](const Vec3& p) {
+    level.positions.emplace_back(origin.x + p[0], origin.y + p[1], origin.z + p[2]);
+  });
+  forEachPoint("NORMAL", [&](const Vec3& n) {
+    level.normals.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]),
+                               static_cast<float>(n[2]));
+  });
+  for (const nlohmann::json& primitive : primitives) {
+    const auto name = primitive.at("extras").at("name").get<std::string>();
+    const std::size_t part = io::partNamed(name);
+    if (part == io::kChunkParts)
+      input.fail("it has an unknown part \"" + name.substr(0, 40) + "\"");
+    if (primitive.at("attributes") != attributes) input.fail("its parts do not share vertices");
+    const auto corners = file.indicesOf(primitive.at("indices"), level.positions.size());
+    for (std::size_t n = 0; n + 2 < corners.size(); n += 3) {
+      io::partOf(level, part).emplace_back(corners[n], corners[n + 1], corners[n + 2]);
+    }
+  }
+}
+
+void readPly(const io::InputBytes& input, ChunkLevel& level) {
+  std::vector<std::uint8_t> parts;
+  Mesh mesh = io::readPly(input, &parts);
+  if (!mesh.quads.empty() || parts.size() != mesh.triangles.size()) {
+    input.fail("its faces are not triangles with a part each");
+  }
+  level.positions = std::move(mesh.positions);
+  level.normals = std::move(mesh.normals);
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    if (parts[n] >= io::kChunkParts) {
+      input.fail("it has an unknown part " + std::to_string(parts[n]));
+    }
+    io::partOf(level, parts[n]).push_back(mesh.triangles[n]);
+  }
+}
+
+/// Whether a mesh has as much as chunks.json says.
+bool matches(const ChunkLevel& level, const ChunkLevelEntry& entry) {
+  const auto sizeOf = [](const auto& strips) {
+    std::size_t count = 0;
+    for (const auto& strip : strips) count += strip.size();
+    return count;
+  };
+  return level.positions.size() == entry.vertices && level.normals.size() == entry.vertices &&
+         level.interior.size() == entry.interiorTriangles &&
+         sizeOf(level.regular) == entry.regularTriangles &&
+         sizeOf(level.transition) == entry.transitionTriangles;
+}
+
+ChunkLevel readLevel(const ChunkIndex& index, const ChunkLevelEntry& entry,
+                     const std::string& folder) {
+  ChunkLevel level;
+  level.maxErrorVoxels = entry.maxErrorVoxels;
+  level.transitionErrorVoxels = entry.transitionErrorVoxels;
+  const bool isEmpty =
+      entry.interiorTriangles + entry.regularTriangles + entry.transitionTriangles == 0;
+  if (entry.file.empty() && isEmpty) return level;
+  if (entry.file.empty()) {
+    throw Error(ErrorCode::UnreadableFile,
+                "cannot read a chunk: " + io::chunkIndexFile(folder).string() + " names no file");
+  }
+  const std::filesystem::path path = std::filesystem::path(folder) / entry.file;
+  const io::InputBytes input(path);
+  if (path.extension() == ".ply") {
+    readPly(input, level);
+  } else {
+    try {
+      readGlb(index, input, level);
+    } catch (const nlohmann::json::exception& error) {
+      input.fail(std::string("its JSON is damaged: ") + error.what());
+    }
+  }
+  if (!matches(level, entry)) input.fail("it has other counts than chunks.json says");
+  return level;
+}
+
+}  // namespace
+
+Chunk readChunk(const ChunkIndex& index, std::size_t chunk, const std::string& folder) {
+  const ChunkEntry& entry = index.chunks.at(chunk);
+  Chunk read;
+  read.index = entry.index;
+  for (const ChunkLevelEntry& level : entry.levels) {
+    read.levels.push_back(readLevel(index, level, folder));
+  }
+  return read;
+}
+
+}  // namespace tufa

@@ -1,0 +1,293 @@
+#include "io/gltf/lod_streams.h"
+
+#include <meshoptimizer.h>
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "base/parallel.h"
+#include "io/gltf/glb.h"
+#include "io/mesh/mesh_format.h"
+
+namespace tufa::io {
+namespace {
+
+using Point = std::array<double, 3>;
+using glb::Floats;
+
+constexpr double kMostShort = 65535;
+constexpr double kMostByte = 127;
+
+/// A point or direction of the volume as it is with y up.
+Point turned(double x, double y, double z, UpAxis up) {
+  if (up == UpAxis::Y) return {x, y, z};
+  return {x, z, -y};
+}
+
+/// The elements of all positions of a mesh. Numbers of 16 bits are exact in floats.
+std::vector<Floats> elementsOf(const Mesh& mesh, const LodFrame& frame, UpAxis up) {
+  std::vector<Floats> elements(mesh.positions.size());
+  for (std::size_t v = 0; v < elements.size(); ++v) {
+    const Position& p = mesh.positions[v];
+    const Point place = turned(p.x, p.y, p.z, up);
+    for (std::size_t i = 0; i < 3; ++i) {
+      double element = frame.factor * (place[i] - frame.origin[i]);
+      if (frame.quantized) element = std::clamp(std::round(element), 0.0, kMostShort);
+      // Without + 0 there would be two kinds of zero, and bytes that differ for equal positions.
+      elements[v][i] = static_cast<float>(element) + 0.0F;
+    }
+  }
+  return elements;
+}
+
+/// Whether positions that differ have elements that do.
+bool tellsApart(const Mesh& mesh, const std::vector<Floats>& elements) {
+  std::vector<VertexIndex> order(elements.size());
+  for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<VertexIndex>(v);
+  base::parallelSort(order.begin(), order.end(), [&](VertexIndex a, VertexIndex b) {
+    return elements[a] != elements[b] ? elements[a] < elements[b] : a < b;
+  });
+  return std::adjacent_find(order.begin(), order.end(), [&](VertexIndex a, VertexIndex b) {
+           return elements[a] == elements[b] && !(mesh.positions[a] == mesh.positions[b]);
+         }) == order.end();
+}
+
+/// Whether three points span no area; exact for numbers of 16 bits.
+bool onALine(const Point& a, const Point& b, const Point& c) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if ((b[i] - a[i]) * (c[j] - a[j]) != (b[j] - a[j]) * (c[i] - a[i])) return false;
+  }
+  return true;
+}
+
+/// Whether every triangle that has an area keeps one.
+bool keepsAreas(const Mesh& mesh, const ShadedMesh& shaded, const std::vector<Floats>& elements) {
+  const auto element = [&](VertexIndex n) {
+    const Floats& e = elements[shaded.sources[n]];
+    return Point{e[0], e[1], e[2]};
+  };
+  const auto position = [&](VertexIndex n) {
+    const Position& p = mesh.positions[shaded.sources[n]];
+    return Point{p.x, p.y, p.z};
+  };
+  for (std::size_t i = 0; i < shaded.indices.size(); i += 3) {
+    const VertexIndex* const t = &shaded.indices[i];
+    if (onALine(element(t[0]), element(t[1]), element(t[2])) &&
+        !onALine(position(t[0]), position(t[1]), position(t[2]))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class Number>
+void append(std::string& bytes, Number number) {
+  std::array<char, sizeof number> raw;
+  std::memcpy(raw.data(), &number, sizeof number);
+  bytes.append(raw.data(), raw.size());
+}
+
+LodStream positionStream(const std::vector<Floats>& elements, const ShadedMesh& shaded,
+                         bool quantized) {
+  // Rows of 16 bit numbers start at multiples of 4 bytes, so one of four is unused.
+  LodStream stream{{},
+                   quantized ? 8U : 12U,
+                   shaded.sources.size(),
+                   quantized ? glb::kUnsignedShort : glb::kFloat};
+  stream.bytes.reserve(stream.stride * stream.count);
+  for (const VertexIndex source : shaded.sources) {
+    for (const float number : elements[source]) {
+      if (quantized) {
+        append(stream.bytes, static_cast<std::uint16_t>(number));
+      } else {
+        append(stream.bytes, number);
+      }
+    }
+    if (quantized) append(stream.bytes, std::uint16_t{0});
+  }
+  return stream;
+}
+
+/// The numbers of 8 bits that come nearest to the direction of a unit vector among those about as
+/// long: rounding each by itself can come out shorter than glTF allows.
+std::array<std::int8_t, 3> roundNormal(const Floats& unit) {
+  // What the Khronos validator takes for unit length, less some.
+  constexpr double kMostStretch = 0.006;
+  std::array<std::int8_t, 3> best{0, 0, 127};
+  double bestCosine = -2;
+  for (unsigned choice = 0; choice < 8; ++choice) {
+    std::array<double, 3> rounded;
+    double squared = 0, dot = 0;
+    for (unsigned i = 0; i < 3; ++i) {
+      const double exact = double{unit[i]} * kMostByte;
+      rounded[i] = (choice >> i & 1U) != 0 ? std::ceil(exact) : std::floor(exact);
+      rounded[i] = std::clamp(rounded[i], -kMostByte, kMostByte);
+      squared += rounded[i] * rounded[i];
+      dot += rounded[i] * exact;
+    }
+    const double length = std::sqrt(squared);
+    if (std::abs(length / kMostByte - 1) > kMostStretch) continue;
+    const double cosine = dot / (length * kMostByte);
+    if (cosine <= bestCosine) continue;
+    bestCosine = cosine;
+    for (unsigned i = 0; i < 3; ++i) best[i] = static_cast<std::int8_t>(rounded[i]);
+  }
+  return best;
+}
+
+LodStream normalStream(const ShadedMesh& shaded, UpAxis up, bool quantized) {
+  LodStream stream{
+      {}, quantized ? 4U : 12U, shaded.normals.size(), quantized ? glb::kByte : glb::kFloat};
+  stream.bytes.reserve(stream.stride * stream.count);
+  for (const Normal& normal : shaded.normals) {
+    const Floats unit = glb::unitNormal(normal);
+    const Point n = turned(unit[0], unit[1], unit[2], up);
+    const Floats upright = {static_cast<float>(n[0]), static_cast<float>(n[1]),
+                            static_cast<float>(n[2])};
+    if (quantized) {
+      for (const std::int8_t number : roundNormal(upright)) append(stream.bytes, number);
+      append(stream.bytes, std::int8_t{0});
+    } else {
+      for (const float number : upright) append(stream.bytes, number);
+    }
+  }
+  return stream;
+}
+
+LodStream indexStream(const ShadedMesh& shaded) {
+  const bool isShort = shaded.sources.size() <= glb::kMostShortVertices;
+  LodStream stream{{},
+                   isShort ? 2U : 4U,
+                   shaded.indices.size(),
+                   isShort ? glb::kUnsignedShort : glb::kUnsignedInt};
+  stream.bytes.reserve(stream.stride * stream.count);
+  for (const VertexIndex index : shaded.indices) {
+    if (isShort) {
+      append(stream.bytes, static_cast<std::uint16_t>(index));
+    } else {
+      append(stream.bytes, index);
+    }
+  }
+  return stream;
+}
+
+/// Has the library pack in the versions that the extension is written for, whatever its defaults.
+void setCodecVersions() {
+  static const bool set = [] {
+    meshopt_encodeVertexVersion(0);
+    meshopt_encodeIndexVersion(1);
+    return true;
+  }();
+  static_cast<void>(set);
+}
+
+/// Packs a stream of vertices as EXT_meshopt_compression's mode ATTRIBUTES has it.
+void packVertices(LodStream& stream) {
+  std::string packed(meshopt_encodeVertexBufferBound(stream.count, stream.stride), '\0');
+  auto* const bytes = reinterpret_cast<unsigned char*>(packed.data());
+  setCodecVersions();
+  packed.resize(meshopt_encodeVertexBuffer(bytes, packed.size(), stream.bytes.data(), stream.count,
+                                           stream.stride));
+  stream.bytes = std::move(packed);
+}
+
+/// Packs triangles as its mode TRIANGLES has it. That may turn a triangle's corners round.
+void packTriangles(const ShadedMesh& shaded, LodStream& stream) {
+  std::string packed(meshopt_encodeIndexBufferBound(shaded.indices.size(), shaded.sources.size()),
+                     '\0');
+  setCodecVersions();
+  packed.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(packed.data()),
+                                          packed.size(), shaded.indices.data(),
+                                          shaded.indices.size()));
+  stream.bytes = std::move(packed);
+}
+
+struct Extent {
+  Point least;
+  Point greatest;
+};
+
+Extent extentOf(const LodChain& chain, UpAxis up) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  Extent extent{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  for (const Lod& lod : chain.levels) {
+    for (const Position& p : lod.mesh.positions) {
+      const Point place = turned(p.x, p.y, p.z, up);
+      for (std::size_t i = 0; i < 3; ++i) {
+        extent.least[i] = std::min(extent.least[i], place[i]);
+        extent.greatest[i] = std::max(extent.greatest[i], place[i]);
+      }
+    }
+  }
+  return extent;
+}
+
+LodFrame frameAt(const Point& origin, double factor, double nodeScale, double scale) {
+  LodFrame frame{origin, factor, nodeScale, {}, false};
+  for (std::size_t i = 0; i < 3; ++i) frame.translation[i] = scale * origin[i];
+  return frame;
+}
+
+}  // namespace
+
+std::vector<LodFrame> framesFor(const LodChain& chain, const LodWriteOptions& options) {
+  const Extent extent = extentOf(chain, options.up);
+  std::vector<LodFrame> frames;
+  double size = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    size = std::max(size, extent.greatest[i] - extent.least[i]);
+  }
+  if (options.compression != LodCompression::None && size > 0) {
+    frames.push_back(frameAt(extent.least, kMostShort / size, size * options.scale, options.scale));
+    frames.back().quantized = true;
+  }
+  Point origin{0, 0, 0};
+  if (std::any_of(chain.levels.begin(), chain.levels.end(),
+                  [](const Lod& lod) { return needsDoublePrecision(lod.mesh); })) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      origin[i] = static_cast<float>(0.5 * (extent.least[i] + extent.greatest[i]));
+    }
+  }
+  frames.push_back(frameAt(origin, options.scale, 1, options.scale));
+  // In metres two vertices may round to one. In world units they are as they were made.
+  if (options.scale != 1) frames.push_back(frameAt(origin, 1, options.scale, options.scale));
+  return frames;
+}
+
+LodStreams encodeLevel(const Mesh& mesh, const ShadedMesh& shaded,
+                       const std::vector<LodFrame>& frames, const LodWriteOptions& options) {
+  for (const LodFrame& frame : frames) {
+    const std::vector<Floats> elements = elementsOf(mesh, frame, options.up);
+    if (!tellsApart(mesh, elements)) continue;
+    if (frame.quantized && !keepsAreas(mesh, shaded, elements)) continue;
+    LodStreams streams;
+    streams.frame = frame;
+    streams.least = streams.greatest = elements[shaded.sources.front()];
+    for (const VertexIndex source : shaded.sources) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        streams.least[i] = std::min(streams.least[i], elements[source][i]);
+        streams.greatest[i] = std::max(streams.greatest[i], elements[source][i]);
+      }
+    }
+    const bool quantized = options.compression != LodCompression::None;
+    streams.positions = positionStream(elements, shaded, frame.quantized);
+    streams.normals = normalStream(shaded, options.up, quantized);
+    streams.indices = indexStream(shaded);
+    if (options.compression == LodCompression::Meshopt) {
+      packVertices(streams.positions);
+      packVertices(streams.normals);
+      packTriangles(shaded, streams.indices);
+    }
+    return streams;
+  }
+  throw Error(ErrorCode::LimitExceeded,
+              "vertices are nearer to each other than the single precision of .glb tells apart; "
+              "write .ply, which has double precision");
+}
+
+}  // namespace tufa::io

@@ -1,0 +1,194 @@
+// .glb: triangles of all meshes of the scene, through the transforms of their nodes. Of levels of
+// detail the finest, which alone stands in the scene.
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "base/vec3.h"
+#include "base/vertex_welder.h"
+#include "io/gltf/glb_file.h"
+#include "io/gltf/node_transform.h"
+#include "io/mesh/mesh_readers.h"
+
+namespace tufa::io {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kTriangles = 4;
+constexpr int kTriangleStrip = 5;
+constexpr int kTriangleFan = 6;
+
+class GlbReader {
+ public:
+  explicit GlbReader(const InputBytes& input)
+      : input_(input), file_(input), json_(file_.document()) {}
+
+  Mesh read() {
+    refuseUnknownExtensions();
+    const Json nodes = json_.value("nodes", Json::array());
+    visited_.assign(nodes.size(), false);
+    for (const std::size_t root : rootNodes(nodes)) addNode(nodes, root, glb::NodeTransform());
+    return std::move(mesh_);
+  }
+
+ private:
+  void refuseUnknownExtensions() {
+    for (const Json& extension : json_.value("extensionsRequired", Json::array())) {
+      const std::string name = extension.get<std::string>();
+      const bool onlyLooks = name.starts_with("KHR_materials") || name.starts_with("KHR_texture") ||
+                             name.starts_with("EXT_texture") || name.starts_with("KHR_lights");
+      const bool known = name == "KHR_mesh_quantization" || name == "EXT_meshopt_compression";
+      if (!onlyLooks && !known)
+        input_.fail("it needs the glTF extension " + name + ", not supported");
+    }
+  }
+
+  [[nodiscard]] std::vector<std::size_t> rootNodes(const Json& nodes) const {
+    std::vector<std::size_t> roots;
+    const Json scenes = json_.value("scenes", Json::array());
+    if (!scenes.empty()) {
+      const Json& scene = scenes.at(json_.value("scene", std::size_t{0}));
+      for (const Json& node : scene.value("nodes", Json::array())) roots.push_back(node);
+      return roots;
+    }
+    std::vector<bool> isChild(nodes.size(), false);
+    for (const Json& node : nodes) {
+      for (const Json& child : node.value("children", Json::array())) {
+        const auto number = child.get<std::size_t>();
+        if (number >= nodes.size()) {
+          input_.fail("a node has the child " + std::to_string(number) + " of " +
+                      std::to_string(nodes.size()) + " nodes");
+        }
+        isChild[number] = true;
+      }
+    }
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (!isChild[n]) roots.push_back(n);
+    }
+    return roots;
+  }
+
+  static glb::NodeTransform transformOf(const Json& node) {
+    glb::NodeTransform transform;
+    if (node.contains("matrix")) {
+      // Column-major for column vectors is row-major for row vectors.
+      const auto numbers = node.at("matrix").get<std::array<double, 16>>();
+      for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 3; ++column) {
+          transform.rows[row][column] = numbers[4 * row + column];
+        }
+      }
+      return transform;
+    }
+    const auto move = node.value("translation", std::array<double, 3>{0, 0, 0});
+    const auto turn = node.value("rotation", std::array<double, 4>{0, 0, 0, 1});
+    const auto grow = node.value("scale", std::array<double, 3>{1, 1, 1});
+    const double x = turn[0], y = turn[1], z = turn[2], w = turn[3];
+    // The rotation of a unit quaternion, transposed for row vectors.
+    transform.rows = {
+        Vec3(1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)) * grow[0],
+        Vec3(2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)) * grow[1],
+        Vec3(2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)) * grow[2],
+        Vec3(move[0], move[1], move[2])};
+    return transform;
+  }
+
+  void addNode(const Json& nodes, std::size_t root, const glb::NodeTransform& rootTransform) {
+    std::vector<std::pair<std::size_t, glb::NodeTransform>> pending{{root, rootTransform}};
+    while (!pending.empty()) {
+      const auto [index, parent] = pending.back();
+      pending.pop_back();
+      const Json& node = nodes.at(index);
+      if (visited_[index]) input_.fail("node " + std::to_string(index) + " has two parents");
+      visited_[index] = true;
+      const glb::NodeTransform transform = transformOf(node).under(parent);
+      if (node.contains("mesh"))
+        addMesh(json_.at("meshes").at(node["mesh"].get<std::size_t>()), transform);
+      for (const Json& child : node.value("children", Json::array())) {
+        pending.emplace_back(child.get<std::size_t>(), transform);
+      }
+    }
+  }
+
+  void addMesh(const Json& mesh, const glb::NodeTransform& transform) {
+    for (const Json& primitive : mesh.at("primitives")) {
+      const int mode = primitive.value("mode", kTriangles);
+      if (mode < kTriangles || mode > kTriangleFan) continue;  // points and lines
+      if (primitive.contains("extensions") &&
+          primitive["extensions"].contains("KHR_draco_mesh_compression")) {
+        input_.fail("its meshes are compressed by Draco, not supported");
+      }
+      addPrimitive(primitive, mode, transform);
+    }
+  }
+
+  void addPrimitive(const Json& primitive, int mode, const glb::NodeTransform& transform) {
+    const glb::View positions = file_.viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
+    const std::size_t first = mesh_.positions.size();
+    const std::vector<VertexIndex> vertices =
+        addPositions(positions, transform, primitive["attributes"].size() > 1);
+    if (mesh_.positions.size() >= 0xFFFFFFFFu) input_.fail("it has too many vertices");
+
+    const std::vector<std::uint32_t> indices = indicesOf(primitive, positions.count);
+    const bool mirrored = transform.isMirrored();
+    const std::size_t step = mode == kTriangles ? 3 : 1;
+    for (std::size_t n = 0; n + 2 < indices.size(); n += step) {
+      const bool odd = mode == kTriangleStrip && n % 2 == 1;
+      const auto at = [&](std::size_t k) {
+        return static_cast<VertexIndex>(first + vertices[indices[k]]);
+      };
+      const VertexIndex a = at(mode == kTriangleFan ? 0 : n);
+      const VertexIndex b = at(n + 1);
+      const VertexIndex c = at(n + 2);
+      // Every second triangle of a strip, and all of a mirrored mesh, run the other way around.
+      mesh_.triangles.push_back(odd != mirrored ? Triangle(a, c, b) : Triangle(a, b, c));
+    }
+  }
+
+  /// Adds the positions of a primitive and gives each one's place among them. Other attributes,
+  /// such as normals at a crease, make vertices that differ at one position: `weld` makes them one
+  /// again.
+  std::vector<VertexIndex> addPositions(const glb::View& view, const glb::NodeTransform& transform,
+                                        bool weld) {
+    std::vector<Position> own;
+    std::vector<VertexIndex> places(view.count);
+    base::VertexWelder welder(own);
+    for (std::size_t n = 0; n < view.count; ++n) {
+      const Vec3 moved = transform.ofPoint(file_.pointAt(view, n));
+      if (!moved.isFinite()) input_.fail("position " + std::to_string(n) + " is not finite");
+      const Position position = moved;
+      places[n] = weld ? welder.indexOf(position) : static_cast<VertexIndex>(n);
+      if (!weld) own.push_back(position);
+    }
+    mesh_.positions.insert(mesh_.positions.end(), own.begin(), own.end());
+    return places;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> indicesOf(const Json& primitive,
+                                                     std::size_t positionCount) {
+    if (primitive.contains("indices")) return file_.indicesOf(primitive["indices"], positionCount);
+    std::vector<std::uint32_t> indices(positionCount);
+    std::iota(indices.begin(), indices.end(), 0u);
+    return indices;
+  }
+
+  const InputBytes& input_;
+  glb::File file_;
+  const Json& json_;
+  std::vector<bool> visited_;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh readGlb(const InputBytes& input) {
+  try {
+    return GlbReader(input).read();
+  } catch (const Json::exception& error) {
+    input.fail(std::string("its JSON is damaged: ") + error.what());
+  }
+}
+
+}  // namespace tufa::io

@@ -1,0 +1,91 @@
+#include <openvdb/openvdb.h>
+
+#include <tufa/error.h>
+#include <tufa/io.h>
+#include <algorithm>
+#include <ostream>
+
+#include "io/grid/grid_traits.h"
+#include "io/grid/vdb_reader.h"
+#include "io/output_file.h"
+
+namespace tufa {
+namespace {
+
+/// Opens up the writing of openvdb::io::Archive to any stream: openvdb::io::File does not notice a
+/// full disk.
+class VdbWriter : private openvdb::io::Archive {
+ public:
+  void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids, bool seekable) const {
+    Archive::write(stream, grids, seekable);
+  }
+};
+
+std::string listNames(const io::VdbReader& reader) {
+  std::string names;
+  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
+    names += (n == 0 ? "\"" : ", \"") + reader.gridName(n) + "\"";
+  }
+  return names;
+}
+
+std::size_t findNamed(const io::VdbReader& reader, const std::string& name,
+                      const std::filesystem::path& path) {
+  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
+    if (reader.isNamed(n, name)) return n;
+  }
+  throw Error(ErrorCode::UnknownGrid,
+              "no grid \"" + name + "\" in " + path.string() + "; it holds " + listNames(reader));
+}
+
+std::size_t findMeshable(io::VdbReader& reader, const std::filesystem::path& path) {
+  std::optional<std::size_t> found;
+  std::string reasons;
+  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
+    const auto outline = reader.readOutline(n);
+    const std::string whyNot = io::whyNotMeshable(*outline);
+    if (!whyNot.empty()) {
+      reasons += (reasons.empty() ? "\"" : "; \"") + reader.gridName(n) + "\": " + whyNot;
+      continue;
+    }
+    if (outline->getGridClass() == openvdb::GRID_LEVEL_SET) return n;
+    if (!found) found = n;
+  }
+  if (found) return *found;
+  throw Error(ErrorCode::UnsupportedGrid,
+              "no grid in " + path.string() + " can be meshed (" + reasons + ")");
+}
+
+}  // namespace
+
+openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
+                                const std::optional<std::string>& name) {
+  io::VdbReader reader(path);
+  if (reader.gridCount() == 0) {
+    throw Error(ErrorCode::UnreadableFile, "cannot read " + path.string() + ": it holds no grid");
+  }
+  return reader.readGrid(name ? findNamed(reader, *name, path) : findMeshable(reader, path));
+}
+
+void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
+                const std::filesystem::path& path) {
+  openvdb::initialize();
+  io::OutputFile file(path);
+  io::OutputFileBuffer buffer(file);
+  std::ostream stream(&buffer);
+  stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
+  try {
+    VdbWriter().writeTo(stream, grids, file.seekable());
+  } catch (const Error&) {
+    throw;
+  } catch (const openvdb::Exception& error) {
+    throw Error(ErrorCode::UnwritableFile, "cannot write " + path.string() + ": " + error.what());
+  } catch (const std::ios_base::failure& error) {
+    throw Error(ErrorCode::UnwritableFile, "cannot write " + path.string() + ": " + error.what());
+  }
+  file.commit();
+}
+
+void requireWritable(const std::filesystem::path& path) { io::requireWritablePath(path); }
+
+}  // namespace tufa

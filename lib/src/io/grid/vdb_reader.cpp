@@ -1,0 +1,248 @@
+#include "io/grid/vdb_reader.h"
+
+#include <openvdb/io/DelayedLoadMetadata.h>
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <new>
+
+namespace tufa::io {
+
+using openvdb::GridBase;
+using openvdb::io::GridDescriptor;
+
+namespace {
+
+GridBase::Ptr createGrid(const GridDescriptor& descriptor) {
+  GridBase::Ptr grid = GridBase::createGrid(descriptor.gridType());
+  grid->setSaveFloatAsHalf(descriptor.saveFloatAsHalf());  // tells readers of values their width
+  return grid;
+}
+
+}  // namespace
+
+VdbReader::VdbReader(const std::filesystem::path& path) : path_(path) {
+  openvdb::initialize();
+  requireVdb();
+  guarded("the header", [this] { readHead(); });
+}
+
+void VdbReader::fail(const std::string& cause) const {
+  throw Error(ErrorCode::UnreadableFile, "cannot read " + path_.string() + ": " + cause);
+}
+
+void VdbReader::guarded(const std::string& what, const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::ios_base::failure&) {
+    fail("the file ends inside " + what + ", it is truncated or damaged");
+  } catch (const std::length_error&) {
+    fail(what + " is damaged");
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    std::string message = error.what();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    fail("OpenVDB says of " + what + ": " + message);
+  }
+}
+
+void VdbReader::requireVdb() {
+  std::error_code error;
+  const auto status = std::filesystem::status(path_, error);
+  if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+  if (error) fail(error.message());
+  if (std::filesystem::is_directory(status)) fail("it is a folder");
+  if (!std::filesystem::is_regular_file(status)) fail("it is not a regular file");
+  stream_.open(path_, std::ios_base::binary);
+  if (!stream_) fail(std::strerror(errno));
+  fileBytes_ = std::filesystem::file_size(path_, error);
+
+  constexpr std::size_t kMagicBytes = 8;
+  const std::array<char, kMagicBytes> vdb{' ', 'B', 'D', 'V', 0, 0, 0, 0};
+  std::array<char, kMagicBytes> magic{};
+  stream_.read(magic.data(), kMagicBytes);
+  if (stream_.gcount() == 0) fail("the file is empty");
+  if (std::string_view(magic.data(), kMagicBytes).starts_with("NanoVDB")) {
+    fail("it is a NanoVDB file, not an OpenVDB file; convert it with nanovdb_convert");
+  }
+  if (magic != vdb) fail("it is not an OpenVDB file");
+  stream_.clear();
+  stream_.seekg(0);
+  stream_.exceptions(std::ios_base::failbit | std::ios_base::badbit | std::ios_base::eofbit);
+}
+
+void VdbReader::readHead() {
+  streamMetadata_.reset(new openvdb::io::StreamMetadata);
+  openvdb::io::setStreamMetadataPtr(stream_, streamMetadata_);
+  readHeader(stream_);
+  setFormatVersion(stream_);
+  setLibraryVersion(stream_);
+  setDataCompression(stream_);
+  requireSoundMetadata();
+  openvdb::MetaMap fileMetadata;
+  fileMetadata.readMeta(stream_);
+
+  const std::int32_t count = readGridCount(stream_);
+  if (count < 0) fail("it claims to hold " + std::to_string(count) + " grids");
+  for (std::int32_t n = 0; n < count; ++n) {
+    Entry& entry = entries_.emplace_back();
+    requireSoundDescriptor();
+    entry.whole = entry.descriptor.read(stream_);
+    if (inputHasGridOffsets()) {
+      entry.whole.reset();
+      requireInside(entry.descriptor);
+      entry.descriptor.seekToEnd(stream_);
+    } else {
+      readSequentially(entries_.size() - 1);
+    }
+  }
+}
+
+void VdbReader::readSequentially(std::size_t index) {
+  Entry& entry = entries_[index];
+  requireSoundGridHead();
+  Archive::readGrid(entry.whole, entry.descriptor, stream_);
+  if (!entry.descriptor.isInstance()) return;
+  const auto parent = std::find_if(entries_.begin(), entries_.end() - 1, [&](const Entry& other) {
+    return other.descriptor.uniqueName() == entry.descriptor.instanceParentName();
+  });
+  if (parent == entries_.end() - 1) fail("a grid shares the tree of a grid that is missing");
+  entry.whole->setTree(parent->whole->baseTreePtr());
+}
+
+void VdbReader::requireInside(const GridDescriptor& descriptor) const {
+  const auto inside = [&](std::int64_t position) {
+    return position >= 0 && static_cast<std::uint64_t>(position) <= fileBytes_;
+  };
+  if (!inside(descriptor.getGridPos()) || !inside(descriptor.getEndPos())) {
+    fail("the file has " + std::to_string(fileBytes_) + " bytes, grid \"" + descriptor.gridName() +
+         "\" reaches to byte " + std::to_string(descriptor.getEndPos()) + ": truncated or damaged");
+  }
+}
+
+std::uint64_t VdbReader::bytesLeft() {
+  return fileBytes_ - std::min(fileBytes_, static_cast<std::uint64_t>(stream_.tellg()));
+}
+
+std::uint32_t VdbReader::takeNumber() {
+  std::uint32_t number = 0;
+  stream_.read(reinterpret_cast<char*>(&number), sizeof number);
+  return number;
+}
+
+std::string VdbReader::takeText() {
+  const std::uint32_t length = takeNumber();
+  if (length > bytesLeft()) {
+    fail("it claims a text of " + std::to_string(length) + " bytes where " +
+         std::to_string(bytesLeft()) + " are left: truncated or damaged");
+  }
+  std::string text(length, '\0');
+  stream_.read(text.data(), length);
+  return text;
+}
+
+void VdbReader::takeMetadata() {
+  const std::uint32_t count = takeNumber();
+  for (std::uint32_t n = 0; n < count; ++n) {
+    takeText();  // the name
+    const std::string type = takeText();
+    const std::string value = takeText();
+    if (type != openvdb::io::DelayedLoadMetadata::staticTypeName() || value.size() < 4) continue;
+    // One number for each leaf, packed: their count says how much room OpenVDB will make.
+    std::uint32_t leaves = 0;
+    std::memcpy(&leaves, value.data(), sizeof leaves);
+    if (leaves > fileBytes_) fail("it claims " + std::to_string(leaves) + " leaves: damaged");
+  }
+}
+
+void VdbReader::requireSoundMetadata() {
+  const auto start = stream_.tellg();
+  takeMetadata();
+  stream_.seekg(start);
+}
+
+void VdbReader::requireSoundDescriptor() {
+  const auto start = stream_.tellg();
+  takeText();  // the grid's name
+  takeText();  // its type
+  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) takeText();  // its parent
+  stream_.seekg(start);
+}
+
+void VdbReader::requireSoundGridHead() {
+  const auto start = stream_.tellg();
+  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION) takeNumber();
+  takeMetadata();
+  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) {
+    const std::string map = takeText();
+    if (map == openvdb::math::NonlinearFrustumMap::mapType()) {
+      constexpr std::streamoff kBoxTaperDepth = 8 * sizeof(double);
+      stream_.seekg(kBoxTaperDepth, std::ios_base::cur);
+      takeText();  // the kind of its second map
+    }
+  }
+  stream_.seekg(start);
+}
+
+std::string VdbReader::gridName(std::size_t index) const {
+  const GridDescriptor& descriptor = entries_.at(index).descriptor;
+  const auto sameName = std::count_if(entries_.begin(), entries_.end(), [&](const Entry& other) {
+    return other.descriptor.gridName() == descriptor.gridName();
+  });
+  return sameName == 1 ? descriptor.gridName()
+                       : GridDescriptor::nameAsString(descriptor.uniqueName());
+}
+
+bool VdbReader::isNamed(std::size_t index, const std::string& name) const {
+  return entries_.at(index).descriptor.gridName() == name || gridName(index) == name;
+}
+
+GridBase::Ptr VdbReader::readOutline(std::size_t index) {
+  const Entry& entry = entries_.at(index);
+  if (entry.whole) return entry.whole;
+  GridBase::Ptr grid;
+  guarded("grid \"" + gridName(index) + "\"", [&] {
+    grid = createGrid(entry.descriptor);
+    entry.descriptor.seekToGrid(stream_);
+    requireSoundGridHead();
+    readGridCompression(stream_);
+    grid->readMeta(stream_);
+    if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) {
+      grid->readTransform(stream_);
+    }
+  });
+  grid->setName(entry.descriptor.gridName());
+  return grid;
+}
+
+GridBase::Ptr VdbReader::readTree(const GridDescriptor& descriptor) {
+  GridBase::Ptr grid = createGrid(descriptor);
+  descriptor.seekToGrid(stream_);
+  requireSoundGridHead();
+  Archive::readGrid(grid, descriptor, stream_);
+  return grid;
+}
+
+GridBase::Ptr VdbReader::readGrid(std::size_t index) {
+  const Entry& entry = entries_.at(index);
+  if (entry.whole) return entry.whole;
+  GridBase::Ptr grid;
+  guarded("grid \"" + gridName(index) + "\"", [&] {
+    grid = readTree(entry.descriptor);
+    if (!entry.descriptor.isInstance()) return;
+    const auto parent = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& other) {
+      return other.descriptor.uniqueName() == entry.descriptor.instanceParentName();
+    });
+    if (parent == entries_.end()) fail("a grid shares the tree of a grid that is missing");
+    grid->setTree(readTree(parent->descriptor)->baseTreePtr());
+  });
+  return grid;
+}
+
+}  // namespace tufa::io

@@ -1,0 +1,163 @@
+#include "octree/cut_polygons.h"
+
+#include <algorithm>
+
+#include "uniform/diagonal.h"
+
+namespace tufa::octree {
+namespace {
+
+constexpr std::size_t kChunk = 4096;
+
+// The lower corner of the cell of a cluster, and the cluster.
+struct Located {
+  Coord corner;
+  const Cluster* cluster;
+};
+
+Located locate(const Forest& forest, const ClusterRef& ref) {
+  const int level = ref.level;
+  if (level >= 3) {
+    const Level& cells = forest.levels[level - 3];
+    const Coord& cell = cells.cells[ref.parentCell];
+    return {Coord(cell[0] << level, cell[1] << level, cell[2] << level),
+            &cells.clusters[ref.cluster]};
+  }
+  const Coord& cell = forest.levels[0].cells[ref.parentCell];
+  const int bits = 3 - level, mask = (1 << bits) - 1;
+  return {
+      Coord((cell[0] << 3) + (((ref.cell >> (2 * bits)) & mask) << level),
+            (cell[1] << 3) + (((ref.cell >> bits) & mask) << level),
+            (cell[2] << 3) + ((ref.cell & mask) << level)),
+      &(level == 1 ? forest.level1(ref.parentCell) : forest.level2(ref.parentCell))[ref.cluster]};
+}
+
+void placeVertices(const Forest& forest, const Cut& cut, const Mesh& base,
+                   const grid::Affine& affine, Mesh& mesh, base::Job& job) {
+  mesh.positions.resize(cut.clusters.size());
+  mesh.normals.resize(cut.clusters.size());
+  job.forRanges(cut.clusters.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const ClusterRef& ref = cut.clusters[i];
+      if (ref.level == 0) {
+        mesh.positions[i] = base.positions[ref.cluster];
+        mesh.normals[i] = base.normals[ref.cluster];
+        continue;
+      }
+      const Located at = locate(forest, ref);
+      const double half = 0.5 * (1 << ref.level);
+      const auto& p = at.cluster->point;
+      mesh.positions[i] =
+          affine.position(at.corner, half + static_cast<double>(p[0]),
+                          half + static_cast<double>(p[1]), half + static_cast<double>(p[2]));
+      mesh.normals[i] = {at.cluster->normal[0], at.cluster->normal[1], at.cluster->normal[2]};
+    }
+  });
+}
+
+// The distinct vertices of the cut around a base quad, in order. Equal ones are neighbours: two
+// opposite cells around an edge lie in one leaf only if all four do.
+struct Polygon {
+  std::array<VertexIndex, 4> vertices;
+  int count = 0;
+};
+
+Polygon polygonOf(const Cut& cut, const Quad& quad) {
+  Polygon polygon;
+  for (const VertexIndex base : quad.vertices) {
+    const VertexIndex vertex = cut.vertexOf[base];
+    if (polygon.count == 0 || polygon.vertices[polygon.count - 1] != vertex) {
+      polygon.vertices[polygon.count++] = vertex;
+    }
+  }
+  if (polygon.count > 1 && polygon.vertices[0] == polygon.vertices[polygon.count - 1]) {
+    --polygon.count;
+  }
+  return polygon;
+}
+
+// Where the base quad stands for the surface: the middle of its better diagonal.
+uniform::LatticeCrossing middleOf(const Mesh& base, const Quad& quad, double voxelSize) {
+  Vec3 p[4];
+  for (int i = 0; i < 4; ++i) {
+    const Position& at = base.positions[quad.vertices[i]];
+    p[i] = {at.x, at.y, at.z};
+  }
+  Vec3 outward = (p[2] - p[0]).cross(p[3] - p[1]);
+  if (!outward.normalize()) outward = Vec3(0);
+  return {(p[0] + p[2]) * 0.5, outward * voxelSize};
+}
+
+void startAtBetterDiagonal(const Mesh& mesh, const Mesh& base, const Quad& source, double voxelSize,
+                           Quad& quad) {
+  const uniform::SplitChooser chooser(mesh, quad, voxelSize);
+  if (!chooser.isSecondDiagonalBetter([&] { return middleOf(base, source, voxelSize); })) return;
+  std::rotate(quad.vertices.begin(), quad.vertices.begin() + 1, quad.vertices.end());
+}
+
+struct Counts {
+  std::size_t quads = 0, triangles = 0;
+};
+
+}  // namespace
+
+CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base, const grid::Affine& affine,
+                base::Job& job) {
+  return meshCut(forest, cut, base, base.quads, affine, job);
+}
+
+CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base,
+                const std::vector<Quad>& quads, const grid::Affine& affine, base::Job& job) {
+  CutMesh result;
+  Mesh& mesh = result.mesh;
+  placeVertices(forest, cut, base, affine, mesh, job);
+  const std::size_t chunks = (quads.size() + kChunk - 1) / kChunk;
+  std::vector<Counts> before(chunks + 1);
+  const auto forChunk = [&](std::size_t chunk, const auto& body) {
+    const std::size_t end = std::min((chunk + 1) * kChunk, quads.size());
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      const Polygon polygon = polygonOf(cut, quads[i]);
+      if (polygon.count >= 3) body(i, polygon);
+    }
+  };
+  job.forRanges(chunks, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      Counts& counts = before[chunk + 1];
+      forChunk(chunk, [&](std::size_t, const Polygon& polygon) {
+        ++(polygon.count == 4 ? counts.quads : counts.triangles);
+      });
+    }
+  });
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+    before[chunk + 1].quads += before[chunk].quads;
+    before[chunk + 1].triangles += before[chunk].triangles;
+  }
+  mesh.quads.resize(before[chunks].quads);
+  mesh.triangles.resize(before[chunks].triangles);
+  result.quadSources.resize(before[chunks].quads);
+  result.triangleSources.resize(before[chunks].triangles);
+  job.forRanges(chunks, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t chunk = begin; chunk < end; ++chunk) {
+      Counts next = before[chunk];
+      forChunk(chunk, [&](std::size_t source, const Polygon& polygon) {
+        const auto& v = polygon.vertices;
+        if (polygon.count == 3) {
+          result.triangleSources[next.triangles] = static_cast<std::uint32_t>(source);
+          mesh.triangles[next.triangles++] = {v[0], v[1], v[2]};
+          return;
+        }
+        Quad& quad = mesh.quads[next.quads] = {v[0], v[1], v[2], v[3]};
+        result.quadSources[next.quads++] = static_cast<std::uint32_t>(source);
+        const bool unchanged = std::all_of(v.begin(), v.end(), [&](VertexIndex vertex) {
+          return cut.clusters[vertex].level == 0;
+        });
+        if (!unchanged) {
+          startAtBetterDiagonal(mesh, base, quads[source], affine.voxelSize(), quad);
+        }
+      });
+    }
+  });
+  return result;
+}
+
+}  // namespace tufa::octree

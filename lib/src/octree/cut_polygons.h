@@ -1,0 +1,28 @@
+#pragma once
+
+#include <tufa/mesh.h>
+
+#include "base/job.h"
+#include "grid/affine.h"
+#include "octree/cluster_forest.h"
+#include "octree/cut.h"
+
+namespace tufa::octree {
+
+/// A mesh taken from a cut, and the base quads that its polygons come from.
+struct CutMesh {
+  Mesh mesh;
+  std::vector<std::uint32_t> quadSources;      ///< base quad of each quad
+  std::vector<std::uint32_t> triangleSources;  ///< base quad of each triangle
+};
+
+/// The mesh of a cut: of every base quad the distinct vertices of the cut in their order; four make
+/// a quad, three a triangle, fewer nothing. Quads start where their better diagonal does.
+[[nodiscard]] CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base,
+                              const grid::Affine& affine, base::Job& job);
+/// The same of other quads than those of the base mesh, between its vertices.
+[[nodiscard]] CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base,
+                              const std::vector<Quad>& quads, const grid::Affine& affine,
+                              base::Job& job);
+
+}  // namespace tufa::octree

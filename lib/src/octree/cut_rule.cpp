@@ -1,0 +1,58 @@
+#include "octree/cut_rule.h"
+
+#include <tufa/error.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "base/number_text.h"
+#include "grid/tolerance_scale.h"
+
+namespace tufa::octree {
+namespace {
+
+int levelOf(int size, const char* name) {
+  if (size >= 1 && std::has_single_bit(static_cast<unsigned>(size))) {
+    return std::countr_zero(static_cast<unsigned>(size));
+  }
+  throw Error(
+      ErrorCode::InvalidArgument,
+      std::string(name) + " must be a power of two of 1 or more, not " + std::to_string(size));
+}
+
+void requireRange(double value, double least, double greatest, const char* name) {
+  if (value >= least && value <= greatest) return;
+  throw Error(ErrorCode::InvalidArgument,
+              std::string(name) + " must be from " + base::numberText(least) + " to " +
+                  base::numberText(greatest) + ", not " + base::numberText(value));
+}
+
+}  // namespace
+
+bool maySimplify(const ContourOptions& options) {
+  const ContourOptions unbounded;
+  return options.simplify && options.maxAngle >= unbounded.maxAngle &&
+         options.maxCell >= unbounded.maxCell && options.minCell <= unbounded.minCell;
+}
+
+CutRule readRule(const ContourOptions& options, const grid::Transform& transform) {
+  requireRange(options.tolerance, 0, 1e6, "the tolerance");
+  requireRange(options.maxAngle, 0, 180, "the largest angle");
+  CutRule rule;
+  rule.tolerance = options.tolerance;
+  rule.maxAngle =
+      options.maxAngle >= 180 ? CutRule::kAnyAngle : options.maxAngle * std::numbers::pi / 180;
+  rule.minLevel = levelOf(options.minCell, "the smallest cell size");
+  rule.maxLevel = levelOf(options.maxCell, "the largest cell size");
+  if (rule.maxLevel < rule.minLevel) {
+    throw Error(ErrorCode::InvalidArgument, "the largest cell size must not be below the smallest");
+  }
+  if (options.toleranceGrid) {
+    rule.scale = grid::toleranceScale(options.toleranceGrid, transform);
+  }
+  return rule;
+}
+
+}  // namespace tufa::octree

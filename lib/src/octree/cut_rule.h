@@ -1,0 +1,38 @@
+#pragma once
+
+#include <tufa/contour.h>
+#include <functional>
+
+#include "base/vec3.h"
+#include "grid/transform.h"
+
+namespace tufa::octree {
+
+/// What a cluster must keep for its cell to become a leaf.
+struct CutRule {
+  double tolerance = 0;         ///< voxels; bound on a cluster's estimated error
+  double maxAngle = kAnyAngle;  ///< radians; bound on the angle between two normals of a cluster
+  int minLevel = 0;             ///< cells up to this level need not keep the bounds above
+  int maxLevel = 31;            ///< no cell above this level
+  /// Cells in different cells of this level, 3 or more, may differ by more than one level.
+  int chunkLevel = kNoChunks;
+  static constexpr int kNoChunks = 31;
+  static constexpr double kAnyAngle = 4;
+  /// Multiplies the tolerance at a lattice point; empty: 1 everywhere.
+  std::function<double(const Vec3&)> scale;
+
+  [[nodiscard]] bool boundsAngle() const { return maxAngle < kAnyAngle; }
+  [[nodiscard]] double toleranceAt(const Vec3& point) const {
+    return scale ? tolerance * scale(point) : tolerance;
+  }
+};
+
+/// Whether the options ask for a mesh that is simplified beyond the cells: bounds on cells bound
+/// what one vertex gathers.
+[[nodiscard]] bool maySimplify(const ContourOptions& options);
+
+/// The rule that the options of a call ask for. `transform` is the meshed grid's. Throws
+/// Error(InvalidArgument) for an option out of its range.
+[[nodiscard]] CutRule readRule(const ContourOptions& options, const grid::Transform& transform);
+
+}  // namespace tufa::octree

@@ -1,0 +1,47 @@
+#include <tufa/octree.h>
+
+#include "base/coord_table.h"
+
+namespace tufa {
+namespace {
+
+// The leaves of one level, by their coordinates in cells of that level.
+struct LevelLeaves {
+  std::vector<Coord> cells;
+  base::CoordTable table;
+
+  void index() {
+    table.reserve(cells.size());
+    for (const Coord& cell : cells) table.tryEmplace(cell, 0);
+  }
+  [[nodiscard]] bool has(const Coord& cell) const {
+    return table.find(cell) != base::CoordTable::kNone;
+  }
+};
+
+}  // namespace
+
+bool isRestricted(const std::vector<LeafCell>& leaves) {
+  std::vector<LevelLeaves> levels;
+  for (const LeafCell& leaf : leaves) {
+    const auto level = static_cast<std::size_t>(leaf.level);
+    if (levels.size() <= level) levels.resize(level + 1);
+    levels[level].cells.push_back(leaf.corner >> leaf.level);
+  }
+  for (LevelLeaves& level : levels) level.index();
+  // Seen from the smaller leaf: none of the cells of its size around it, nor its own, may be part
+  // of a leaf two levels up; its own may not be part of any.
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    for (const Coord& cell : levels[level].cells) {
+      for (int i = 0; i < 27; ++i) {
+        const Coord near = cell.offsetBy(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+        for (std::size_t above = level + (near == cell ? 1 : 2); above < levels.size(); ++above) {
+          if (levels[above].has(near >> static_cast<int>(above - level))) return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace tufa

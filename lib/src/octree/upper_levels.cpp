@@ -1,0 +1,111 @@
+#include "octree/upper_levels.h"
+
+#include <algorithm>
+
+#include "octree/solve_patch.h"
+
+namespace tufa::octree {
+namespace {
+
+using uniform::kCorners;
+
+// What one cell of the new level came to.
+struct Outcome {
+  bool safe = false;
+  std::vector<Cluster> clusters;
+  std::vector<Patch> patches;
+  std::vector<std::uint32_t> parents;  // of the children's clusters, child by child
+};
+
+using ChildCells = std::array<std::uint32_t, kCorners>;
+
+Outcome tryCell(const LevelPatches& below, const ChildCells& cells, const grid::Affine& affine,
+                PatchJoiner& joiner) {
+  Outcome outcome;
+  PatchJoiner::Children children;
+  for (int child = 0; child < kCorners; ++child) {
+    if (cells[child] == kNone) continue;
+    if (below.level.safe[cells[child]] == 0) return outcome;
+    const std::uint32_t first = below.level.first[cells[child]];
+    children[child] = {below.patches.data() + first, below.level.first[cells[child] + 1] - first};
+  }
+  if (!joiner.join(children)) return outcome;
+  outcome.safe = true;
+  outcome.patches = joiner.patches();
+  outcome.parents = joiner.parents();
+  const int childSize = 1 << below.level.level;
+  std::size_t next = 0;
+  for (int child = 0; child < kCorners; ++child) {
+    const Vec3 corner(((child >> 2) & 1) * childSize, ((child >> 1) & 1) * childSize,
+                      (child & 1) * childSize);
+    for (const Patch& patch : children[child]) {
+      Patch& parent = outcome.patches[outcome.parents[next++]];
+      parent.planes += patch.planes.translatedTo(-corner);
+      parent.cone.add(patch.cone);
+    }
+  }
+  for (const Patch& patch : outcome.patches) {
+    outcome.clusters.push_back(solvePatch(patch, Vec3(0), 2 * childSize, affine));
+  }
+  return outcome;
+}
+
+// The cells above those of a level, in the order of their first child, and their children.
+std::vector<ChildCells> findCells(Level& below, Level& above, base::Job& job) {
+  std::vector<ChildCells> children;
+  below.parentCells.resize(below.cells.size());
+  above.indices.reserve(below.cells.size());
+  for (std::uint32_t i = 0; i < below.cells.size(); ++i) {
+    job.lookAtTimes(i);
+    const Coord& cell = below.cells[i];
+    const Coord parent(cell[0] >> 1, cell[1] >> 1, cell[2] >> 1);
+    const auto fresh = static_cast<std::uint32_t>(above.cells.size());
+    const std::uint32_t own = above.indices.tryEmplace(parent, fresh);
+    if (own == fresh) {
+      above.cells.push_back(parent);
+      children.emplace_back().fill(kNone);
+    }
+    below.parentCells[i] = own;
+    children[own][(cell[0] & 1) * 4 + (cell[1] & 1) * 2 + (cell[2] & 1)] = i;
+  }
+  return children;
+}
+
+}  // namespace
+
+LevelPatches buildLevelAbove(LevelPatches& below, const grid::Affine& affine, base::Job& job) {
+  LevelPatches above;
+  Level& level = above.level;
+  level.level = below.level.level + 1;
+  const std::vector<ChildCells> children = findCells(below.level, level, job);
+  std::vector<Outcome> outcomes(level.cells.size());
+  job.forRanges(outcomes.size(), 16, [&](std::size_t begin, std::size_t end) {
+    PatchJoiner joiner;
+    for (std::size_t i = begin; i < end; ++i) {
+      outcomes[i] = tryCell(below, children[i], affine, joiner);
+    }
+  });
+  level.safe.resize(outcomes.size());
+  level.first.reserve(outcomes.size() + 1);
+  level.first.push_back(0);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    job.lookAtTimes(i);
+    Outcome& outcome = outcomes[i];
+    level.safe[i] = outcome.safe ? 1 : 0;
+    const auto first = static_cast<std::uint32_t>(level.clusters.size());
+    std::size_t next = 0;
+    for (const std::uint32_t child : children[i]) {
+      if (!outcome.safe || child == kNone) continue;
+      for (std::uint32_t c = below.level.first[child]; c < below.level.first[child + 1]; ++c) {
+        below.level.clusters[c].parent = first + outcome.parents[next++];
+      }
+    }
+    level.clusters.insert(level.clusters.end(), outcome.clusters.begin(), outcome.clusters.end());
+    above.patches.insert(above.patches.end(), outcome.patches.begin(), outcome.patches.end());
+    level.first.push_back(static_cast<std::uint32_t>(level.clusters.size()));
+    outcome = {};
+  }
+  return above;
+}
+
+}  // namespace tufa::octree

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "base/flat_triangle.h"
+#include "base/vec3.h"
+#include "refine/collapse/edge_mesh.h"
+
+namespace tufa::refine {
+
+/// 1 for an equilateral triangle, 0 for three points on a line.
+[[nodiscard]] double roundness(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The triangles around an edge, and what becomes of them if it is collapsed.
+class Ring {
+ public:
+  /// Those around the edge from `a` to `b`, which would become `point`, where the surface faces
+  /// `facing`, of any length. False if one would turn over or become a needle.
+  [[nodiscard]] bool collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b, const Vec3& point,
+                             const Vec3& facing);
+  /// No triangle is folded back over a neighbour, in the ring or outside, or none further than one
+  /// is now.
+  [[nodiscard]] bool staysUnfolded(const EdgeMesh& mesh) const;
+  /// Whether the squared distance of the point is at most `enough`.
+  [[nodiscard]] bool isNear(const Vec3& point, double enough) const;
+  /// The number of the triangle that is nearest to the point, and its squared distance. The one
+  /// looked at `first` is as good if the point lies above it and within `enough`, squared.
+  [[nodiscard]] std::pair<std::size_t, double> nearest(const Vec3& point, std::size_t first,
+                                                       double enough) const;
+
+  /// All triangles around the edge as it is.
+  [[nodiscard]] const std::vector<std::uint32_t>& star() const { return star_; }
+  /// Those that stay, and what they become: their first corner is the new vertex.
+  [[nodiscard]] const std::vector<std::uint32_t>& triangles() const { return triangles_; }
+  [[nodiscard]] const std::vector<base::FlatTriangle>& shapes() const { return shapes_; }
+
+  /// The normal of the triangle across the edge from x to y of another one; `own` if it has none.
+  [[nodiscard]] static Vec3 normalAcross(const EdgeMesh& mesh, VertexIndex x, VertexIndex y,
+                                         const Vec3& own);
+
+ private:
+  [[nodiscard]] double sharpest(const EdgeMesh& mesh) const;
+
+  std::vector<std::uint32_t> star_, triangles_;
+  std::vector<std::array<VertexIndex, 2>> edges_;  ///< opposite to the new vertex
+  std::vector<base::FlatTriangle> shapes_;
+};
+
+}  // namespace tufa::refine

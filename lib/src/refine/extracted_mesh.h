@@ -1,0 +1,24 @@
+#pragma once
+
+#include <tufa/mesh.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "intersect/surface.h"
+
+namespace tufa::refine {
+
+/// A mesh taken from a surface model, and where its elements come from.
+struct ExtractedMesh {
+  Mesh mesh;
+  /// Uniform vertex of each vertex, kNone for one of a larger cell; empty: the vertices are those
+  /// of the uniform mesh.
+  std::vector<VertexIndex> baseVertices;
+  /// Uniform quad of each polygon, quads first; empty: the polygons are those of the uniform mesh.
+  std::vector<std::uint32_t> baseQuads;
+  std::vector<intersect::PolygonIndex>
+      suspects;  ///< polygons, of which each pair that meets has one; sorted
+};
+
+}  // namespace tufa::refine

@@ -1,0 +1,91 @@
+#include "refine/finish.h"
+
+#include <algorithm>
+
+#include "base/single_precision.h"
+#include "refine/rounding.h"
+#include "refine/uniform_repair.h"
+#include "uniform/place_vertices.h"
+
+namespace tufa::refine {
+namespace {
+
+// Asks `base` about the elements that some elements of a mesh come from: sorted and distinct, as it
+// wants them. `points` are the answers for elements without such an origin.
+template <class Ask>
+void askOrigins(const Ask& ask, const std::vector<std::uint32_t>& origins,
+                std::vector<Position>& points) {
+  std::vector<std::uint32_t> sorted;
+  for (const std::uint32_t origin : origins) {
+    if (origin != octree::kNone) sorted.push_back(origin);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  const std::vector<Position> answers = ask(sorted);
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (origins[i] == octree::kNone) continue;
+    const auto at = std::lower_bound(sorted.begin(), sorted.end(), origins[i]);
+    points[i] = answers[static_cast<std::size_t>(at - sorted.begin())];
+  }
+}
+
+// What the repair asks of a mesh in world space.
+Source worldSource(const SurfaceModel& model, const ExtractedMesh& extracted, base::Job& job) {
+  const Source base = sourceOf(model.surface(), job);
+  const grid::Affine& affine = model.affine();
+  const auto toWorld = [&affine](std::vector<Position> points) {
+    for (Position& point : points) point = affine.toWorld(point);
+    return points;
+  };
+  Source source = base;
+  source.massPoints = [base, toWorld, &extracted](const std::vector<VertexIndex>& vertices) {
+    if (extracted.baseVertices.empty()) return toWorld(base.massPoints(vertices));
+    std::vector<Position> points;
+    std::vector<std::uint32_t> own;
+    for (const VertexIndex vertex : vertices) {
+      points.push_back(extracted.mesh.positions[vertex]);
+      own.push_back(extracted.baseVertices[vertex]);
+    }
+    askOrigins([&](const std::vector<VertexIndex>& some) { return toWorld(base.massPoints(some)); },
+               own, points);
+    return points;
+  };
+  source.crossings = [base, toWorld,
+                      &extracted](const std::vector<intersect::PolygonIndex>& polygons) {
+    if (extracted.baseQuads.empty()) return toWorld(base.crossings(polygons));
+    std::vector<std::uint32_t> own;
+    for (const intersect::PolygonIndex polygon : polygons)
+      own.push_back(extracted.baseQuads[polygon]);
+    std::vector<Position> points(own.size());
+    askOrigins(
+        [&](const std::vector<std::uint32_t>& some) { return toWorld(base.crossings(some)); }, own,
+        points);
+    return points;
+  };
+  return source;
+}
+
+}  // namespace
+
+void finishMesh(const SurfaceModel& model, const ContourOptions& options, ExtractedMesh& extracted,
+                ContourReport& report, base::Job& job) {
+  const grid::Affine& affine = model.affine();
+  Mesh& mesh = extracted.mesh;
+  job.forRanges(mesh.positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);
+  });
+  const bool single = base::roundToSingle(mesh, kMostRounding * affine.leastHeight(), job);
+  if (options.repair) {
+    Source source = worldSource(model, extracted, job);
+    source.singlePrecision = single;
+    const MendReport mended = mend(mesh, extracted.suspects, source, job);
+    report.intersectionsLeft = mended.left.size();
+    report.movedVertices += mended.movedVertices;
+    report.turnedQuads += mended.turnedQuads;
+    report.fannedQuads += mended.fannedQuads;
+  }
+  if (options.normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
+  if (options.normals == Normals::None) mesh.normals = {};
+}
+
+}  // namespace tufa::refine

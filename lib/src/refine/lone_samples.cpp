@@ -1,0 +1,107 @@
+#include "refine/lone_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+
+namespace tufa::refine {
+namespace {
+
+constexpr std::uint8_t kThree = 3;
+constexpr std::size_t kCorners = 8;
+constexpr std::size_t kSides = 6;
+
+// The quads of which all vertices have three quads.
+std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
+  std::vector<std::uint8_t> quadsAt(mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
+    job.lookAtTimes(i);
+    for (const VertexIndex vertex : mesh.quads[i].vertices) {
+      quadsAt[vertex] = static_cast<std::uint8_t>(std::min<int>(quadsAt[vertex] + 1, kThree + 1));
+    }
+  }
+  std::vector<std::uint32_t> candidates;
+  for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
+    job.lookAtTimes(i);
+    const auto& v = mesh.quads[i].vertices;
+    if (std::all_of(v.begin(), v.end(), [&](VertexIndex at) { return quadsAt[at] == kThree; })) {
+      candidates.push_back(i);
+    }
+  }
+  return candidates;
+}
+
+// Closed pieces of six quads; each in the order of the mesh.
+std::vector<std::array<std::uint32_t, kSides>> findPieces(const Mesh& mesh, base::Job& job) {
+  const std::vector<std::uint32_t> candidates = findCandidates(mesh, job);
+  std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around;
+  for (const std::uint32_t quad : candidates) {
+    for (const VertexIndex vertex : mesh.quads[quad].vertices) around[vertex].push_back(quad);
+  }
+  std::vector<std::array<std::uint32_t, kSides>> pieces;
+  std::vector<std::uint32_t> piece;
+  for (const std::uint32_t first : candidates) {
+    piece = {first};
+    for (std::size_t i = 0; i < piece.size() && piece.size() <= kSides; ++i) {
+      for (const VertexIndex vertex : mesh.quads[piece[i]].vertices) {
+        for (const std::uint32_t next : around[vertex]) {
+          if (std::find(piece.begin(), piece.end(), next) == piece.end()) piece.push_back(next);
+        }
+      }
+    }
+    if (piece.size() != kSides || *std::min_element(piece.begin(), piece.end()) != first) continue;
+    std::sort(piece.begin(), piece.end());
+    std::copy(piece.begin(), piece.end(), pieces.emplace_back().begin());
+  }
+  return pieces;
+}
+
+// Six times the volume of quads whose corners are at `at(vertex)`.
+template <class At>
+double volumeOf(const Mesh& mesh, const std::array<std::uint32_t, kSides>& piece, const At& at) {
+  const Vec3 origin = at(mesh.quads[piece[0]].vertices[0]);
+  double volume = 0;
+  for (const std::uint32_t quad : piece) {
+    const auto& v = mesh.quads[quad].vertices;
+    const Vec3 p = at(v[0]) - origin, q = at(v[2]) - origin;
+    volume += p.dot((at(v[1]) - origin).cross(q)) + p.dot(q.cross(at(v[3]) - origin));
+  }
+  return volume;
+}
+
+}  // namespace
+
+std::size_t unfoldLonePieces(Mesh& mesh, const Source& source, base::Job& job) {
+  const auto pieces = findPieces(mesh, job);
+  std::vector<VertexIndex> vertices;
+  for (const auto& piece : pieces) {
+    for (const std::uint32_t quad : piece) {
+      const auto& v = mesh.quads[quad].vertices;
+      vertices.insert(vertices.end(), v.begin(), v.end());
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  if (vertices.empty()) return 0;
+  const std::vector<Position> havens = source.massPoints(vertices);
+  const auto havenOf = [&](VertexIndex vertex) {
+    const auto found = std::lower_bound(vertices.begin(), vertices.end(), vertex);
+    return havens[static_cast<std::size_t>(found - vertices.begin())];
+  };
+  std::size_t moved = 0;
+  for (const auto& piece : pieces) {
+    const double is = volumeOf(mesh, piece, [&](VertexIndex v) { return Vec3(mesh.positions[v]); });
+    const double box = volumeOf(mesh, piece, [&](VertexIndex v) { return Vec3(havenOf(v)); });
+    if (is * box > 0) continue;
+    for (const std::uint32_t quad : piece) {
+      for (const VertexIndex vertex : mesh.quads[quad].vertices) {
+        mesh.positions[vertex] = havenOf(vertex);
+      }
+    }
+    moved += kCorners;
+  }
+  return moved;
+}
+
+}  // namespace tufa::refine

@@ -1,0 +1,82 @@
+#include "refine/measured.h"
+
+#include <algorithm>
+
+namespace tufa::refine {
+namespace {
+
+// Those of the polygons that have a marked vertex; all without marks.
+std::vector<intersect::PolygonIndex> withMarks(const Mesh& mesh,
+                                               const std::vector<intersect::PolygonIndex>& polygons,
+                                               const std::vector<std::uint8_t>& marks) {
+  if (marks.empty()) return polygons;
+  std::vector<intersect::PolygonIndex> some;
+  const auto look = [&](const auto& v, intersect::PolygonIndex polygon) {
+    if (std::any_of(v.begin(), v.end(), [&](VertexIndex i) { return marks[i] != 0; })) {
+      some.push_back(polygon);
+    }
+  };
+  for (const intersect::PolygonIndex polygon : polygons) {
+    polygon < mesh.quads.size()
+        ? look(mesh.quads[polygon].vertices, polygon)
+        : look(mesh.triangles[polygon - mesh.quads.size()].vertices, polygon);
+  }
+  return some;
+}
+
+// Makes small changes to what is not of the base mesh; pairs that these do not help are left.
+MendReport mendCut(const Repair& repair, const octree::Cut& cut,
+                   const std::vector<intersect::PolygonIndex>& suspects, Mesh& mesh,
+                   base::Job& job) {
+  Source source = repair.source;
+  source.crossings = nullptr;
+  source.toTheFloor = false;
+  source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
+    std::vector<Position> points;
+    for (const VertexIndex vertex : vertices) points.push_back(mesh.positions[vertex]);
+    return points;
+  };
+  source.isFixed = [&](VertexIndex vertex) { return cut.clusters[vertex].level == 0; };
+  return mend(mesh, suspects, source, job);
+}
+
+}  // namespace
+
+std::vector<intersect::PolygonIndex> suspectsOf(const octree::CutMesh& made, const octree::Cut& cut,
+                                                const std::vector<std::uint32_t>& baseSuspects,
+                                                const std::vector<VertexIndex>& altered) {
+  std::vector<std::uint8_t> other(cut.clusters.size());
+  for (std::size_t i = 0; i < other.size(); ++i) other[i] = cut.clusters[i].level != 0 ? 1 : 0;
+  for (const VertexIndex vertex : altered) other[vertex] = 1;
+  std::vector<intersect::PolygonIndex> suspects;
+  const auto look = [&](const auto& v, std::uint32_t source, std::size_t polygon) {
+    if (std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return other[k] != 0; }) ||
+        std::binary_search(baseSuspects.begin(), baseSuspects.end(), source)) {
+      suspects.push_back(static_cast<intersect::PolygonIndex>(polygon));
+    }
+  };
+  const std::size_t quads = made.mesh.quads.size();
+  for (std::size_t i = 0; i < quads; ++i) {
+    look(made.mesh.quads[i].vertices, made.quadSources[i], i);
+  }
+  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
+    look(made.mesh.triangles[i].vertices, made.triangleSources[i], quads + i);
+  }
+  return suspects;
+}
+
+void mendAndMeasure(distance::Certifier& certifier, const Repair* repair, Measured& mesh,
+                    base::Job& job, const std::vector<std::uint8_t>& fresh) {
+  if (repair != nullptr) {
+    mesh.suspects = suspectsOf(mesh.made, mesh.cut, repair->suspects);
+    mesh.mended = mendCut(*repair, mesh.cut, withMarks(mesh.made.mesh, mesh.suspects, fresh),
+                          mesh.made.mesh, job);
+    const std::vector<VertexIndex> mended =
+        intersect::verticesOf(mesh.made.mesh, mesh.mended.changed);
+    mesh.altered.insert(mesh.altered.end(), mended.begin(), mended.end());
+  }
+  mesh.deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
+  mesh.meeting = intersect::verticesOf(mesh.made.mesh, intersect::polygonsOf(mesh.mended.left));
+}
+
+}  // namespace tufa::refine

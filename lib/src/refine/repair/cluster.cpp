@@ -1,0 +1,332 @@
+#include "refine/repair/cluster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/single_precision.h"
+
+namespace tufa::refine {
+namespace {
+
+// Shares of the way to the mass point, and to a neighbour, that are tried.
+constexpr std::array kToMassPoint = {0.25, 0.5, 0.75, 1.0};
+constexpr std::array kToNeighbour = {0.15, 0.3, 0.5};
+// Harm of a fan, in voxels: it moves nothing, but adds triangles.
+constexpr double kFanHarm = 0.1;
+// Harm of a voxel's move along the surface: it makes triangles uneven.
+constexpr double kSlideHarm = 0.02;
+// Changes made for each pair before giving up.
+constexpr std::size_t kMostChanges = 20;
+
+template <class T>
+void sortUnique(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+}  // namespace
+
+Cluster::Cluster(Patch patch, const std::vector<intersect::PolygonPair>& pairs,
+                 const Havens& havens)
+    : patch_(std::move(patch)), havens_(havens) {
+  for (const intersect::PolygonPair& pair : pairs) {
+    pairs_.push_back({patch_.find(pair.a), patch_.find(pair.b)});
+  }
+}
+
+Changes Cluster::mend(bool toTheFloor) {
+  const std::size_t most = kMostChanges * (pairs_.size() + 1);
+  std::vector<Pair> stuck;
+  for (std::size_t i = 0; i < most; ++i) {
+    // The next one by place: numbers are other ones where a grid is moved.
+    const Pair* next = nullptr;
+    for (const Pair& pair : pairs_) {
+      if (std::find(stuck.begin(), stuck.end(), pair) != stuck.end()) continue;
+      if (next == nullptr ||
+          placeOf(pair[0]) + placeOf(pair[1]) < placeOf((*next)[0]) + placeOf((*next)[1])) {
+        next = &pair;
+      }
+    }
+    if (next == nullptr) break;
+    Pair pair = *next;
+    if (placeOf(pair[1]) < placeOf(pair[0])) std::swap(pair[0], pair[1]);
+    const Pair named = *next;
+    if (improve(pair) || (toTheFloor && goToFloor(pair))) continue;
+    stuck.push_back(named);
+  }
+  return changes();
+}
+
+// The sum of the corners.
+Vec3 Cluster::placeOf(Local polygon) const {
+  Vec3 sum(0);
+  for (const Local vertex : patch_.corners(polygon)) sum += Vec3(patch_.point(vertex));
+  return sum;
+}
+
+std::vector<Cluster::Edit> Cluster::editsFor(const Pair& pair) const {
+  std::vector<Edit> edits;
+  std::vector<Local> vertices;
+  for (const Local polygon : pair) {
+    addTurn(polygon, edits);
+    addFan(polygon, edits);
+    const intersect::Corners corners = patch_.corners(polygon);
+    vertices.insert(vertices.end(), corners.begin(), corners.end());
+    if (pair[0] == pair[1]) break;
+  }
+  sortUnique(vertices);
+  for (const Local vertex : vertices) addMoves(vertex, edits);
+  if (Edit all = retreat(pair); !all.moves.empty()) edits.push_back(std::move(all));
+  std::stable_sort(edits.begin(), edits.end(),
+                   [](const Edit& a, const Edit& b) { return a.harm < b.harm; });
+  return edits;
+}
+
+// Harm: the gap between the diagonals.
+// Whether an edge joins two vertices already, apart from those of one polygon.
+bool Cluster::isEdge(Local a, Local b, Local apart) const {
+  const auto& around = patch_.around(a);
+  return std::any_of(around.begin(), around.end(), [&](Local polygon) {
+    std::array<Triangle, 2> triangles;
+    const int count =
+        polygon == apart ? 0 : intersect::trianglesOf(patch_.corners(polygon), triangles);
+    return std::any_of(triangles.begin(), triangles.begin() + count, [&](const Triangle& t) {
+      const auto& v = t.vertices;
+      return std::find(v.begin(), v.end(), a) != v.end() &&
+             std::find(v.begin(), v.end(), b) != v.end();
+    });
+  });
+}
+
+void Cluster::addTurn(Local polygon, std::vector<Edit>& edits) const {
+  const intersect::Corners v = patch_.corners(polygon);
+  if (v.size() != 4 || std::none_of(v.begin(), v.end(), [&](Local i) { return canMove(i); }) ||
+      isEdge(v[1], v[3], polygon))
+    return;
+  const Vec3 p0 = Vec3(patch_.point(v[0])), p1 = Vec3(patch_.point(v[1]));
+  const Vec3 across = (Vec3(patch_.point(v[2])) - p0).cross(Vec3(patch_.point(v[3])) - p1);
+  const double length = across.length();
+  Edit edit;
+  edit.harm = length > 0 ? std::abs(across.dot(p1 - p0)) / length / havens_.voxelSize : 0;
+  edit.turns = {polygon};
+  edits.push_back(std::move(edit));
+}
+
+bool Cluster::canMove(Local vertex) const {
+  return !patch_.isNew(vertex) && havens_.massPoints.count(patch_.vertexOf(vertex)) != 0;
+}
+
+bool Cluster::canFan(Local polygon) const {
+  return patch_.corners(polygon).size() == 4 &&
+         havens_.crossings.count(patch_.polygonOf(polygon)) != 0;
+}
+
+void Cluster::addFan(Local polygon, std::vector<Edit>& edits) const {
+  if (!canFan(polygon)) return;
+  Edit edit;
+  edit.harm = kFanHarm;
+  edit.fans = {polygon};
+  edits.push_back(std::move(edit));
+}
+
+// Towards the mass point and towards each neighbour. Harm: how far that is off the planes of the
+// triangles around, the root of the mean of the squares, weighted by area (Garland and Heckbert
+// 1997).
+void Cluster::addMoves(Local vertex, std::vector<Edit>& edits) const {
+  if (patch_.isNew(vertex)) return;
+  const auto haven = havens_.massPoints.find(patch_.vertexOf(vertex));
+  if (haven == havens_.massPoints.end()) return;
+  const Vec3 from = Vec3(patch_.point(vertex));
+  std::vector<Local> neighbours;
+  std::vector<Vec3> normals;  // of the length of the area, twice
+  double area = 0;
+  for (const Local polygon : patch_.around(vertex)) {
+    std::array<Triangle, 2> triangles;
+    const int count = intersect::trianglesOf(patch_.corners(polygon), triangles);
+    for (int i = 0; i < count; ++i) {
+      const auto& v = triangles[i].vertices;
+      if (std::find(v.begin(), v.end(), vertex) == v.end()) continue;
+      const Vec3 a = Vec3(patch_.point(v[0]));
+      normals.push_back((Vec3(patch_.point(v[1])) - a).cross(Vec3(patch_.point(v[2])) - a));
+      area += normals.back().length();
+      for (const Local other : v) {
+        if (other != vertex) neighbours.push_back(other);
+      }
+    }
+  }
+  sortUnique(neighbours);
+  const auto propose = [&](const Vec3& target, double share) {
+    const Vec3 way = (target - from) * share;
+    double squares = 0;
+    for (const Vec3& normal : normals) {
+      const double length = normal.length();
+      if (length > 0) squares += std::pow(normal.dot(way), 2) / length;
+    }
+    Edit edit;
+    const double off = area > 0 ? std::sqrt(squares / area) : 0;
+    edit.harm = (off + kSlideHarm * way.length()) / havens_.voxelSize;
+    const Vec3 to = share == 1 ? target : from + way;
+    const Position exact(to[0], to[1], to[2]);
+    const Position position = havens_.singlePrecision ? base::toSingle(exact) : exact;
+    if (position == patch_.point(vertex)) return;
+    edit.moves = {{vertex, position}};
+    edits.push_back(std::move(edit));
+  };
+  for (const double share : kToMassPoint) propose(Vec3(haven->second), share);
+  for (const Local neighbour : neighbours) {
+    for (const double share : kToNeighbour) propose(Vec3(patch_.point(neighbour)), share);
+  }
+}
+
+// All vertices of both polygons at their mass points.
+Cluster::Edit Cluster::retreat(const Pair& pair) const {
+  Edit edit;
+  for (const Local polygon : pair) {
+    for (const Local vertex : patch_.corners(polygon)) {
+      if (patch_.isNew(vertex)) continue;
+      const auto haven = havens_.massPoints.find(patch_.vertexOf(vertex));
+      if (haven == havens_.massPoints.end() || haven->second == patch_.point(vertex)) continue;
+      const std::pair<Local, Position> move{vertex, haven->second};
+      if (std::find(edit.moves.begin(), edit.moves.end(), move) != edit.moves.end()) continue;
+      edit.moves.push_back(move);
+      const Vec3 way = Vec3(haven->second) - Vec3(patch_.point(vertex));
+      edit.harm += way.length() / havens_.voxelSize;
+    }
+  }
+  return edit;
+}
+
+bool Cluster::improve(const Pair& pair) {
+  const std::vector<Edit> edits = editsFor(pair);
+  return std::any_of(edits.begin(), edits.end(),
+                     [&](const Edit& edit) { return attempt(edit, pair); });
+}
+
+bool Cluster::goToFloor(const Pair& pair) {
+  Edit edit = retreat(pair);
+  if (edit.moves.empty()) {
+    for (const Local polygon : pair) {
+      if (canFan(polygon)) edit.fans.push_back(polygon);
+    }
+    sortUnique(edit.fans);
+    if (edit.fans.empty()) return false;
+  }
+  apply(edit);
+  const std::vector<Local> touched = touchedBy(edit);
+  accept(edit, touched, pairsOf(touched));
+  return true;
+}
+
+bool Cluster::attempt(const Edit& edit, const Pair& pair) {
+  apply(edit);
+  if (edit.fans.empty() && patch_.meet(pair[0], pair[1])) {
+    undo(edit);
+    return false;
+  }
+  const std::vector<Local> touched = touchedBy(edit);
+  const auto isTouched = [&](Local polygon) {
+    return std::binary_search(touched.begin(), touched.end(), polygon);
+  };
+  const auto before = std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) {
+    return isTouched(p[0]) || isTouched(p[1]);
+  });
+  if (std::any_of(touched.begin(), touched.end(), [&](Local p) { return patch_.isFlat(p); })) {
+    undo(edit);
+    return false;
+  }
+  const std::vector<Pair> after = pairsOf(touched);
+  if (static_cast<std::ptrdiff_t>(after.size()) >= before) {
+    undo(edit);
+    return false;
+  }
+  accept(edit, touched, after);
+  return true;
+}
+
+void Cluster::apply(const Edit& edit) {
+  undoMoves_.clear();
+  undoFans_.clear();
+  for (const auto& [vertex, to] : edit.moves) {
+    undoMoves_.emplace_back(vertex, patch_.point(vertex));
+    patch_.move(vertex, to);
+  }
+  for (const Local quad : edit.turns) patch_.turn(quad);
+  for (const Local quad : edit.fans) {
+    const intersect::Corners v = patch_.corners(quad);
+    undoFans_.emplace_back(quad, Quad(v[0], v[1], v[2], v[3]));
+    patch_.fan(quad, havens_.crossings.at(patch_.polygonOf(quad)));
+  }
+}
+
+void Cluster::undo(const Edit& edit) {
+  for (auto fan = undoFans_.rbegin(); fan != undoFans_.rend(); ++fan) {
+    patch_.unfan(fan->first, fan->second);
+  }
+  for (const Local quad : edit.turns) {
+    for (int i = 0; i < 3; ++i) patch_.turn(quad);
+  }
+  for (const auto& [vertex, from] : undoMoves_) patch_.move(vertex, from);
+}
+
+std::vector<Cluster::Local> Cluster::touchedBy(const Edit& edit) const {
+  std::vector<Local> touched = edit.turns;
+  for (const auto& [vertex, to] : edit.moves) {
+    const auto& around = patch_.around(vertex);
+    touched.insert(touched.end(), around.begin(), around.end());
+  }
+  touched.insert(touched.end(), edit.fans.begin(), edit.fans.end());
+  for (std::size_t i = 0; i < 3 * edit.fans.size(); ++i) {
+    touched.push_back(static_cast<Local>(patch_.polygonCount() - 1 - i));
+  }
+  sortUnique(touched);
+  return touched;
+}
+
+std::vector<Cluster::Pair> Cluster::pairsOf(const std::vector<Local>& polygons) const {
+  std::vector<Pair> pairs;
+  for (const Local polygon : polygons) {
+    for (Local other = 0; other < patch_.polygonCount(); ++other) {
+      if (patch_.meet(polygon, other)) {
+        pairs.push_back({std::min(polygon, other), std::max(polygon, other)});
+      }
+    }
+  }
+  sortUnique(pairs);
+  return pairs;
+}
+
+void Cluster::accept(const Edit& edit, const std::vector<Local>& touched,
+                     const std::vector<Pair>& pairs) {
+  std::erase_if(pairs_, [&](const Pair& p) {
+    return std::binary_search(touched.begin(), touched.end(), p[0]) ||
+           std::binary_search(touched.begin(), touched.end(), p[1]);
+  });
+  pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
+  for (const auto& [vertex, to] : edit.moves) moved_.push_back(vertex);
+  turned_.insert(turned_.end(), edit.turns.begin(), edit.turns.end());
+  for (const Local quad : edit.fans) {
+    fans_.emplace_back(quad, havens_.crossings.at(patch_.polygonOf(quad)));
+  }
+  touched_.insert(touched_.end(), touched.begin(), touched.end());
+}
+
+Changes Cluster::changes() const {
+  Changes changes;
+  auto moved = moved_, touched = touched_;
+  sortUnique(moved);
+  for (const Local vertex : moved) {
+    changes.moves.emplace_back(patch_.vertexOf(vertex), patch_.point(vertex));
+  }
+  for (const Local quad : turned_) changes.turns.push_back(patch_.polygonOf(quad));
+  for (const auto& [quad, centre] : fans_)
+    changes.fans.emplace_back(patch_.polygonOf(quad), centre);
+  sortUnique(touched);
+  for (const Local polygon : touched) {
+    if (patch_.isNew(patch_.corners(polygon)[0])) continue;
+    changes.polygons.push_back(patch_.polygonOf(polygon));
+  }
+  return changes;
+}
+
+}  // namespace tufa::refine

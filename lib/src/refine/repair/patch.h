@@ -1,0 +1,66 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/bvh.h"
+#include "intersect/surface.h"
+
+namespace tufa::refine {
+
+/// A piece of the mesh, copied out to be changed and looked at many times. Vertices and polygons
+/// have numbers of their own here.
+class Patch {
+ public:
+  /// Names a vertex or polygon of the patch.
+  using Local = VertexIndex;
+
+  /// Takes a copy of these polygons, sorted, and their vertices.
+  Patch(const intersect::Surface& surface, std::vector<intersect::PolygonIndex> polygons);
+
+  [[nodiscard]] Local polygonCount() const { return static_cast<Local>(polygons_.size()); }
+  [[nodiscard]] Local find(intersect::PolygonIndex polygon) const;
+  [[nodiscard]] intersect::PolygonIndex polygonOf(Local polygon) const { return numbers_[polygon]; }
+  [[nodiscard]] VertexIndex vertexOf(Local vertex) const { return vertices_[vertex]; }
+  /// Whether the vertex is the centre of a fan that was made here.
+  [[nodiscard]] bool isNew(Local vertex) const { return vertex >= vertices_.size(); }
+  [[nodiscard]] intersect::Corners corners(Local polygon) const {
+    return {polygons_[polygon].vertices.data(), counts_[polygon]};
+  }
+  [[nodiscard]] const Position& point(Local vertex) const { return points_[vertex]; }
+  /// The polygons of the patch at a vertex.
+  [[nodiscard]] const std::vector<Local>& around(Local vertex) const { return around_[vertex]; }
+
+  void move(Local vertex, const Position& to);
+  /// Splits a quad along its other diagonal. Done twice it starts where its second vertex was.
+  void turn(Local quad);
+
+  /// Whether two polygons, or the triangles of one, meet elsewhere than in what they share.
+  [[nodiscard]] bool meet(Local a, Local b) const {
+    return boxes_[a].meets(boxes_[b]) &&
+           intersect::meetElsewhere(points_, corners(a), corners(b), a == b);
+  }
+  /// Whether the corners of a triangle of the polygon lie on a line.
+  [[nodiscard]] bool isFlat(Local polygon) const;
+
+  /// Puts four triangles around a new vertex in place of a quad; the first gets the quad's number,
+  /// the others the last ones.
+  void fan(Local quad, const Position& centre);
+  /// Takes the last fan back.
+  void unfan(Local quad, const Quad& was);
+
+ private:
+  void updateBox(Local polygon);
+
+  std::vector<VertexIndex> vertices_;  ///< sorted; a fan's centre has none
+  std::vector<Position> points_;
+  std::vector<std::vector<Local>> around_;
+  std::vector<intersect::PolygonIndex> numbers_;  ///< sorted; triangles of a fan have none
+  std::vector<Quad> polygons_;
+  std::vector<std::uint8_t> counts_;
+  std::vector<base::Box> boxes_;
+};
+
+}  // namespace tufa::refine

@@ -1,0 +1,288 @@
+#include "refine/repair/repair.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "base/bvh.h"
+#include "base/single_precision.h"
+#include "refine/repair/cluster.h"
+
+namespace tufa::refine {
+namespace {
+
+using base::Box;
+
+// Most rounds of small changes, and again of changes down to the floor.
+constexpr int kMostRounds = 40;
+// Where more than one in so many polygons meets another, there is no fine shape to spare: all that
+// are involved go to their mass points at once.
+constexpr std::size_t kCrowded = 20;
+constexpr int kCrowdedRounds = 2;
+// What is seen around a pair: so much of the pair's size on each side, and no less than this in
+// voxels.
+constexpr double kSight = 0.75;
+constexpr double kLeastSight = 1.0;
+
+template <class T>
+void sortUnique(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+class Mender {
+ public:
+  Mender(Mesh& mesh, const Source& source, base::Job& job)
+      : surface_(mesh, job),
+        source_(source),
+        job_(job),
+        ownVertices_(static_cast<VertexIndex>(mesh.positions.size())) {
+    havens_.voxelSize = source.voxelSize;
+    havens_.singlePrecision = source.singlePrecision;
+  }
+
+  MendReport run(const std::vector<intersect::PolygonIndex>& suspects) {
+    pairs_ = intersect::findPairs(surface_, suspects, job_);
+    report_.pairsFound = pairs_.size();
+    for (int round = 0; round < kCrowdedRounds && pairs_.size() > surface_.size() / kCrowded;
+         ++round) {
+      readHavens();
+      report_.changed = retreatAll();
+      lookAgain(report_.changed);
+    }
+    mendInRounds(false);
+    if (source_.toTheFloor) mendInRounds(true);
+    surface_.finish();
+    sortUnique(report_.changed);
+    report_.left = std::move(pairs_);
+    return std::move(report_);
+  }
+
+ private:
+  void mendInRounds(bool toTheFloor) {
+    stuck_.clear();
+    for (int round = 0; round < kMostRounds && stuck_.size() < pairs_.size(); ++round) {
+      readHavens();
+      lookAgain(mendClusters(toTheFloor));
+    }
+  }
+
+  // Mass points and crossings for the polygons of all pairs, as far as they are not known yet.
+  void readHavens() {
+    std::vector<intersect::PolygonIndex> quads;
+    std::vector<VertexIndex> vertices;
+    for (const intersect::PolygonPair& pair : pairs_) {
+      for (const intersect::PolygonIndex polygon : {pair.a, pair.b}) {
+        if (surface_.isQuad(polygon) && havens_.crossings.count(polygon) == 0) {
+          quads.push_back(polygon);
+        }
+        for (const VertexIndex vertex : surface_.corners(polygon)) {
+          if (vertex >= ownVertices_ || havens_.massPoints.count(vertex) != 0) continue;
+          if (!source_.isFixed || !source_.isFixed(vertex)) vertices.push_back(vertex);
+        }
+      }
+    }
+    sortUnique(quads);
+    sortUnique(vertices);
+    if (!vertices.empty()) {
+      const std::vector<Position> points = source_.massPoints(vertices);
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        havens_.massPoints.emplace(vertices[i], rounded(points[i]));
+      }
+    }
+    if (quads.empty() || !source_.crossings) return;
+    const std::vector<Position> points = source_.crossings(quads);
+    for (std::size_t i = 0; i < quads.size(); ++i) {
+      havens_.crossings.emplace(quads[i], rounded(points[i]));
+    }
+  }
+
+  [[nodiscard]] Position rounded(const Position& p) const {
+    return source_.singlePrecision ? base::toSingle(p) : p;
+  }
+
+  std::vector<intersect::PolygonIndex> retreatAll() {
+    for (const auto& [vertex, to] : havens_.massPoints) {
+      if (surface_.mesh().positions[vertex] == to) continue;
+      surface_.move(vertex, to);
+      ++report_.movedVertices;
+    }
+    std::vector<intersect::PolygonIndex> all(surface_.size());
+    std::iota(all.begin(), all.end(), intersect::PolygonIndex{0});
+    for (const intersect::PolygonIndex polygon : all) surface_.update(polygon);
+    return all;
+  }
+
+  std::vector<intersect::PolygonIndex> mendClusters(bool toTheFloor) {
+    const std::vector<std::vector<intersect::PolygonPair>> clusters = findClusters();
+    const std::vector<std::vector<intersect::PolygonIndex>> polygons =
+        findPolygons(clusters.size());
+    std::vector<Changes> changes(clusters.size());
+    job_.forRanges(clusters.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Cluster cluster(Patch(surface_, polygons[i]), clusters[i], havens_);
+        changes[i] = cluster.mend(toTheFloor);
+      }
+    });
+    std::vector<intersect::PolygonIndex> changed;
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+      // What stays as it is will not go better next time, unless something changes around it.
+      if (changes[i].polygons.empty() && changes[i].fans.empty()) {
+        stuck_.insert(clusters[i].begin(), clusters[i].end());
+      }
+      apply(changes[i], changed);
+    }
+    sortUnique(changed);
+    report_.changed.insert(report_.changed.end(), changed.begin(), changed.end());
+    return changed;
+  }
+
+  // What a pair's changes may touch and meet.
+  [[nodiscard]] Box sightOf(const intersect::PolygonPair& pair) const {
+    Box box = surface_.box(pair.a);
+    box.add(surface_.box(pair.b));
+    for (const intersect::PolygonIndex polygon : {pair.a, pair.b}) {
+      for (const VertexIndex vertex : surface_.corners(polygon)) {
+        const auto haven = havens_.massPoints.find(vertex);
+        if (haven == havens_.massPoints.end()) continue;
+        box.add(Vec3(haven->second.x, haven->second.y, haven->second.z));
+      }
+    }
+    const Vec3 size = box.upper - box.lower;
+    const Vec3 margin(
+        std::max(kSight * std::max({size[0], size[1], size[2]}), kLeastSight * source_.voxelSize));
+    return {box.lower - margin, box.upper + margin};
+  }
+
+  [[nodiscard]] Vec3 sumOf(intersect::PolygonIndex polygon) const {
+    Vec3 sum(0);
+    for (const VertexIndex vertex : surface_.corners(polygon)) {
+      const Position& p = surface_.mesh().positions[vertex];
+      sum += Vec3(p.x, p.y, p.z);
+    }
+    return sum;
+  }
+
+  // Pairs that do not see each other, each with those that lie in its sight: what one does to its
+  // surroundings, no other looks at. The rest waits for a later round.
+  std::vector<std::vector<intersect::PolygonPair>> findClusters() {
+    std::vector<Box> all;
+    for (const intersect::PolygonPair& pair : pairs_) all.push_back(sightOf(pair));
+    std::vector<std::vector<std::uint32_t>> seen(pairs_.size());
+    const base::Bvh tree(all, job_);
+    for (std::size_t leaf = 0; leaf < tree.leafCount(); ++leaf) {
+      tree.pairsOfLeaf(leaf, [&](std::uint32_t i, std::uint32_t j) {
+        seen[i].push_back(j);
+        seen[j].push_back(i);
+      });
+    }
+    // By place, as a grid that is moved has its polygons in another order.
+    std::vector<Vec3> places;
+    for (const intersect::PolygonPair& pair : pairs_)
+      places.push_back(sumOf(pair.a) + sumOf(pair.b));
+    const auto before = [&places](std::uint32_t i, std::uint32_t j) {
+      return places[i] != places[j] ? places[i] < places[j] : i < j;
+    };
+    std::vector<std::uint32_t> order(pairs_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), before);
+    std::vector<std::vector<intersect::PolygonPair>> clusters;
+    sights_.clear();
+    std::vector<bool> taken(pairs_.size());
+    for (const std::uint32_t i : order) {
+      if (taken[i] || stuck_.count(pairs_[i]) != 0) continue;
+      clusters.push_back({pairs_[i]});
+      sights_.push_back(all[i]);
+      std::sort(seen[i].begin(), seen[i].end(), before);
+      for (const std::uint32_t other : seen[i]) {
+        taken[other] = true;
+        if (contains(all[i], pairs_[other])) clusters.back().push_back(pairs_[other]);
+      }
+    }
+    return clusters;
+  }
+
+  [[nodiscard]] bool contains(const Box& sight, const intersect::PolygonPair& pair) const {
+    Box own = surface_.box(pair.a);
+    own.add(surface_.box(pair.b));
+    own.add(sight);
+    return own.lower == sight.lower && own.upper == sight.upper;
+  }
+
+  // The polygons that each cluster sees, sorted.
+  std::vector<std::vector<intersect::PolygonIndex>> findPolygons(std::size_t clusters) {
+    using Entry = std::pair<std::uint32_t, intersect::PolygonIndex>;  // a cluster and a polygon
+    const base::Bvh tree(sights_, job_);
+    std::vector<std::vector<Entry>> ofRun(surface_.runCount());
+    job_.forRanges(surface_.runCount(), 64, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> near;
+      for (std::size_t run = begin; run < end; ++run) {
+        near.clear();
+        tree.itemsMeeting(surface_.runBox(run),
+                          [&](std::uint32_t i, const Box&) { near.push_back(i); });
+        for (intersect::PolygonIndex p = surface_.runBegin(run);
+             !near.empty() && p < surface_.runEnd(run); ++p) {
+          const Box box = surface_.box(p);
+          for (const std::uint32_t i : near) {
+            if (box.meets(sights_[i])) ofRun[run].emplace_back(i, p);
+          }
+        }
+      }
+    });
+    std::vector<std::vector<intersect::PolygonIndex>> polygons(clusters);
+    for (const std::vector<Entry>& entries : ofRun) {
+      for (const auto& [cluster, polygon] : entries) polygons[cluster].push_back(polygon);
+    }
+    return polygons;
+  }
+
+  void apply(const Changes& changes, std::vector<intersect::PolygonIndex>& changed) {
+    for (const auto& [vertex, to] : changes.moves) surface_.move(vertex, to);
+    for (const intersect::PolygonIndex quad : changes.turns) surface_.turn(quad);
+    for (const auto& [quad, centre] : changes.fans) {
+      const auto first = static_cast<intersect::PolygonIndex>(surface_.size());
+      surface_.fan(quad, centre);
+      for (intersect::PolygonIndex i = 0; i < 4; ++i) changed.push_back(first + i);
+    }
+    for (const intersect::PolygonIndex polygon : changes.polygons) surface_.update(polygon);
+    changed.insert(changed.end(), changes.polygons.begin(), changes.polygons.end());
+    report_.movedVertices += changes.moves.size();
+    report_.turnedQuads += changes.turns.size();
+    report_.fannedQuads += changes.fans.size();
+  }
+
+  void lookAgain(const std::vector<intersect::PolygonIndex>& changed) {
+    std::erase_if(pairs_, [&](const intersect::PolygonPair& pair) {
+      return surface_.corners(pair.a).empty() || surface_.corners(pair.b).empty() ||
+             std::binary_search(changed.begin(), changed.end(), pair.a) ||
+             std::binary_search(changed.begin(), changed.end(), pair.b);
+    });
+    const std::vector<intersect::PolygonPair> found = intersect::findPairs(surface_, changed, job_);
+    for (const intersect::PolygonPair& pair : found) stuck_.erase(pair);
+    pairs_.insert(pairs_.end(), found.begin(), found.end());
+    std::sort(pairs_.begin(), pairs_.end());
+    std::erase_if(stuck_, [&](const intersect::PolygonPair& pair) {
+      return !std::binary_search(pairs_.begin(), pairs_.end(), pair);
+    });
+  }
+
+  intersect::Surface surface_;
+  const Source& source_;
+  base::Job& job_;
+  VertexIndex ownVertices_;  // those behind are centres of fans
+  std::vector<intersect::PolygonPair> pairs_;
+  Havens havens_;
+  std::set<intersect::PolygonPair> stuck_;  // pairs that the present phase cannot help
+  std::vector<Box> sights_;                 // of the clusters
+  MendReport report_;
+};
+
+}  // namespace
+
+MendReport mend(Mesh& mesh, const std::vector<intersect::PolygonIndex>& suspects,
+                const Source& source, base::Job& job) {
+  return Mender(mesh, source, job).run(suspects);
+}
+
+}  // namespace tufa::refine

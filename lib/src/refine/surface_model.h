@@ -1,0 +1,60 @@
+#pragma once
+
+#include <tufa/contour.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/job.h"
+#include "distance/reference.h"
+#include "octree/cluster_forest.h"
+#include "octree/cut_rule.h"
+#include "refine/measured.h"
+#include "uniform/uniform_surface.h"
+
+namespace tufa::refine {
+
+/// One grid, or a box of its blocks, and what its meshes are taken from: the uniform surface
+/// without self-intersections, the clusters of all levels, and the uniform mesh as a reference for
+/// distances. Neither copied nor moved, as its parts refer to each other.
+class SurfaceModel {
+ public:
+  /// Runs the stages of the uniform mesh. Throws Error as contour() does.
+  SurfaceModel(grid::Volume volume, const ContourOptions& options, const uniform::StageEnds& ends,
+               base::Job& job);
+  SurfaceModel(const SurfaceModel&) = delete;
+  SurfaceModel& operator=(const SurfaceModel&) = delete;
+
+  /// Builds the clusters and the reference. To be called once, before forest() and reference().
+  void buildClusters(const octree::CutRule& rule, base::Job& job);
+
+  [[nodiscard]] const uniform::UniformSurface& surface() const { return surface_; }
+  [[nodiscard]] uniform::SurfaceView view() const { return surface_.view(); }
+  [[nodiscard]] const Mesh& mesh() const { return surface_.mesh; }
+  [[nodiscard]] const grid::Affine& affine() const { return surface_.affine(); }
+  /// The mesh before the repair, which may reach far, without normals; of a part only. Its vertices
+  /// depend on what is near them alone.
+  [[nodiscard]] const Mesh& meshBeforeRepair() const { return before_; }
+  /// Quads of the uniform mesh of which each pair that meets, even after rounding, has one. Sorted.
+  [[nodiscard]] const std::vector<std::uint32_t>& suspects() const { return suspects_; }
+  /// How meshes taken from this one are repaired; nothing if they are not to be.
+  [[nodiscard]] std::optional<Repair> repair(base::Job& job) const;
+  /// What was read and found, but for the stages' times.
+  [[nodiscard]] const ContourReport& report() const { return report_; }
+  [[nodiscard]] const octree::Forest& forest() const { return forest_; }
+  [[nodiscard]] const distance::BaseSurface& reference() const { return *reference_; }
+  /// The uniform mesh, for a caller that needs nothing else.
+  [[nodiscard]] Mesh takeMesh() { return std::move(surface_.mesh); }
+
+ private:
+  bool repairs_;
+  uniform::UniformSurface surface_;
+  Mesh before_;
+  std::vector<std::uint32_t> suspects_;
+  ContourReport report_;
+  octree::Forest forest_;
+  std::optional<distance::BaseSurface> reference_;
+};
+
+}  // namespace tufa::refine

@@ -1,0 +1,105 @@
+#include "refine/uniform_repair.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "intersect/candidates.h"
+#include "refine/lone_samples.h"
+#include "refine/rounding.h"
+#include "topology/misplaced.h"
+#include "uniform/place_vertices.h"
+#include "uniform/quads.h"
+
+namespace tufa::refine {
+namespace {
+
+// So often pieces that were passed by another one are put back.
+constexpr int kMostReturns = 3;
+
+class UniformRepair {
+ public:
+  UniformRepair(uniform::UniformSurface& surface, ContourReport& report, base::Job& job)
+      : surface_(surface), mesh_(surface.mesh), report_(report), job_(job) {}
+
+  std::vector<std::uint32_t> run() {
+    report_.movedVertices = unfoldLonePieces(mesh_, sourceOf(surface_, job_), job_);
+    // Rounding moves each of two polygons.
+    const double margin = 2 * kMostRounding * surface_.affine().leastHeight();
+    suspects_ = intersect::findSuspects(surface_.view(), mesh_, margin, job_);
+    mendSuspects();
+    for (int i = 0; i < kMostReturns && putBackPieces(); ++i) mendSuspects();
+    return std::move(suspects_);
+  }
+
+ private:
+  void mendSuspects() {
+    Source own = sourceOf(surface_, job_);
+    own.crossings = nullptr;  // a forest has no place for the centres of fans
+    const MendReport mended = mend(mesh_, suspects_, own, job_);
+    addSuspects(mended.changed);
+    report_.intersectionsFound = std::max(report_.intersectionsFound, mended.pairsFound);
+    report_.intersectionsLeft = mended.left.size();
+    report_.movedVertices += mended.movedVertices;
+    report_.turnedQuads += mended.turnedQuads;
+  }
+
+  // Vertices that a crease or the repair drew out of their cells may have passed small pieces:
+  // these and what is beside them goes back into its cells. Whether there are any.
+  bool putBackPieces() {
+    if (surface_.sides.sharpCount() == 0 || surface_.topology.cutEdges > 0 ||
+        surface_.volume.blocks.isPart()) {
+      return false;
+    }
+    const std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_);
+    if (misplaced.empty()) return false;
+    const std::vector<Position> havens = sourceOf(surface_, job_).massPoints(misplaced);
+    for (std::size_t i = 0; i < misplaced.size(); ++i) mesh_.positions[misplaced[i]] = havens[i];
+    report_.movedVertices += misplaced.size();
+    std::vector<intersect::PolygonIndex> around;
+    for (std::uint32_t i = 0; i < mesh_.quads.size(); ++i) {
+      const auto& v = mesh_.quads[i].vertices;
+      if (std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
+            return std::binary_search(misplaced.begin(), misplaced.end(), vertex);
+          })) {
+        around.push_back(i);
+      }
+    }
+    addSuspects(around);
+    return true;
+  }
+
+  void addSuspects(const std::vector<intersect::PolygonIndex>& polygons) {
+    std::vector<std::uint32_t> all;
+    std::set_union(suspects_.begin(), suspects_.end(), polygons.begin(), polygons.end(),
+                   std::back_inserter(all));
+    suspects_ = std::move(all);
+  }
+
+  uniform::UniformSurface& surface_;
+  Mesh& mesh_;
+  ContourReport& report_;
+  base::Job& job_;
+  std::vector<std::uint32_t> suspects_;
+};
+
+}  // namespace
+
+Source sourceOf(const uniform::UniformSurface& surface, base::Job& job) {
+  Source source;
+  source.massPoints = [&surface, &job](const std::vector<VertexIndex>& vertices) {
+    return uniform::massPoints(surface.volume.blocks, surface.volume.scale, surface.topology,
+                               surface.affine(), vertices, job);
+  };
+  source.crossings = [&surface, &job](const std::vector<intersect::PolygonIndex>& polygons) {
+    return uniform::quadCrossings(surface.view(), polygons, job);
+  };
+  source.voxelSize = surface.affine().voxelSize();
+  return source;
+}
+
+std::vector<std::uint32_t> repairUniform(uniform::UniformSurface& surface, ContourReport& report,
+                                         base::Job& job) {
+  return UniformRepair(surface, report, job).run();
+}
+
+}  // namespace tufa::refine

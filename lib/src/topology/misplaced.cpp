@@ -1,0 +1,186 @@
+#include "topology/misplaced.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/bvh.h"
+#include "base/flat_triangle.h"
+#include "intersect/exact.h"
+
+namespace tufa::topology {
+namespace {
+
+// On which side of the line from a to b, seen from above, a point lies that is moved aside by an
+// infinitesimal along x and by a smaller one along y; 0 if the line is vertical.
+int sideFromAbove(const Position& a, const Position& b, const Position& point) {
+  const int side = intersect::orientationAcross(2, a, b, point);
+  if (side != 0) return side;
+  if (a.y != b.y) return a.y > b.y ? 1 : -1;
+  return a.x == b.x ? 0 : (a.x < b.x ? 1 : -1);
+}
+
+// Whether the ray up from a point passes through a triangle.
+bool isAbove(const std::vector<Position>& positions, const Triangle& triangle,
+             const Position& from) {
+  const Position& a = positions[triangle.vertices[0]];
+  const Position& b = positions[triangle.vertices[1]];
+  const Position& c = positions[triangle.vertices[2]];
+  const int side = sideFromAbove(a, b, from);
+  if (side == 0 || side != sideFromAbove(b, c, from) || side != sideFromAbove(c, a, from)) {
+    return false;
+  }
+  return side * intersect::orientation(a, b, c, from) < 0;
+}
+
+// A mesh and its pieces, to ask what lies around a vertex. Neighbours in a mesh are mostly
+// neighbours in its arrays too: boxes of runs of polygons are all the index there is.
+class Pieces {
+ public:
+  Pieces(const Mesh& mesh, const std::vector<VertexIndex>& pieces, base::Job& job)
+      : mesh_(mesh), pieces_(pieces), runs_(boxesOfRuns(job), job) {}
+
+  // Six times the volume inside of each piece, by its least vertex.
+  [[nodiscard]] std::vector<double> volumes() const {
+    std::vector<double> volumes(pieces_.size());
+    forTriangles(0, mesh_.quads.size() + mesh_.triangles.size(), [&](const Triangle& triangle) {
+      const auto& v = triangle.vertices;
+      const VertexIndex piece = pieces_[v[0]];
+      const Vec3 origin = at(piece);
+      volumes[piece] += (at(v[0]) - origin).dot((at(v[1]) - origin).cross(at(v[2]) - origin));
+    });
+    return volumes;
+  }
+
+  // Whether a ray from the vertex crosses other pieces an odd number of times.
+  [[nodiscard]] bool isInside(VertexIndex vertex) const {
+    bool inside = false;
+    runs_.itemsAbove(at(vertex), [&](std::uint32_t run) {
+      forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
+        if (pieces_[triangle.vertices[0]] == pieces_[vertex]) return;
+        inside ^= isAbove(mesh_.positions, triangle, mesh_.positions[vertex]);
+      });
+    });
+    return inside;
+  }
+
+  // The triangle of another piece that is nearest to a vertex. Whether there is one.
+  [[nodiscard]] bool findNearestOther(VertexIndex vertex, Triangle& nearest) const {
+    double best = std::numeric_limits<double>::infinity();
+    return runs_.nearest(at(vertex), best, [&](std::uint32_t run) {
+      double least = best;
+      forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
+        const auto& v = triangle.vertices;
+        if (pieces_[v[0]] == pieces_[vertex]) return;
+        const double squared = base::squaredDistanceTo(at(vertex), at(v[0]), at(v[1]), at(v[2]));
+        if (squared >= least) return;
+        least = squared;
+        nearest = triangle;
+      });
+      return least;
+    }) != base::Bvh::kNone;
+  }
+
+ private:
+  static constexpr std::size_t kRun = 16;
+
+  [[nodiscard]] Vec3 at(VertexIndex vertex) const { return Vec3(mesh_.positions[vertex]); }
+  [[nodiscard]] std::size_t size() const { return mesh_.quads.size() + mesh_.triangles.size(); }
+  [[nodiscard]] static std::size_t begin(std::uint32_t run) { return run * kRun; }
+  [[nodiscard]] std::size_t end(std::uint32_t run) const {
+    return std::min(begin(run) + kRun, size());
+  }
+
+  // Calls body(triangle) for those of the polygons `begin` to `end`, quads first.
+  template <class Body>
+  void forTriangles(std::size_t begin, std::size_t end, const Body& body) const {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i >= mesh_.quads.size()) {
+        body(mesh_.triangles[i - mesh_.quads.size()]);
+        continue;
+      }
+      const auto& v = mesh_.quads[i].vertices;
+      body({v[0], v[1], v[2]});
+      body({v[0], v[2], v[3]});
+    }
+  }
+  [[nodiscard]] std::vector<base::Box> boxesOfRuns(base::Job& job) const {
+    std::vector<base::Box> boxes((size() + kRun - 1) / kRun, base::Box::empty());
+    job.forRanges(boxes.size(), 256, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const auto run = static_cast<std::uint32_t>(i);
+        forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
+          for (const VertexIndex vertex : triangle.vertices) boxes[i].add(at(vertex));
+        });
+      }
+    });
+    return boxes;
+  }
+
+  const Mesh& mesh_;
+  const std::vector<VertexIndex>& pieces_;
+  base::Bvh runs_;
+};
+
+}  // namespace
+
+std::vector<VertexIndex> piecesOf(const Mesh& mesh) {
+  std::vector<VertexIndex> parents(mesh.positions.size());
+  std::iota(parents.begin(), parents.end(), VertexIndex{0});
+  const auto rootOf = [&](VertexIndex i) {
+    while (parents[i] != i) i = parents[i] = parents[parents[i]];
+    return i;
+  };
+  const auto join = [&](const auto& v) {
+    for (const VertexIndex other : v) {
+      const VertexIndex a = rootOf(v[0]), b = rootOf(other);
+      parents[std::max(a, b)] = std::min(a, b);
+    }
+  };
+  for (const Quad& quad : mesh.quads) join(quad.vertices);
+  for (const Triangle& triangle : mesh.triangles) join(triangle.vertices);
+  for (VertexIndex i = 0; i < parents.size(); ++i) parents[i] = rootOf(i);
+  return parents;
+}
+
+std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
+  const std::vector<VertexIndex> names = piecesOf(mesh);
+  std::vector<VertexIndex> misplaced;
+  if (std::all_of(names.begin(), names.end(), [](VertexIndex name) { return name == 0; })) {
+    return misplaced;
+  }
+  const Pieces pieces(mesh, names, job);
+  // Vertices that no polygon uses are pieces without volume. The piece with the largest lies in no
+  // other one.
+  const std::vector<double> volumes = pieces.volumes();
+  const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const double outermost = *std::max_element(volumes.begin(), volumes.end(), isSmaller);
+  const auto isWrong = [&](std::size_t vertex) {
+    const double volume = volumes[names[vertex]];
+    if (volume == 0) return false;
+    const bool isHole = (volume < 0) != (outermost < 0);
+    return pieces.isInside(static_cast<VertexIndex>(vertex)) != isHole;
+  };
+  std::vector<std::uint8_t> wrong(names.size(), 0);
+  job.forRanges(names.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) wrong[i] = names[i] == i && isWrong(i) ? 1 : 0;
+  });
+  // Of pieces that meet each other, some vertices are on the right side.
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] != i && wrong[names[i]] != 0 && !isWrong(i)) wrong[names[i]] = 0;
+  }
+  for (VertexIndex i = 0; i < names.size(); ++i) {
+    if (wrong[names[i]] == 0) continue;
+    misplaced.push_back(i);
+    Triangle nearest;
+    if (!pieces.findNearestOther(i, nearest)) continue;
+    misplaced.insert(misplaced.end(), nearest.vertices.begin(), nearest.vertices.end());
+  }
+  std::sort(misplaced.begin(), misplaced.end());
+  misplaced.erase(std::unique(misplaced.begin(), misplaced.end()), misplaced.end());
+  return misplaced;
+}
+
+}  // namespace tufa::topology

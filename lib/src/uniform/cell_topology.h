@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/job.h"
+#include "grid/blocks.h"
+#include "grid/field.h"
+#include "uniform/case_table.h"
+
+namespace tufa::uniform {
+
+/// Names an element of Topology::blocks.
+using SurfaceBlockIndex = std::uint32_t;
+inline constexpr SurfaceBlockIndex kNoSurfaceBlock = ~SurfaceBlockIndex{0};
+
+/// A surface cell with other than one vertex.
+struct CellException {
+  std::uint16_t cell;        ///< cellIndex()
+  std::uint16_t count;       ///< vertices of this cell
+  std::int32_t extraBefore;  ///< vertices beyond one a cell, of the cells before it in the block
+};
+
+/// What few blocks need: how ambiguous faces are joined, which crossings are cut, which cells have
+/// other than one vertex.
+struct SpecialBlock {
+  /// For each axis, a bit for each face at the lower end of a cell whose inside corners are joined.
+  std::array<grid::BlockBits, 3> joined;
+  /// For each axis, a bit for each crossed edge that starts at a lattice point and is cut because
+  /// the data ends there.
+  std::array<grid::BlockBits, 3> cut;
+  std::vector<CellException> exceptions;  ///< sorted by cell
+  std::int32_t extra = 0;                 ///< vertices beyond one a cell, of the whole block
+};
+
+/// A block that the surface passes.
+struct SurfaceBlock {
+  grid::BlockRef block = 0;
+  std::int32_t special = -1;  ///< index among Topology::specials, or -1
+  grid::Neighbours neighbours{};
+  grid::BlockBits cells;                       ///< the surface cells
+  std::array<std::uint16_t, 8> cellsBefore{};  ///< surface cells in the slabs before each
+  std::uint32_t cellCount = 0;
+  std::uint32_t quadCount = 0;
+  std::uint64_t firstVertex = 0;
+  std::uint64_t firstQuad = 0;
+};
+
+/// Which vertices and quads there will be, before any is placed: the level-0 mesh up to geometry.
+/// Vertices are numbered by block, then cell, then component; quads by block, axis, lattice point.
+struct Topology {
+  std::vector<SurfaceBlock> blocks;
+  std::vector<SpecialBlock> specials;
+  std::vector<SurfaceBlockIndex> surfaceBlockOf;  ///< for each block of Blocks
+  std::uint64_t vertexCount = 0;
+  std::uint64_t quadCount = 0;
+  std::size_t cellCount = 0;
+  std::size_t faceFlips = 0;
+  std::size_t cutEdges = 0;
+
+  /// The surface block at an offset of -1..1 blocks, or kNoSurfaceBlock.
+  [[nodiscard]] SurfaceBlockIndex neighbour(const SurfaceBlock& from, int dx, int dy,
+                                            int dz) const {
+    const grid::BlockRef block = from.neighbours[grid::neighbourIndex(dx, dy, dz)];
+    return block < 0 ? kNoSurfaceBlock : surfaceBlockOf[block];
+  }
+  /// Number of the first vertex of a surface cell, counted inside its block.
+  [[nodiscard]] std::uint32_t firstVertexInBlock(const SurfaceBlock& block, int cell) const;
+  /// The joined bits of the ambiguous faces of a cell, meaningless for the other faces.
+  [[nodiscard]] FaceBits faceBits(const SurfaceBlock& block, int cell) const;
+  /// A bit for each cut edge of a cell.
+  [[nodiscard]] unsigned cutEdgesOf(const SurfaceBlock& block, int cell) const;
+  /// The components of a cell of a block, all rules applied.
+  [[nodiscard]] Components componentsAt(const SurfaceBlock& block, int cell, CornerMask mask) const;
+  /// Whether one component of the cell owns both arcs of its ambiguous face `face`.
+  [[nodiscard]] bool ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask,
+                                  int face) const;
+};
+
+/// The corner mask of a cell.
+[[nodiscard]] CornerMask cornerMask(const grid::CornerWords& corners, int cell);
+
+/// Crossed edges along each axis that start at the lattice points of slab x.
+[[nodiscard]] std::array<std::uint64_t, 3> crossedEdges(const grid::CornerWords& corners, int x);
+
+/// Finds the surface cells, joins their crossings by the ambiguity rule, mends what would not be
+/// manifold, and numbers vertices and quads.
+///
+/// Two cells that share an ambiguous face and own both of its arcs in one component each would make
+/// an edge of four faces; such a face is joined the other way (Wenger 2013). That splits the
+/// component of both cells and never merges any, so treating the faces in six classes whose members
+/// share no cell (three axes, even and odd) leaves none, in one sweep.
+[[nodiscard]] Topology buildTopology(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                                     Ambiguity rule, bool cap, base::Job& job);
+
+}  // namespace tufa::uniform

@@ -1,0 +1,417 @@
+#include "uniform/crease_cell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "uniform/case_table.h"
+
+namespace tufa::uniform {
+
+using grid::BlockSamples;
+
+namespace {
+
+// Sides whose normals differ by less than this (18 degrees) are one.
+constexpr float kSameSide = 0.95F;
+// Planes farther than this from each other, at the foot of one, are two sheets.
+constexpr float kSameSheet = 0.25F;
+// A foot farther than this from the cell says nothing of it.
+constexpr float kReach = 1.25F;
+constexpr float kHalfCell = 0.5F;
+// How far a vertex may leave its cell, in voxels, where its crossings lie on two sides that meet
+// outside it.
+constexpr float kBeyond = 1.0F;
+// A vertex this deep in its cell, in voxels, surely is in it.
+constexpr float kSureInside = 1e-3F;
+// A vertex on one side stays in its cell up to this.
+constexpr float kSideSlack = 0.02F;
+constexpr int kProjections = 8;
+// Slack of a crossing's place on its edge.
+constexpr float kEdgeSlack = 0.01F;
+// Slack of the empty-ball test, in voxels.
+constexpr float kBallSlack = 0.06F;
+constexpr int kMostSides = 5;
+// Planes are nearly parallel if the square of the sine of their angle, or the volume that three
+// normals span, is less.
+constexpr float kLeastSquaredSine = 0.05F;
+constexpr float kLeastVolume = 0.1F;
+// Damping of a side's bend, in squared voxels: feet that spread less than a third of a voxel say
+// little of it.
+constexpr float kBendDamping = 0.02F;
+constexpr int kBendRounds = 3;
+// A bend that moves a point farther than this, in voxels, is not to be trusted.
+constexpr float kFarthestBend = 0.5F;
+// A side within this angle (radians) and distance (voxels) of lying between two others is a blend.
+constexpr float kBlendAngle = 0.15F;
+constexpr float kBlendDistance = 0.2F;
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector cornerPoint(int corner) {
+  return {static_cast<float>(corner >> 2) - 0.5F, static_cast<float>((corner >> 1) & 1) - 0.5F,
+          static_cast<float>(corner & 1) - 0.5F};
+}
+
+Vector plus(const Vector& a, const Vector& b, float scale) {
+  return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
+}
+
+Vector bent(const std::array<float, 6>& bend, const Vector& step) {
+  return {bend[0] * step[0] + bend[1] * step[1] + bend[2] * step[2],
+          bend[1] * step[0] + bend[3] * step[1] + bend[4] * step[2],
+          bend[2] * step[0] + bend[4] * step[1] + bend[5] * step[2]};
+}
+
+// Each moves a point the shortest way; false if the planes are nearly parallel.
+bool moveOnto(const TangentPlane& plane, Vector& point) {
+  point = plus(point, plane.normal, plane.offset - dot(plane.normal, point));
+  return true;
+}
+
+bool moveOntoBoth(const TangentPlane& a, const TangentPlane& b, Vector& point) {
+  const float cosine = dot(a.normal, b.normal);
+  const float squared = 1 - cosine * cosine;
+  if (squared < kLeastSquaredSine) return false;
+  const float da = a.offset - dot(a.normal, point), db = b.offset - dot(b.normal, point);
+  point = plus(point, a.normal, (da - cosine * db) / squared);
+  point = plus(point, b.normal, (db - cosine * da) / squared);
+  return true;
+}
+
+bool moveOntoAll(const std::array<TangentPlane, 3>& planes, Vector& point) {
+  const auto& [a, b, c] = planes;
+  const Vector ab = cross(a.normal, b.normal);
+  const float volume = dot(ab, c.normal);
+  if (std::abs(volume) < kLeastVolume) return false;
+  point = plus({}, cross(b.normal, c.normal), a.offset / volume);
+  point = plus(point, cross(c.normal, a.normal), b.offset / volume);
+  point = plus(point, ab, c.offset / volume);
+  return true;
+}
+
+float outside(const Vector& p) {
+  return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) - kHalfCell;
+}
+
+// Moves a point along a line into the cube of that half size around the cell's middle; false if the
+// line does not meet it.
+bool slideInto(float half, const Vector& direction, Vector& point) {
+  float from = -std::numeric_limits<float>::infinity(), to = -from;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(direction[axis]) < 1e-6F) {
+      if (std::abs(point[axis]) > half) return false;
+      continue;
+    }
+    const float s = (-half - point[axis]) / direction[axis];
+    const float t = (half - point[axis]) / direction[axis];
+    from = std::max(from, std::min(s, t));
+    to = std::min(to, std::max(s, t));
+  }
+  if (from > to) return false;
+  point = plus(point, direction, std::clamp(0.0F, from, to));
+  return true;
+}
+
+}  // namespace
+
+CreasePlacement CreaseCell::place(int x, int y, int z, const Vector& massPoint) {
+  CreasePlacement placement;
+  cell_ = {x, y, z};
+  collectPlanes();
+  sortIntoSides();
+  dropBlendedSides();
+  readBalls();
+  markCrossedSides();
+  if (placeOnCorner(massPoint, false, placement) || placeOnCrease(massPoint, false, placement) ||
+      placeOnCorner(massPoint, true, placement) || placeOnCrease(massPoint, true, placement) ||
+      placeOnSide(massPoint, placement)) {
+    placement.stray = outside(placement.point) > -kSureInside;
+    return placement;
+  }
+  return {};
+}
+
+void CreaseCell::collectPlanes() {
+  near_.clear();
+  weights_.clear();
+  const auto [x, y, z] = cell_;
+  const Vector middle = {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F,
+                         static_cast<float>(z) + 0.5F};
+  for (int cube = 0; cube < 27; ++cube) {
+    const PatchPlane* plane = planes_.at(x + cube / 9 - 1, y + cube / 3 % 3 - 1, z + cube % 3 - 1);
+    if (plane == nullptr) continue;
+    PatchPlane local = *plane;
+    local.foot = plus(local.foot, middle, -1);
+    const float away = std::max(0.0F, outside(local.foot));
+    if (away > kReach) continue;
+    near_.push_back(local);
+    const float quality = local.residual * local.residual + 1e-6F;
+    weights_.push_back(1 / (quality * (1 + 16 * away * away)));
+  }
+}
+
+// Greedy: the best plane left starts a side, planes that agree with it join.
+void CreaseCell::sortIntoSides() {
+  sides_.clear();
+  while (static_cast<int>(sides_.size()) < kMostSides) {
+    const auto best = std::max_element(weights_.begin(), weights_.end());
+    if (best == weights_.end() || *best <= 0) break;
+    const PatchPlane seed = near_[static_cast<std::size_t>(best - weights_.begin())];
+    Side side;
+    Vector point{};
+    members_.clear();
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      if (weights_[i] <= 0 || dot(near_[i].normal, seed.normal) < kSameSide) continue;
+      const Vector apart = plus(near_[i].foot, seed.foot, -1);
+      if (std::abs(dot(seed.normal, apart)) > kSameSheet) continue;
+      side.normal = plus(side.normal, near_[i].normal, weights_[i]);
+      point = plus(point, near_[i].foot, weights_[i]);
+      side.weight += weights_[i];
+      members_.push_back(i);
+    }
+    const float length = std::sqrt(dot(side.normal, side.normal));
+    for (float& n : side.normal) n /= length;
+    side.offset = dot(side.normal, point) / side.weight;
+    for (int i = 0; i < 3; ++i) side.middle[i] = point[i] / side.weight;
+    bendSide(side);
+    for (const std::size_t member : members_) weights_[member] = 0;
+    sides_.push_back(side);
+  }
+}
+
+// The matrix H of least squares in n_i - n = H (f_i - m), over the feet f_i and normals n_i, damped
+// where the feet do not spread, and made symmetric. A surface of that bend through m is
+// n . (p - m) + (p - m) H (p - m) / 2 = 0.
+void CreaseCell::bendSide(Side& side) const {
+  std::array<float, 6> spread{};  // xx, xy, xz, yy, yz, zz
+  std::array<Vector, 3> turn{};   // turn[i][j]: change of normal i with step j
+  for (const std::size_t member : members_) {
+    const float weight = weights_[member] / side.weight;
+    const Vector step = plus(near_[member].foot, side.middle, -1);
+    const Vector change = plus(near_[member].normal, side.normal, -1);
+    for (int i = 0, k = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) turn[i][j] += weight * change[i] * step[j];
+      for (int j = i; j < 3; ++j) spread[k++] += weight * step[i] * step[j];
+    }
+  }
+  spread[0] += kBendDamping;
+  spread[3] += kBendDamping;
+  spread[5] += kBendDamping;
+  // The rows of the inverse of a symmetric matrix are cross products of its rows.
+  const Vector r0 = {spread[0], spread[1], spread[2]}, r1 = {spread[1], spread[3], spread[4]},
+               r2 = {spread[2], spread[4], spread[5]};
+  const std::array<Vector, 3> adjoint = {cross(r1, r2), cross(r2, r0), cross(r0, r1)};
+  const float determinant = dot(r0, adjoint[0]);
+  for (int i = 0, k = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      side.bend[k++] = (dot(turn[i], adjoint[j]) + dot(turn[j], adjoint[i])) / (2 * determinant);
+    }
+  }
+  for (const std::size_t member : members_) {
+    const Vector step = plus(near_[member].foot, side.middle, -1);
+    side.rise += weights_[member] / side.weight * 0.5F * dot(step, bent(side.bend, step));
+  }
+}
+
+TangentPlane CreaseCell::tangentAt(const Side& side, const Vector& point) {
+  const Vector step = plus(point, side.middle, -1);
+  const Vector turn = bent(side.bend, step);
+  const float value = dot(side.normal, step) + 0.5F * dot(step, turn) - side.rise;
+  TangentPlane plane{plus(side.normal, turn, 1), 0};
+  const float length = std::sqrt(dot(plane.normal, plane.normal));
+  for (float& n : plane.normal) n /= length;
+  plane.offset = dot(plane.normal, point) - value / length;
+  return plane;
+}
+
+void CreaseCell::followBends(Vector& point, std::initializer_list<int> sides) const {
+  const Vector start = point;
+  for (int round = 0; round < kBendRounds; ++round) {
+    std::array<TangentPlane, 3> planes;
+    int count = 0;
+    for (const int side : sides) planes[count++] = tangentAt(sides_[side], point);
+    const bool found = count == 1   ? moveOnto(planes[0], point)
+                       : count == 2 ? moveOntoBoth(planes[0], planes[1], point)
+                                    : moveOntoAll(planes, point);
+    const Vector way = plus(point, start, -1);
+    if (!found || dot(way, way) > kFarthestBend * kFarthestBend) {
+      point = start;
+      return;
+    }
+  }
+}
+
+// Beyond a convex edge the nearest point of the surface is on the edge, and the planes seen there
+// touch it at angles between those of the two sides. They are no sides of their own.
+bool CreaseCell::isBlend(const Side& side, const Side& a, const Side& b) const {
+  if (side.weight > a.weight || side.weight > b.weight) return false;
+  // side.normal = s a.normal + t b.normal, with s and t positive, up to a few degrees.
+  const float cosine = dot(a.normal, b.normal);
+  const float squared = 1 - cosine * cosine;
+  if (squared < 0.05F) return false;
+  const float da = dot(side.normal, a.normal), db = dot(side.normal, b.normal);
+  const float s = (da - cosine * db) / squared, t = (db - cosine * da) / squared;
+  if (s < 0 || t < 0) return false;
+  const Vector between = plus(plus({}, a.normal, s), b.normal, t);
+  const Vector apart = plus(side.normal, between, -1);
+  return dot(apart, apart) < kBlendAngle * kBlendAngle &&
+         std::abs(side.offset - s * a.offset - t * b.offset) < kBlendDistance;
+}
+
+void CreaseCell::dropBlendedSides() {
+  std::array<bool, kMostSides> drop{};
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      for (std::size_t j = i + 1; j < sides_.size(); ++j) {
+        if (i != k && j != k && isBlend(sides_[k], sides_[i], sides_[j])) drop[k] = true;
+      }
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    if (!drop[k]) sides_[kept++] = sides_[k];
+  }
+  sides_.resize(kept);
+}
+
+// A side is crossed where its plane meets a crossed edge of the cell in a point of the surface.
+void CreaseCell::markCrossedSides() {
+  for (int edge = 0; edge < kEdges; ++edge) {
+    const auto [lower, upper] = edgeCorners(edge);
+    if ((sampleAt(lower) < 0) == (sampleAt(upper) < 0)) continue;
+    const Vector from = cornerPoint(lower);
+    const int axis = edge / 4;
+    for (Side& side : sides_) {
+      if (side.crossed || std::abs(side.normal[axis]) < 1e-3F) continue;
+      const float along = (side.offset - dot(side.normal, from)) / side.normal[axis];
+      if (along < -kEdgeSlack || along > 1 + kEdgeSlack) continue;
+      Vector point = from;
+      point[axis] += along;
+      side.crossed = isOnSurface(point);
+    }
+  }
+}
+
+float CreaseCell::sampleAt(int corner) const {
+  return samples_[BlockSamples::index(cell_[0] + (corner >> 2), cell_[1] + ((corner >> 1) & 1),
+                                      cell_[2] + (corner & 1))];
+}
+
+void CreaseCell::readBalls() {
+  const auto [x, y, z] = cell_;
+  for (int row = 0; row < 16; ++row) {
+    const float* samples =
+        samples_.data() + BlockSamples::index(x + row / 4 - 1, y + row % 4 - 1, z - 1);
+    for (int i = 0; i < 4; ++i) {
+      const float radius = std::min(std::abs(samples[i]), scale_.bandOutside) - kBallSlack;
+      squaredBalls_[row][i] = radius > 0 ? radius * radius : 0;
+    }
+  }
+}
+
+bool CreaseCell::isOnSurface(const Vector& point) const {
+  std::array<std::array<float, 4>, 3> squared;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 4; ++i) {
+      const float apart = static_cast<float>(i) - 1.5F - point[axis];
+      squared[axis][i] = apart * apart;
+    }
+  }
+  int inBalls = 0;
+  for (int row = 0; row < 16; ++row) {
+    const float across = squared[0][row / 4] + squared[1][row % 4];
+    for (int i = 0; i < 4; ++i) {
+      inBalls |= static_cast<int>(across + squared[2][i] < squaredBalls_[row][i]);
+    }
+  }
+  return inBalls == 0;
+}
+
+void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const {
+  Vector sum{};
+  int count = 0;
+  for (const int side : sides) {
+    const Vector normal = tangentAt(sides_[side], placement.point).normal;
+    sum = plus(sum, normal, 1);
+    placement.sides[count++] = normal;
+  }
+  const float length = std::sqrt(dot(sum, sum));
+  for (int i = 0; i < 3; ++i) placement.normal[i] = length > 0 ? sum[i] / length : 0;
+  placement.planes = static_cast<int>(sides.size());
+}
+
+bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,
+                               CreasePlacement& placement) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  const int count = static_cast<int>(sides_.size());
+  for (int i = 0; i < count; ++i) {
+    for (int j = i + 1; j < count; ++j) {
+      for (int k = j + 1; k < count; ++k) {
+        if (beyond && !(sides_[i].crossed && sides_[j].crossed && sides_[k].crossed)) continue;
+        Vector point{};
+        if (!moveOntoAll({planeOf(i), planeOf(j), planeOf(k)}, point)) continue;
+        if (outside(point) > kBeyond + kFarthestBend) continue;
+        followBends(point, {i, j, k});
+        if (outside(point) > (beyond ? kBeyond : 0)) continue;
+        const Vector apart = plus(point, massPoint, -1);
+        if (dot(apart, apart) >= nearest || !isOnSurface(point)) continue;
+        nearest = dot(apart, apart);
+        placement.point = point;
+        setNormal(placement, {i, j, k});
+      }
+    }
+  }
+  return placement.planes != 0;
+}
+
+bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
+                               CreasePlacement& placement) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  const int count = static_cast<int>(sides_.size());
+  for (int i = 0; i < count; ++i) {
+    for (int j = i + 1; j < count; ++j) {
+      if (beyond && !(sides_[i].crossed && sides_[j].crossed)) continue;
+      // The point of both sides nearest to the mass point, then along the crease into the cell.
+      Vector point = massPoint;
+      if (!moveOntoBoth(planeOf(i), planeOf(j), point)) continue;
+      followBends(point, {i, j});
+      const Vector direction =
+          cross(tangentAt(sides_[i], point).normal, tangentAt(sides_[j], point).normal);
+      const Vector before = point;
+      if (!slideInto(kHalfCell + (beyond ? kBeyond : 0), direction, point)) continue;
+      if (point != before) followBends(point, {i, j});
+      const Vector apart = plus(point, massPoint, -1);
+      if (dot(apart, apart) >= nearest || !isOnSurface(point)) continue;
+      nearest = dot(apart, apart);
+      placement.point = point;
+      setNormal(placement, {i, j});
+    }
+  }
+  return placement.planes != 0;
+}
+
+bool CreaseCell::placeOnSide(const Vector& massPoint, CreasePlacement& placement) const {
+  float nearest = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < static_cast<int>(sides_.size()); ++i) {
+    const float away = std::abs(sides_[i].offset - dot(sides_[i].normal, massPoint));
+    if (away >= nearest) continue;
+    // Into the cell and onto the plane in turn: ends where the two meet, if they do.
+    Vector point = massPoint;
+    for (int step = 0; step < kProjections; ++step) {
+      for (float& p : point) p = std::clamp(p, -kHalfCell, kHalfCell);
+      point = plus(point, sides_[i].normal, sides_[i].offset - dot(sides_[i].normal, point));
+    }
+    if (outside(point) > kSideSlack) continue;
+    followBends(point, {i});
+    if (!isOnSurface(point)) continue;
+    nearest = away;
+    placement.point = point;
+    setNormal(placement, {i});
+  }
+  return placement.planes != 0;
+}
+
+}  // namespace tufa::uniform

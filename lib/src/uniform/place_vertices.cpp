@@ -1,0 +1,90 @@
+#include "uniform/place_vertices.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "base/huge_pages.h"
+#include "uniform/block_vertices.h"
+
+namespace tufa::uniform {
+namespace {
+
+MeetingSides worldSides(const BlockVertices::Meeting& meeting, const grid::Affine& affine) {
+  MeetingSides sides;
+  sides.count = static_cast<std::uint8_t>(meeting.count);
+  for (int i = 0; i < meeting.count; ++i) {
+    const Vector& n = meeting.normals[i];
+    sides.normals[i] = affine.normal(n[0], n[1], n[2]);
+  }
+  return sides;
+}
+
+}  // namespace
+
+VertexSides placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                          const Topology& topology, const grid::Affine& affine, bool normals,
+                          Mesh& mesh, base::Job& job) {
+  VertexSides sides(topology.vertexCount);
+  std::mutex mutex;
+  base::resizeLarge(mesh.positions, topology.vertexCount, job);
+  if (normals) base::resizeLarge(mesh.normals, topology.vertexCount, job);
+  job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
+    const auto accessor = blocks.accessor();
+    BlockVertices work(scale);
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = topology.blocks[i];
+      work.place(blocks, topology, block, *accessor);
+      const Coord& origin = blocks.origin(block.block);
+      for (std::size_t v = 0; v < work.cells().size(); ++v) {
+        const int cell = work.cells()[v];
+        const Vector& point = work.points()[v];
+        mesh.positions[block.firstVertex + v] =
+            affine.position(origin, (cell >> 6) + 0.5 + static_cast<double>(point[0]),
+                            ((cell >> 3) & 7) + 0.5 + static_cast<double>(point[1]),
+                            (cell & 7) + 0.5 + static_cast<double>(point[2]));
+        if (!normals) continue;
+        const Vector& n = work.normals()[v];
+        mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
+      }
+      sides.setKinds(block.firstVertex, work.kinds());
+      for (const std::uint32_t vertex : work.strays()) {
+        sides.setStray(static_cast<VertexIndex>(block.firstVertex + vertex));
+      }
+      if (!work.meetings().empty()) {
+        const std::scoped_lock lock(mutex);
+        for (const BlockVertices::Meeting& meeting : work.meetings()) {
+          sides.setMeeting(static_cast<VertexIndex>(block.firstVertex + meeting.vertex),
+                           worldSides(meeting, affine));
+        }
+      }
+    }
+  });
+  return sides;
+}
+
+std::vector<Position> massPoints(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                                 const Topology& topology, const grid::Affine& affine,
+                                 const std::vector<VertexIndex>& vertices, base::Job& job) {
+  std::vector<Position> points(vertices.size());
+  job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
+    const auto accessor = blocks.accessor();
+    BlockVertices work(scale);
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = topology.blocks[i];
+      const std::uint64_t last = i + 1 < topology.blocks.size() ? topology.blocks[i + 1].firstVertex
+                                                                : topology.vertexCount;
+      auto next = std::lower_bound(vertices.begin(), vertices.end(), block.firstVertex);
+      if (next == vertices.end() || *next >= last) continue;
+      work.gather(blocks, topology, block, *accessor);
+      for (; next != vertices.end() && *next < last; ++next) {
+        const Vector point = work.massPoint(*next - block.firstVertex);
+        points[static_cast<std::size_t>(next - vertices.begin())] =
+            affine.position(blocks.origin(block.block), static_cast<double>(point[0]),
+                            static_cast<double>(point[1]), static_cast<double>(point[2]));
+      }
+    }
+  });
+  return points;
+}
+
+}  // namespace tufa::uniform

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <cstddef>
+#include <vector>
+
+#include "base/job.h"
+#include "grid/affine.h"
+#include "grid/blocks.h"
+#include "grid/field.h"
+#include "uniform/cell_topology.h"
+#include "uniform/vertex_sheets.h"
+
+namespace tufa::uniform {
+
+/// Sizes and fills the positions of the mesh and, if asked, its normals from the field's gradient.
+/// Returns which vertices lie near or on creases.
+[[nodiscard]] VertexSides placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                                        const Topology& topology, const grid::Affine& affine,
+                                        bool normals, Mesh& mesh, base::Job& job);
+
+/// The mean of the crossings of each of some vertices, sorted, in world space: a point inside the
+/// vertex's cell.
+[[nodiscard]] std::vector<Position> massPoints(const grid::Blocks& blocks,
+                                               const grid::FieldScale& scale,
+                                               const Topology& topology, const grid::Affine& affine,
+                                               const std::vector<VertexIndex>& vertices,
+                                               base::Job& job);
+
+/// Gives each vertex the mean of the normals of its faces, weighted by their angles at the vertex.
+void setFaceNormals(Mesh& mesh, base::Job& job);
+
+}  // namespace tufa::uniform

@@ -1,0 +1,299 @@
+#include "uniform/snap_to_creases.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+namespace tufa::uniform {
+namespace {
+
+// The farthest a vertex may move, in voxels.
+constexpr double kFarthest = 1.0;
+// Two corners nearer than this, in voxels, are one.
+constexpr double kSameCorner = 0.5;
+// A move opens new defects around it, and of moves beside each other one waits; few places need
+// more than two rounds. A round reaches two cells far.
+constexpr int kRounds = 6;
+// Moves whose distances are in one step of this, in voxels, go in an order that is as good as
+// random, so that few along a crease have to wait.
+constexpr double kStep = 1.0 / 16;
+
+struct Plane {
+  Vec3 point;
+  Vec3 normal;
+};
+
+struct Move {
+  double distance = std::numeric_limits<double>::infinity();
+  std::uint64_t order = 0;  // of two moves beside each other the lower one is made
+  std::size_t quad = 0;
+  VertexIndex vertex = 0;
+  Vec3 point;
+  MeetingSides sides;
+};
+
+Normal toNormal(const Vec3& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+// The point of two planes nearest to `from`; none if they are nearly parallel.
+std::optional<Vec3> onBoth(const Plane& a, const Plane& b, const Vec3& from) {
+  const double cosine = a.normal.dot(b.normal);
+  const double squared = 1 - cosine * cosine;
+  if (squared < 0.05) return {};
+  const double da = a.normal.dot(a.point - from), db = b.normal.dot(b.point - from);
+  return from + a.normal * ((da - cosine * db) / squared) +
+         b.normal * ((db - cosine * da) / squared);
+}
+
+std::optional<Vec3> onAll(const Plane& a, const Plane& b, const Plane& c) {
+  const Vec3 bc = b.normal.cross(c.normal);
+  const double volume = a.normal.dot(bc);
+  if (std::abs(volume) < 0.1) return {};
+  return (bc * a.normal.dot(a.point) + c.normal.cross(a.normal) * b.normal.dot(b.point) +
+          a.normal.cross(b.normal) * c.normal.dot(c.point)) /
+         volume;
+}
+
+class Promoter {
+ public:
+  Promoter(Mesh& mesh, VertexSides& sides, double voxelSize)
+      : mesh_(mesh), sides_(sides), voxelSize_(voxelSize) {}
+
+  std::size_t run(base::Job& job) {
+    collectCorners();
+    touched_.resize(mesh_.positions.size());
+    std::size_t moved = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<Move> moves = findMoves(round == 0, job);
+      std::fill(touched_.begin(), touched_.end(), 0);
+      dropContested(moves);
+      std::size_t inRound = 0;
+      for (const Move& move : moves) {
+        // Two quads apart may have found the same corner.
+        if (move.sides.count > 2 && isCorner(move.point)) continue;
+        apply(move);
+        ++inRound;
+      }
+      moved += inRound;
+      if (moves.empty()) break;
+    }
+    return moved;
+  }
+
+ private:
+  void collectCorners() {
+    for (std::size_t v = 0; v < mesh_.positions.size(); ++v) {
+      const auto vertex = static_cast<VertexIndex>(v);
+      if (sides_.kind(vertex) != VertexSides::Kind::Meeting) continue;
+      if (sides_.sides(mesh_, vertex).count > 2) corners_.push_back(pointOf(vertex));
+    }
+  }
+
+  [[nodiscard]] Vec3 pointOf(VertexIndex vertex) const {
+    const Position& p = mesh_.positions[vertex];
+    return {p.x, p.y, p.z};
+  }
+
+  [[nodiscard]] bool isCorner(const Vec3& point) const {
+    return std::any_of(corners_.begin(), corners_.end(), [&](const Vec3& corner) {
+      return (corner - point).squaredLength() < std::pow(kSameCorner * voxelSize_, 2);
+    });
+  }
+
+  // After the first round only quads with a vertex that was moved in the last one, and those whose
+  // move had to wait, can need one.
+  std::vector<Move> findMoves(bool first, base::Job& job) const {
+    std::vector<Move> moves;
+    std::mutex mutex;
+    job.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      std::vector<Move> found;
+      for (std::size_t quad = begin; quad < end; ++quad) {
+        const auto& v = mesh_.quads[quad].vertices;
+        const bool near = std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
+          return first ? sides_.kind(vertex) != VertexSides::Kind::Smooth : touched_[vertex] != 0;
+        });
+        if (!near) continue;
+        if (auto move = moveFor(quad)) found.push_back(*move);
+      }
+      const std::scoped_lock lock(mutex);
+      moves.insert(moves.end(), found.begin(), found.end());
+    });
+    return moves;
+  }
+
+  // Keeps the moves that no lower one comes before: none that moves a vertex of the same quad.
+  // Which those are depends on what is near alone, and not on where the mesh begins.
+  void dropContested(std::vector<Move>& moves) {
+    lowest_.resize(mesh_.positions.size(), kNoMove);
+    for (const Move& move : moves) {
+      std::uint64_t& lowest = lowest_[move.vertex];
+      lowest = std::min(lowest, move.order);
+    }
+    std::vector<Move> kept;
+    for (const Move& move : moves) {
+      const auto& v = mesh_.quads[move.quad].vertices;
+      const bool waits = std::any_of(
+          v.begin(), v.end(), [&](VertexIndex vertex) { return lowest_[vertex] < move.order; });
+      if (waits) {
+        touched_[v[0]] = 1;
+      } else {
+        kept.push_back(move);
+      }
+    }
+    for (const Move& move : moves) lowest_[move.vertex] = kNoMove;
+    std::sort(kept.begin(), kept.end(),
+              [](const Move& a, const Move& b) { return a.order < b.order; });
+    moves = std::move(kept);
+  }
+
+  // A number by the distance of a move, in steps, then by digits of the quad's corners: those of
+  // their positions now, which are the same wherever the mesh begins.
+  [[nodiscard]] std::uint64_t orderOf(const Move& move) const {
+    std::uint64_t hash = 0;
+    for (const VertexIndex vertex : mesh_.quads[move.quad].vertices) {
+      const Position& p = mesh_.positions[vertex];
+      for (const double x : {p.x, p.y, p.z}) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 29;
+      }
+    }
+    constexpr int kHashBits = 56;
+    const auto step = static_cast<std::uint64_t>(move.distance / (kStep * voxelSize_));
+    return (step << kHashBits) | (hash >> (64 - kHashBits));
+  }
+
+  // The shortest move that mends a quad; none if it needs none or none is short enough.
+  [[nodiscard]] std::optional<Move> moveFor(std::size_t quad) const {
+    const Quad& q = mesh_.quads[quad];
+    if (QuadSides::isOneSide(mesh_, sides_, q)) return {};
+    const QuadSides around(mesh_, sides_, q);
+    if (around.fits(false) || around.fits(true)) return {};
+    Move best;
+    for (int corner = 0; corner < 4; ++corner) {
+      if (!around.known(corner)) continue;
+      proposeCorners(q, around, corner, best);
+    }
+    if (!(best.distance < kFarthest * voxelSize_)) {
+      for (int corner = 0; corner < 4; ++corner) {
+        if (around.known(corner)) proposeCreases(q, around, corner, best);
+      }
+    }
+    if (!(best.distance < kFarthest * voxelSize_)) return {};
+    best.quad = quad;
+    best.order = orderOf(best);
+    return best;
+  }
+
+  // The plane of a side, through the vertex itself if it lies on it.
+  [[nodiscard]] std::optional<Plane> planeOf(const Quad& quad, const QuadSides& around, int side,
+                                             int corner) const {
+    for (int i = 0; i < 4; ++i) {
+      const int candidate = (corner + i) % 4;
+      if (!around.known(candidate) || !around.lies(candidate, side)) continue;
+      const MeetingSides own = sides_.sides(mesh_, quad.vertices[candidate]);
+      Plane plane{pointOf(quad.vertices[candidate]), around.normal(side)};
+      double nearest = -1;
+      for (int k = 0; k < own.count; ++k) {
+        const Vec3 normal(own.normals[k].x, own.normals[k].y, own.normals[k].z);
+        if (normal.dot(around.normal(side)) <= nearest) continue;
+        nearest = normal.dot(around.normal(side));
+        plane.normal = normal;
+      }
+      return plane;
+    }
+    return {};
+  }
+
+  // The planes of all sides, as far as they are known, seen from one corner.
+  using Planes = std::array<std::optional<Plane>, QuadSides::kMost>;
+  [[nodiscard]] Planes planesOf(const Quad& quad, const QuadSides& around, int corner) const {
+    Planes planes;
+    for (int side = 0; side < around.count(); ++side) {
+      planes[side] = planeOf(quad, around, side, corner);
+    }
+    return planes;
+  }
+
+  void proposeCreases(const Quad& quad, const QuadSides& around, int corner, Move& best) const {
+    const VertexIndex vertex = quad.vertices[corner];
+    if (sides_.isSharp(vertex)) return;
+    const Vec3 from = pointOf(vertex);
+    const Planes planes = planesOf(quad, around, corner);
+    for (int a = 0; a < around.count(); ++a) {
+      if (!around.lies(corner, a) || !planes[a]) continue;
+      for (int b = 0; b < around.count(); ++b) {
+        if (b == a || !planes[b]) continue;
+        const auto point = onBoth(*planes[a], *planes[b], from);
+        if (point) consider(vertex, from, *point, {*planes[a], *planes[b]}, best);
+      }
+    }
+  }
+
+  void proposeCorners(const Quad& quad, const QuadSides& around, int corner, Move& best) const {
+    const VertexIndex vertex = quad.vertices[corner];
+    if (around.count() < 3 || sides_.sides(mesh_, vertex).count > 2) return;
+    const Vec3 from = pointOf(vertex);
+    const Planes planes = planesOf(quad, around, corner);
+    for (int a = 0; a < around.count(); ++a) {
+      for (int b = a + 1; b < around.count(); ++b) {
+        for (int c = b + 1; c < around.count(); ++c) {
+          if (!around.lies(corner, a) && !around.lies(corner, b) && !around.lies(corner, c))
+            continue;
+          if (!planes[a] || !planes[b] || !planes[c]) continue;
+          const auto point = onAll(*planes[a], *planes[b], *planes[c]);
+          if (!point || !((*point - from).length() < best.distance) || isCorner(*point)) continue;
+          consider(vertex, from, *point, {*planes[a], *planes[b], *planes[c]}, best);
+        }
+      }
+    }
+  }
+
+  static void consider(VertexIndex vertex, const Vec3& from, const Vec3& point,
+                       std::initializer_list<Plane> planes, Move& best) {
+    const double distance = (point - from).length();
+    if (distance >= best.distance) return;
+    best.distance = distance;
+    best.vertex = vertex;
+    best.point = point;
+    best.sides = {};
+    for (const Plane& plane : planes) {
+      best.sides.normals[best.sides.count++] = toNormal(plane.normal);
+    }
+  }
+
+  void apply(const Move& move) {
+    touched_[move.vertex] = 1;
+    mesh_.positions[move.vertex] = {move.point[0], move.point[1], move.point[2]};
+    Vec3 sum(0);
+    for (int i = 0; i < move.sides.count; ++i) {
+      const Normal& n = move.sides.normals[i];
+      sum += Vec3(n.x, n.y, n.z);
+    }
+    mesh_.normals[move.vertex] = toNormal(sum.unitOrX());
+    sides_.setMeeting(move.vertex, move.sides);
+    sides_.setStray(move.vertex);
+    if (move.sides.count > 2) corners_.push_back(move.point);
+  }
+
+  Mesh& mesh_;
+  VertexSides& sides_;
+  double voxelSize_;
+  std::vector<Vec3> corners_;
+  std::vector<std::uint8_t> touched_;  // vertices where the last round left something to look at
+  static constexpr std::uint64_t kNoMove = std::numeric_limits<std::uint64_t>::max();
+  std::vector<std::uint64_t> lowest_;  // order of the moves of each vertex, kNoMove between rounds
+};
+
+}  // namespace
+
+std::size_t promoteToCreases(Mesh& mesh, VertexSides& sides, double voxelSize, base::Job& job) {
+  return Promoter(mesh, sides, voxelSize).run(job);
+}
+
+}  // namespace tufa::uniform

@@ -1,0 +1,65 @@
+#include "uniform/uniform_surface.h"
+
+#include <tufa/error.h>
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "uniform/place_vertices.h"
+#include "uniform/quads.h"
+#include "uniform/snap_to_creases.h"
+
+namespace tufa::uniform {
+namespace {
+
+Topology checkedTopology(const grid::Volume& volume, const ContourOptions& options,
+                         base::Job& job) {
+  Topology topology =
+      buildTopology(volume.blocks, volume.scale, options.ambiguity, options.cap, job);
+  if (topology.vertexCount > std::numeric_limits<VertexIndex>::max()) {
+    throw Error(ErrorCode::LimitExceeded,
+                "the mesh would have " + std::to_string(topology.vertexCount) +
+                    " vertices, more than 32-bit indices can name; use a coarser grid");
+  }
+  return topology;
+}
+
+}  // namespace
+
+UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,
+                                  const StageEnds& ends, base::Job& job) {
+  job.beginStage("topology", ends.topology);
+  Topology topology = checkedTopology(volume, options, job);
+  UniformSurface surface{std::move(volume), std::move(topology), VertexSides(), Mesh()};
+  const grid::FieldScale& scale = surface.volume.scale;
+  job.beginStage("vertices", ends.vertices);
+  const bool normals = options.normals == Normals::Gradient || scale.distance || !options.uniform;
+  surface.sides = placeVertices(surface.volume.blocks, scale, surface.topology, surface.affine(),
+                                normals, surface.mesh, job);
+  job.beginStage("polygons", ends.polygons);
+  connectQuads(surface.view(), surface.mesh, job);
+  job.beginStage("creases", ends.creases);
+  if (scale.distance) {
+    promoteToCreases(surface.mesh, surface.sides, surface.affine().voxelSize(), job);
+    splitAtCreases(surface.view(), surface.mesh, job);
+  }
+  return surface;
+}
+
+ContourReport reportOf(const UniformSurface& surface) {
+  const grid::Blocks& blocks = surface.volume.blocks;
+  ContourReport report;
+  report.isovalue = blocks.iso().isovalue;
+  report.insideIsBelow = blocks.iso().insideIsBelow;
+  report.distanceField = surface.volume.scale.distance;
+  report.activeVoxels = blocks.activeVoxels();
+  report.nonFiniteValues = blocks.nonFiniteValues();
+  report.surfaceCells = surface.topology.cellCount;
+  report.creaseCells = surface.sides.sharpCount();
+  report.faceFlips = surface.topology.faceFlips;
+  report.cutEdges = surface.topology.cutEdges;
+  return report;
+}
+
+}  // namespace tufa::uniform

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <tufa/contour.h>
+
+#include "base/job.h"
+#include "grid/volume.h"
+#include "uniform/cell_topology.h"
+#include "uniform/surface_view.h"
+#include "uniform/vertex_sheets.h"
+
+namespace tufa::uniform {
+
+/// The end of a call's progress that each stage reaches.
+struct StageEnds {
+  double blocks, topology, vertices, polygons, creases, repair;
+};
+
+/// The uniform mesh of a grid, or of a box of its blocks, and all that is known of its cells.
+/// Positions are counted from affine().origin(). Vertices may have been snapped to creases in a way
+/// that lets polygons intersect: refine/uniform_repair.h takes that out.
+struct UniformSurface {
+  grid::Volume volume;
+  Topology topology;
+  VertexSides sides;
+  Mesh mesh;
+
+  [[nodiscard]] const grid::Affine& affine() const { return volume.affine; }
+  [[nodiscard]] SurfaceView view() const {
+    return {volume.blocks, volume.scale, volume.affine, topology, sides, mesh};
+  }
+};
+
+/// Runs the stages of level 0. Throws Error(LimitExceeded) if the mesh would have more vertices
+/// than 32-bit indices can name.
+[[nodiscard]] UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,
+                                                const StageEnds& ends, base::Job& job);
+
+/// What a report says of a surface before anything is changed.
+[[nodiscard]] ContourReport reportOf(const UniformSurface& surface);
+
+}  // namespace tufa::uniform

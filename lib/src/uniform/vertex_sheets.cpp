@@ -1,0 +1,62 @@
+#include "uniform/vertex_sheets.h"
+
+#include <algorithm>
+
+namespace tufa::uniform {
+namespace {
+
+// Sides whose normals differ by less than this (18 degrees) are one.
+constexpr double kSameSide = 0.95;
+
+}  // namespace
+
+MeetingSides VertexSides::sides(const Mesh& mesh, VertexIndex vertex) const {
+  switch (kinds_[vertex]) {
+    case Kind::Unknown:
+      return {};
+    case Kind::Meeting:
+      return meeting_.at(vertex);
+    default:
+      break;
+  }
+  MeetingSides one;
+  one.count = 1;
+  one.normals[0] = mesh.normals[vertex];
+  return one;
+}
+
+std::size_t VertexSides::sharpCount() const {
+  return static_cast<std::size_t>(
+      std::count_if(kinds_.begin(), kinds_.end(), [](Kind k) { return k >= Kind::Meeting; }));
+}
+
+QuadSides::QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& quad) {
+  for (int corner = 0; corner < 4; ++corner) {
+    const MeetingSides own = sides.sides(mesh, quad.vertices[corner]);
+    if (own.count == 0) masks_[corner] = kAll;
+    for (int i = 0; i < own.count; ++i) {
+      const Vec3 normal(own.normals[i].x, own.normals[i].y, own.normals[i].z);
+      int side = 0;
+      while (side < count_ && normals_[side].dot(normal) < kSameSide) ++side;
+      if (side == count_) normals_[count_++] = normal;
+      masks_[corner] |= 1U << side;
+    }
+  }
+}
+
+bool QuadSides::isOneSide(const Mesh& mesh, const VertexSides& sides, const Quad& quad) {
+  const Normal& first = mesh.normals[quad.vertices[0]];
+  return std::all_of(quad.vertices.begin(), quad.vertices.end(), [&](VertexIndex vertex) {
+    const Normal& n = mesh.normals[vertex];
+    return !sides.isSharp(vertex) &&
+           static_cast<double>(n.x * first.x + n.y * first.y + n.z * first.z) >= kSameSide;
+  });
+}
+
+bool QuadSides::fits(bool secondDiagonal) const {
+  const unsigned ends = secondDiagonal ? masks_[1] & masks_[3] : masks_[0] & masks_[2];
+  const int a = secondDiagonal ? 0 : 1;
+  return (ends & masks_[a]) != 0 && (ends & masks_[a + 2]) != 0;
+}
+
+}  // namespace tufa::uniform

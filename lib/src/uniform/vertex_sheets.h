@@ -1,0 +1,93 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "base/vec3.h"
+
+namespace tufa::uniform {
+
+/// The smooth sides of the surface that meet at one vertex on a crease (2) or corner (3).
+struct MeetingSides {
+  std::uint8_t count = 0;
+  std::array<Normal, 3> normals{};  ///< outward, world space
+};
+
+/// Which smooth sides of the surface each vertex of a mesh lies on.
+///
+/// Almost every vertex lies on one, whose normal is the vertex's own; only vertices on creases and
+/// corners have an entry of their own.
+class VertexSides {
+ public:
+  /// A crease runs near, or through, the vertex.
+  enum class Kind : std::uint8_t {
+    Smooth,   ///< no kink of the field was seen
+    Near,     ///< on one side, with a crease nearby
+    Meeting,  ///< on a crease or corner; sides() says which
+    Unknown,  ///< on several sides that could not be told apart
+  };
+
+  explicit VertexSides(std::size_t vertices = 0)
+      : kinds_(vertices, Kind::Smooth), strays_(vertices, 0) {}
+
+  [[nodiscard]] Kind kind(VertexIndex vertex) const { return kinds_[vertex]; }
+  [[nodiscard]] bool isSharp(VertexIndex vertex) const { return kinds_[vertex] >= Kind::Meeting; }
+  /// Sets the kinds of consecutive vertices. May be called from several threads for vertices of
+  /// their own.
+  void setKinds(std::size_t first, const std::vector<Kind>& kinds) {
+    std::copy(kinds.begin(), kinds.end(), kinds_.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+  /// Whether the vertex may lie outside of its cell.
+  [[nodiscard]] bool isStray(VertexIndex vertex) const { return strays_[vertex] != 0; }
+  /// May be called from several threads.
+  void setStray(VertexIndex vertex) { strays_[vertex] = 1; }
+  void setMeeting(VertexIndex vertex, const MeetingSides& sides) {
+    kinds_[vertex] = Kind::Meeting;
+    meeting_[vertex] = sides;
+  }
+  /// The sides of a vertex; count 0 if they are unknown.
+  [[nodiscard]] MeetingSides sides(const Mesh& mesh, VertexIndex vertex) const;
+  /// Number of vertices on creases and corners.
+  [[nodiscard]] std::size_t sharpCount() const;
+
+ private:
+  std::vector<Kind> kinds_;
+  std::vector<std::uint8_t> strays_;  // bytes, as threads set their own
+  std::unordered_map<VertexIndex, MeetingSides> meeting_;
+};
+
+/// The sides around one quad: its corners' sides, equal ones merged.
+class QuadSides {
+ public:
+  static constexpr int kMost = 12;  ///< three for each corner
+
+  QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& quad);
+
+  /// Whether all vertices of a quad surely lie on one side: a quick answer for most.
+  [[nodiscard]] static bool isOneSide(const Mesh& mesh, const VertexSides& sides, const Quad& quad);
+
+  /// Whether both triangles of the split at diagonal 0-2 (or 1-3) lie on one side each. A triangle
+  /// that does not cuts off a crease or corner.
+  [[nodiscard]] bool fits(bool secondDiagonal) const;
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] const Vec3& normal(int side) const { return normals_[side]; }
+  /// Whether corner `corner` of the quad lies on `side`.
+  [[nodiscard]] bool lies(int corner, int side) const {
+    return ((masks_[corner] >> side) & 1) != 0;
+  }
+  /// Whether the sides of the corner are known.
+  [[nodiscard]] bool known(int corner) const { return masks_[corner] != kAll; }
+
+ private:
+  static constexpr unsigned kAll = ~0U;
+  std::array<unsigned, 4> masks_{};
+  std::array<Vec3, kMost> normals_;
+  int count_ = 0;
+};
+
+}  // namespace tufa::uniform

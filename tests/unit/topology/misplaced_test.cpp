@@ -1,0 +1,95 @@
+#include "topology/misplaced.h"
+
+#include <gtest/gtest.h>
+
+namespace tufa::mend {
+namespace {
+
+// Adds a tetrahedron that faces outward, or inward.
+void addTetrahedron(Mesh& mesh, const Position& corner, double size, bool outward = true) {
+  const auto first = static_cast<VertexIndex>(mesh.positions.size());
+  for (const Position& p :
+       {Position(0, 0, 0), Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)}) {
+    mesh.positions.emplace_back(corner.x + size * p.x, corner.y + size * p.y,
+                                corner.z + size * p.z);
+  }
+  const auto add = [&](VertexIndex a, VertexIndex b, VertexIndex c) {
+    if (!outward) std::swap(b, c);
+    mesh.triangles.emplace_back(first + a, first + b, first + c);
+  };
+  add(0, 2, 1);
+  add(0, 1, 3);
+  add(0, 3, 2);
+  add(1, 2, 3);
+}
+
+std::vector<VertexIndex> misplaced(const Mesh& mesh) {
+  base::Job job(1, {});
+  return findMisplaced(mesh, job);
+}
+
+using Vertices = std::vector<VertexIndex>;
+
+TEST(Pieces, AreNamedByTheirLeastVertex) {
+  Mesh mesh;
+  addTetrahedron(mesh, {0, 0, 0}, 1);
+  addTetrahedron(mesh, {5, 0, 0}, 1);
+  mesh.positions.emplace_back(9, 9, 9);
+  EXPECT_EQ(piecesOf(mesh), (Vertices{0, 0, 0, 0, 4, 4, 4, 4, 8}));
+}
+
+TEST(Misplaced, AreNone) {
+  Mesh mesh;
+  EXPECT_EQ(misplaced(mesh), Vertices());
+  addTetrahedron(mesh, {0, 0, 0}, 1);
+  EXPECT_EQ(misplaced(mesh), Vertices());
+  addTetrahedron(mesh, {0, 0, 2}, 1);                 // above: rays cross it twice
+  addTetrahedron(mesh, {0.2, 0.2, 0.2}, 0.2, false);  // a bubble
+  addTetrahedron(mesh, {0.21, 0.21, 0.21}, 0.1);      // and what lies in it
+  mesh.positions.emplace_back(0.1, 0.1, 0.1);         // of no polygon
+  EXPECT_EQ(misplaced(mesh), Vertices());
+}
+
+TEST(Misplaced, AreSolidsInSolidsAndTheNearestTriangles) {
+  Mesh mesh;
+  addTetrahedron(mesh, {0, 0, 0}, 10);
+  addTetrahedron(mesh, {1, 1, 0.1}, 0.2);
+  addTetrahedron(mesh, {-4, 0, 0}, 1);
+  // Nearest to all of its corners is the lowest triangle.
+  EXPECT_EQ(misplaced(mesh), (Vertices{0, 1, 2, 4, 5, 6, 7}));
+}
+
+TEST(Misplaced, AreBubblesOutsideOfAll) {
+  Mesh mesh;
+  addTetrahedron(mesh, {0, 0, 0}, 1, false);
+  addTetrahedron(mesh, {-1, -1, -3}, 10);
+  EXPECT_EQ(misplaced(mesh), Vertices());
+  addTetrahedron(mesh, {-3, 0, 0}, 1, false);
+  EXPECT_EQ(misplaced(mesh).size(), 4u + 3u);
+}
+
+// A solid without end around cavities, or a mirrored space.
+TEST(Misplaced, AreToldByTheLargestPiece) {
+  Mesh mesh;
+  addTetrahedron(mesh, {0, 0, 0}, 1, false);
+  addTetrahedron(mesh, {9, 0, 0}, 2, false);
+  addTetrahedron(mesh, {9.2, 0.2, 0.2}, 0.5);
+  EXPECT_EQ(misplaced(mesh), Vertices());
+  addTetrahedron(mesh, {-9, 0.1, 0.1}, 0.2);  // nearest to the triangle at x = 0
+  EXPECT_EQ(misplaced(mesh), (Vertices{0, 2, 3, 12, 13, 14, 15}));
+}
+
+// Above each of its vertices is a vertex or an edge of the larger ones.
+TEST(Misplaced, AreFoundWhereRaysPassThroughVertices) {
+  Mesh mesh;
+  addTetrahedron(mesh, {0, 0, 0}, 1);
+  addTetrahedron(mesh, {0, 0, -3}, 1);
+  addTetrahedron(mesh, {0, 0, 3}, 1);
+  EXPECT_EQ(misplaced(mesh), Vertices());
+  addTetrahedron(mesh, {0.25, 0.25, 0.25}, 0.125);
+  addTetrahedron(mesh, {0.25, 0.25, 3.25}, 0.125);
+  EXPECT_EQ(misplaced(mesh).size(), 2u * (4 + 3));
+}
+
+}  // namespace
+}  // namespace tufa::mend

@@ -1,0 +1,96 @@
+#include "uniform/crease_cell.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "support/block_field.h"
+
+namespace tufa::creases {
+namespace {
+
+using openvdb::Vec3d;
+using test::BlockField;
+using test::distanceAroundBlock;
+
+Vec3d toVec3d(const uniform::Vector& v) { return {v[0], v[1], v[2]}; }
+
+/// Calls body(cell's middle, placement) for the surface cells of the block.
+template <class Body>
+void forCells(const BlockField<>& field, const Body& body) {
+  const auto creaseCell = std::make_unique<CreaseCell>(field.samples(), field.scale());
+  creaseCell->reset();
+  for (int cell = 0; cell < 512; ++cell) {
+    const int x = cell >> 6, y = (cell >> 3) & 7, z = cell & 7;
+    int inside = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int at =
+          grid::BlockSamples::index(x + (corner >> 2), y + ((corner >> 1) & 1), z + (corner & 1));
+      inside += field.samples()[at] < 0 ? 1 : 0;
+    }
+    if (inside == 0 || inside == 8) continue;
+    body(Vec3d(x + 0.5, y + 0.5, z + 0.5), creaseCell->place(x, y, z, {}));
+  }
+}
+
+TEST(CreaseCell, OnAPlaneIsOnOneSide) {
+  const Vec3d normal = Vec3d(2, 1, -2) / 3;
+  const test::PlaneDistance plane{normal, normal.dot(Vec3d(3.6))};
+  int cells = 0;
+  forCells(distanceAroundBlock(plane), [&](const Vec3d& middle, const CreasePlacement& placement) {
+    ++cells;
+    ASSERT_EQ(placement.planes, 1);
+    EXPECT_NEAR(plane(middle + toVec3d(placement.point)), 0, 1e-4);
+    EXPECT_LT((toVec3d(placement.normal) - normal).length(), 1e-4);
+  });
+  EXPECT_GT(cells, 64);
+}
+
+TEST(CreaseCell, FindsTheCreasesAndTheCornerOfABox) {
+  const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
+  const Vec3d corner = box.center + box.turn * box.half;
+  int corners = 0, creases = 0, sides = 0;
+  forCells(distanceAroundBlock(box), [&](const Vec3d& middle, const CreasePlacement& placement) {
+    if (placement.planes == 0) return;
+    const Vec3d point = middle + toVec3d(placement.point);
+    EXPECT_LT(std::abs(box(point)), 0.03) << middle;
+    if (placement.planes == 1) {
+      ++sides;
+      return;
+    }
+    // On a crease two of the box's coordinates are at their end, at the corner all three.
+    Vec3d off = box.turn.transpose() * (point - corner);
+    off = Vec3d(std::abs(off[0]), std::abs(off[1]), std::abs(off[2]));
+    int ends = 0;
+    for (int axis = 0; axis < 3; ++axis) ends += off[axis] < 0.15 ? 1 : 0;
+    EXPECT_GE(ends, placement.planes) << middle << " " << off;
+    (placement.planes == 3 ? corners : creases)++;
+    for (int i = 0; i < placement.planes; ++i) {
+      double nearest = 0;
+      for (int side = 0; side < 3; ++side) {
+        nearest = std::max(nearest, toVec3d(placement.sides[i]).dot(box.turn.col(side)));
+      }
+      EXPECT_GT(nearest, 0.98) << middle;
+    }
+  });
+  EXPECT_LE(corners, 1);
+  EXPECT_GT(creases, 8);
+  EXPECT_GT(sides, 20);
+}
+
+TEST(CreaseCell, FindsNoCreaseOnASphere) {
+  const Vec3d center = Vec3d(4) - Vec3d(0.3, 0.7, 1).unit() * 12;
+  const auto distance = [&](const Vec3d& p) { return (p - center).length() - 12; };
+  int cells = 0;
+  forCells(distanceAroundBlock(distance),
+           [&](const Vec3d& middle, const CreasePlacement& placement) {
+             ++cells;
+             EXPECT_LE(placement.planes, 1) << middle;
+           });
+  EXPECT_GT(cells, 64);
+}
+
+}  // namespace
+}  // namespace tufa::creases

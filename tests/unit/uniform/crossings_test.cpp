@@ -1,0 +1,199 @@
+#include "uniform/crossings.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "support/block_field.h"
+
+namespace tufa::crossings {
+namespace {
+
+using grid::BlockSamples;
+using openvdb::Coord;
+using openvdb::Vec3d;
+using test::BlockField;
+using test::distanceAroundBlock;
+
+/// A crossing with the edge it lies on.
+struct Found {
+  Vec3d start;
+  int axis = 0;
+  Crossing crossing;
+  double linear = 0;  ///< where linear interpolation puts it
+  [[nodiscard]] Vec3d point() const {
+    Vec3d at = start;
+    at[axis] += static_cast<double>(crossing.along);
+    return at;
+  }
+  [[nodiscard]] Vec3d normal() const {
+    const auto& n = crossing.normal;
+    return {n[0], n[1], n[2]};
+  }
+};
+
+template <int axis>
+void addCrossings(const BlockField<>& field, std::vector<Found>& found) {
+  const CrossingFinder finder(field.samples(), field.scale());
+  const auto& samples = field.samples();
+  for (int cell = 0; cell < 512; ++cell) {
+    const int x = cell >> 6, y = (cell >> 3) & 7, z = cell & 7;
+    const int lower = BlockSamples::index(x, y, z);
+    const float a = samples[lower], b = samples[lower + BlockSamples::stride(axis)];
+    if ((a < 0) == (b < 0)) continue;
+    found.push_back({Vec3d(x, y, z), axis, finder.at<axis>(lower), a / static_cast<double>(a - b)});
+  }
+}
+
+std::vector<Found> crossingsOf(const BlockField<>& field) {
+  std::vector<Found> found;
+  addCrossings<0>(field, found);
+  addCrossings<1>(field, found);
+  addCrossings<2>(field, found);
+  return found;
+}
+
+/// Where a function changes sign on an edge, by bisection.
+template <class Function>
+double rootOn(const Found& edge, const Function& distance) {
+  const auto at = [&](double along) {
+    Vec3d p = edge.start;
+    p[edge.axis] += along;
+    return distance(p) < 0;
+  };
+  double low = 0, high = 1;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (at(middle) == at(0) ? low : high) = middle;
+  }
+  return low;
+}
+
+TEST(Crossings, OfAPlaneAreExact) {
+  for (const Vec3d& direction :
+       {Vec3d(1, 2, 3), Vec3d(-3, 1, 0.2), Vec3d(0, 0, 1), Vec3d(1, -1, 1)}) {
+    const test::PlaneDistance plane{direction.unit(), direction.unit().dot(Vec3d(4.2, 3.7, 3.9))};
+    const auto field = distanceAroundBlock(plane);
+    const auto found = crossingsOf(field);
+    EXPECT_GE(found.size(), 64U);
+    for (const Found& f : found) {
+      EXPECT_NEAR(plane(f.point()), 0, 1e-5);
+      EXPECT_LT((f.normal() - plane.normal).length(), 1e-5);
+      EXPECT_FALSE(f.crossing.crease);
+    }
+  }
+}
+
+TEST(Crossings, OfASphereAreWithinItsCurvature) {
+  const double radius = 30;
+  const Vec3d center = Vec3d(4) - Vec3d(1, 0.7, 0.4).unit() * radius;
+  const auto distance = [&](const Vec3d& p) { return (p - center).length() - radius; };
+  const auto field = distanceAroundBlock(distance);
+  for (const Found& f : crossingsOf(field)) {
+    EXPECT_LT(std::abs(distance(f.point())), 1 / (8 * radius) * 1.1);
+    EXPECT_LT((f.normal() - (f.point() - center).unit()).length(), 2e-3);
+    EXPECT_NEAR(uniform::dot(f.crossing.normal, f.crossing.normal), 1, 1e-5);
+  }
+}
+
+TEST(Crossings, BesideCreasesComeFromOneSide) {
+  const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
+  const auto field = distanceAroundBlock(box);
+  ASSERT_TRUE(field.scale().distance);
+  double worst = 0, sum = 0, linearSum = 0;
+  int offSide = 0, creases = 0;
+  const auto found = crossingsOf(field);
+  for (const Found& f : found) {
+    const double truth = rootOn(f, box);
+    const double error = std::abs(static_cast<double>(f.crossing.along) - truth);
+    worst = std::max(worst, error);
+    sum += error;
+    linearSum += std::abs(f.linear - truth);
+    creases += f.crossing.crease ? 1 : 0;
+    double nearest = 0;
+    for (int side = 0; side < 3; ++side) {
+      nearest = std::max(nearest, f.normal().dot(box.turn.col(side)));
+    }
+    offSide += nearest < 0.99 ? 1 : 0;
+  }
+  EXPECT_GT(creases, 20);
+  EXPECT_LT(worst, 0.2);
+  EXPECT_LT(sum, 0.35 * linearSum);
+  EXPECT_LT(offSide, static_cast<int>(found.size()) / 10);
+}
+
+template <int axis>
+void expectBatchesAgree(const BlockField<>& field) {
+  const CrossingFinder finder(field.samples(), field.scale());
+  std::vector<Found> found;
+  addCrossings<axis>(field, found);
+  ASSERT_GE(found.size(), static_cast<std::size_t>(CrossingBatch::kSize));
+  for (std::size_t first = 0; first + CrossingBatch::kSize <= found.size(); ++first) {
+    CrossingBatch batch;
+    for (std::size_t lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      const Vec3d& p = found[first + lane].start;
+      batch.lower[lane] = static_cast<std::uint16_t>(BlockSamples::index(
+          static_cast<int>(p[0]), static_cast<int>(p[1]), static_cast<int>(p[2])));
+    }
+    finder.findAll<axis>(batch);
+    for (std::size_t lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      const Crossing& one = found[first + lane].crossing;
+      ASSERT_EQ(batch.along[lane], one.along);
+      for (int i = 0; i < 3; ++i) ASSERT_EQ(batch.normals[i][lane], one.normal[i]);
+      ASSERT_EQ(((batch.creases >> lane) & 1) != 0, one.crease);
+    }
+  }
+}
+
+TEST(Crossings, InBatchesAreThoseFoundOneByOne) {
+  const auto field = distanceAroundBlock(test::boxWithCornerInBlock());
+  expectBatchesAgree<0>(field);
+  expectBatchesAgree<1>(field);
+  expectBatchesAgree<2>(field);
+}
+
+TEST(Crossings, OfADensityAreNeverCreases) {
+  const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
+  const openvdb::CoordBBox around(Coord(-8), Coord(16));
+  auto grid = test::sampled<openvdb::FloatGrid>(
+      around, 0, [&](const Coord& at) { return std::clamp(-box(at.asVec3d()), -3.0, 3.0); });
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  const BlockField<> field(grid, {.isovalue = 0, .insideIsBelow = false});
+  const auto found = crossingsOf(field);
+  ASSERT_GT(found.size(), 64U);
+  for (const Found& f : found) {
+    EXPECT_FALSE(f.crossing.crease);
+    EXPECT_NEAR(static_cast<double>(f.crossing.along), std::clamp(f.linear, 1e-3, 1 - 1e-3), 1e-5);
+    // Outward is where the density falls.
+    EXPECT_GT(f.normal().dot(Vec3d(f.point()) - box.center), 0);
+  }
+}
+
+TEST(Crossings, OnASampleStayOffTheEndOfTheirEdge) {
+  const test::PlaneDistance plane{Vec3d(0, 0, 1), 3};
+  const auto field = distanceAroundBlock(plane);
+  const auto found = crossingsOf(field);
+  ASSERT_EQ(found.size(), 64U);
+  for (const Found& f : found) {
+    EXPECT_EQ(f.start.z(), 2);  // the sample on the isovalue is outside
+    EXPECT_FLOAT_EQ(f.crossing.along, 1 - 1e-3F);
+  }
+}
+
+TEST(Crossings, WithoutGradientLookAlongTheirEdge) {
+  // Both samples beside the one inside are equal, so central differences vanish.
+  auto grid =
+      test::sampled<openvdb::FloatGrid>(openvdb::CoordBBox(Coord(-8), Coord(16)), 1,
+                                        [](const Coord& at) { return at.z() % 2 == 0 ? 1 : -1; });
+  const BlockField<> field(grid);
+  for (const Found& f : crossingsOf(field)) {
+    const bool rising = static_cast<int>(f.start.z()) % 2 != 0;
+    EXPECT_EQ(f.normal(), Vec3d(0, 0, rising ? 1 : -1));
+    EXPECT_EQ(f.crossing.along, 0.5F);
+  }
+}
+
+}  // namespace
+}  // namespace tufa::crossings

@@ -1,0 +1,76 @@
+#include "uniform/patch_planes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "support/block_field.h"
+
+namespace tufa::creases {
+namespace {
+
+using openvdb::Vec3d;
+using test::distanceAroundBlock;
+
+Vec3d toVec3d(const uniform::Vector& v) { return {v[0], v[1], v[2]}; }
+
+/// Calls body(cube's middle, plane or null) for the cubes around the block.
+template <class Body>
+void forPlanes(const test::BlockField<>& field, const Body& body) {
+  const auto planes = std::make_unique<PatchPlanes>(field.samples(), field.scale());
+  for (int x = -1; x <= 8; ++x) {
+    for (int y = -1; y <= 8; ++y) {
+      for (int z = -1; z <= 8; ++z) body(Vec3d(x + 0.5, y + 0.5, z + 0.5), planes->at(x, y, z));
+    }
+  }
+}
+
+TEST(PatchPlanes, OfAPlaneAreThatPlaneWhereverTheBandReaches) {
+  const Vec3d normal = Vec3d(1, -2, 3).unit();
+  const test::PlaneDistance plane{normal, normal.dot(Vec3d(4, 3.6, 4.1))};
+  const auto field = distanceAroundBlock(plane, 3);
+  int found = 0;
+  forPlanes(field, [&](const Vec3d& middle, const PatchPlane* patch) {
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3d offset((corner >> 2) - 0.5, ((corner >> 1) & 1) - 0.5, (corner & 1) - 0.5);
+      farthest = std::max(farthest, std::abs(plane(middle + offset)));
+    }
+    if (std::abs(farthest - 3) < 0.01) return;
+    ASSERT_EQ(patch != nullptr, farthest < 3) << middle;
+    if (patch == nullptr) return;
+    ++found;
+    EXPECT_LT((toVec3d(patch->normal) - normal).length(), 1e-5);
+    EXPECT_LT((toVec3d(patch->foot) - (middle - normal * plane(middle))).length(), 1e-4);
+    EXPECT_LT(patch->residual, 1e-5);
+  });
+  EXPECT_GT(found, 200);
+}
+
+TEST(PatchPlanes, NearACreaseAreOfOneSideOrNone) {
+  const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
+  const auto field = distanceAroundBlock(box);
+  int planes = 0, none = 0;
+  forPlanes(field, [&](const Vec3d& middle, const PatchPlane* patch) {
+    if (box(middle) > -0.9) return;  // beyond the edges the distance is round, not kinked
+    if (box(middle) < -2.5) return;
+    if (patch == nullptr) {
+      ++none;
+      return;
+    }
+    ++planes;
+    double nearest = 0;
+    for (int side = 0; side < 3; ++side) {
+      nearest = std::max(nearest, toVec3d(patch->normal).dot(box.turn.col(side)));
+    }
+    EXPECT_GT(nearest, 0.985) << middle;
+    EXPECT_LT(std::abs(box(toVec3d(patch->foot))), 0.1) << middle;
+  });
+  EXPECT_GE(planes, 15);
+  EXPECT_GT(none, 5);
+}
+
+}  // namespace
+}  // namespace tufa::creases

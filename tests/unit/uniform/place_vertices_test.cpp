@@ -1,0 +1,158 @@
+#include "uniform/place_vertices.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uniform/cell_topology.h"
+#include "support/block_field.h"
+#include "support/mesh_oracle.h"
+
+namespace tufa::vertices {
+namespace {
+
+using openvdb::Vec3d;
+using test::BlockField;
+using test::distanceAroundBlock;
+
+/// The vertices of a field, with the cell that each lies in.
+struct Placed {
+  Mesh mesh;
+  uniform::VertexSides sides;
+  std::vector<openvdb::Coord> cells;
+};
+
+template <class GridT>
+Placed place(BlockField<GridT>& field, int threads = 1) {
+  Placed placed;
+  base::Job job(threads, {});
+  const auto topology =
+      uniform::buildTopology(field.blocks(), field.scale(), Ambiguity::Separate, false, job);
+  const base::Affine affine(field.grid().transform());
+  job.run([&] {
+    placed.sides =
+        placeVertices(field.blocks(), field.scale(), topology, affine, true, placed.mesh, job);
+  });
+  for (const uniform::SurfaceBlock& block : topology.blocks) {
+    const auto corners = field.blocks().cornerWords(block.neighbours);
+    for (int cell = 0; cell < grid::kBlockCells; ++cell) {
+      if (!block.cells.get(cell)) continue;
+      const openvdb::Coord at =
+          field.blocks().origin(block.block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
+      const int count =
+          topology.componentsAt(block, cell, uniform::cornerMask(corners, cell)).count();
+      placed.cells.insert(placed.cells.end(), static_cast<std::size_t>(count), at);
+    }
+  }
+  return placed;
+}
+
+Vec3d pointOf(const Mesh& mesh, std::size_t v) {
+  const Position& p = mesh.positions[v];
+  return {p.x, p.y, p.z};
+}
+Vec3d normalOf(const Mesh& mesh, std::size_t v) {
+  const Normal& n = mesh.normals[v];
+  return {n.x, n.y, n.z};
+}
+
+/// Farthest that a vertex is from the middle of its cell, along an axis.
+double farthestFromCell(const Placed& placed) {
+  double farthest = 0;
+  for (std::size_t v = 0; v < placed.cells.size(); ++v) {
+    const Vec3d off = pointOf(placed.mesh, v) - placed.cells[v].asVec3d() - Vec3d(0.5);
+    farthest = std::max({farthest, std::abs(off[0]), std::abs(off[1]), std::abs(off[2])});
+  }
+  return farthest;
+}
+
+TEST(PlaceVertices, OnAPlanePutsThemAllOnIt) {
+  const Vec3d normal = Vec3d(1, 3, -2).unit();
+  // Between lattice points: crossings keep a thousandth away from samples.
+  const test::PlaneDistance plane{normal, normal.dot(Vec3d(4)) + 0.5 / Vec3d(1, 3, -2).length()};
+  // A density with a border around, so that nothing but the QEF places vertices.
+  const openvdb::CoordBBox box(openvdb::Coord(-8), openvdb::Coord(16));
+  auto grid = test::sampled<openvdb::FloatGrid>(
+      box, -30, [&](const openvdb::Coord& at) { return -plane(at.asVec3d()); });
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  BlockField<> field(grid, {.isovalue = 0, .insideIsBelow = false});
+  const Placed placed = place(field);
+  ASSERT_EQ(placed.cells.size(), placed.mesh.positions.size());
+  int within = 0;
+  for (std::size_t v = 0; v < placed.cells.size(); ++v) {
+    const openvdb::Coord& cell = placed.cells[v];
+    const bool inner = openvdb::CoordBBox(openvdb::Coord(-7), openvdb::Coord(14)).isInside(cell);
+    if (!inner) continue;  // its gradient knows the border
+    ++within;
+    EXPECT_NEAR(plane(pointOf(placed.mesh, v)), 0, 2e-5);
+    EXPECT_LT((normalOf(placed.mesh, v) - normal).length(), 1e-4);
+  }
+  EXPECT_GT(within, 300);
+}
+
+TEST(PlaceVertices, OnNoiseKeepsEachInItsCell) {
+  for (const unsigned seed : {1U, 2U}) {
+    BlockField<> field(
+        test::noise<openvdb::FloatGrid>({.size = 20, .seed = seed, .first = openvdb::Coord(-3)}));
+    const Placed placed = place(field);
+    ASSERT_EQ(placed.cells.size(), placed.mesh.positions.size());
+    EXPECT_LT(farthestFromCell(placed), 0.5);
+    for (std::size_t v = 0; v < placed.cells.size(); ++v) {
+      EXPECT_TRUE(std::isfinite(normalOf(placed.mesh, v).lengthSqr()));
+    }
+  }
+}
+
+TEST(PlaceVertices, GivesTheSameForAnyThreads) {
+  BlockField<> field(
+      test::noise<openvdb::FloatGrid>({.size = 24, .seed = 3, .first = openvdb::Coord(-3)}));
+  EXPECT_TRUE(test::sameBytes(place(field, 1).mesh, place(field, 2).mesh));
+}
+
+TEST(PlaceVertices, TellsWhichLieOnCreases) {
+  const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
+  auto field = distanceAroundBlock(box);
+  const Placed placed = place(field);
+  std::size_t sharp = 0;
+  for (VertexIndex v = 0; v < placed.cells.size(); ++v) {
+    if (placed.sides.kind(v) != uniform::VertexSides::Kind::Meeting) continue;
+    ++sharp;
+    EXPECT_GE(placed.sides.sides(placed.mesh, v).count, 2);
+  }
+  EXPECT_GT(sharp, 10U);
+  EXPECT_LT(sharp, placed.cells.size() / 2);
+}
+
+TEST(FaceNormals, OfACubePointAlongItsDiagonalsHoweverItIsSplit) {
+  Mesh cube;
+  for (int i = 0; i < 8; ++i) cube.positions.emplace_back(i & 1, (i >> 1) & 1, i >> 2);
+  cube.quads = {Quad(0, 2, 3, 1), Quad(4, 5, 7, 6), Quad(0, 1, 5, 4),
+                Quad(2, 6, 7, 3), Quad(0, 4, 6, 2), Quad(1, 3, 7, 5)};
+  for (int turned = 0; turned < 64; ++turned) {
+    Mesh mesh = cube;
+    for (int i = 0; i < 6; ++i) {
+      auto& v = mesh.quads[static_cast<std::size_t>(i)].vertices;
+      if (((turned >> i) & 1) != 0) std::rotate(v.begin(), v.begin() + 1, v.end());
+    }
+    base::Job job(1, {});
+    setFaceNormals(mesh, job);
+    for (std::size_t v = 0; v < 8; ++v) {
+      const Vec3d outward = (pointOf(mesh, v) - Vec3d(0.5)).unit();
+      ASSERT_LT((normalOf(mesh, v) - outward).length(), 1e-6);
+    }
+  }
+}
+
+TEST(FaceNormals, OfDegenerateFacesAreZeroAndFinite) {
+  Mesh mesh;
+  mesh.positions = {Position(0, 0, 0), Position(1, 1, 1), Position(2, 2, 2), Position(5, 5, 5)};
+  mesh.triangles = {Triangle(0, 1, 2)};
+  base::Job job(1, {});
+  setFaceNormals(mesh, job);
+  ASSERT_EQ(mesh.normals.size(), 4U);
+  for (const Normal& n : mesh.normals) EXPECT_EQ(n, Normal(0, 0, 0));
+}
+
+}  // namespace
+}  // namespace tufa::vertices

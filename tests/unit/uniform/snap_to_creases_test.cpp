@@ -1,0 +1,157 @@
+#include "uniform/snap_to_creases.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "uniform/vertex_sheets.h"
+
+namespace tufa::creases {
+namespace {
+
+using Kind = VertexSides::Kind;
+
+const float kHalf = std::sqrt(0.5F);
+const Normal kLeft(-kHalf, 0, kHalf);
+const Normal kRight(kHalf, 0, kHalf);
+
+/// A roof with its ridge along y at x = 0, z = 0, and quads that step over it.
+struct Roof {
+  Mesh mesh;
+  VertexSides sides;
+
+  void add(double x, double y) {
+    mesh.positions.emplace_back(x, y, -std::abs(x));
+    mesh.normals.push_back(x < 0 ? kLeft : kRight);
+  }
+  Roof() {
+    for (int y = 0; y < 4; ++y) {
+      add(-0.5, y);
+      add(0.3, y);
+    }
+    for (VertexIndex y = 0; y < 3; ++y) {
+      mesh.quads.emplace_back(2 * y, 2 * y + 1, 2 * y + 3, 2 * y + 2);
+    }
+    sides = VertexSides(mesh.positions.size());
+    sides.setKinds(0, std::vector<Kind>(mesh.positions.size(), Kind::Near));
+  }
+};
+
+TEST(VertexSides, TellSidesApart) {
+  Roof roof;
+  EXPECT_EQ(roof.sides.kind(0), Kind::Near);
+  EXPECT_EQ(roof.sides.sides(roof.mesh, 0).count, 1);
+  EXPECT_EQ(roof.sides.sides(roof.mesh, 0).normals[0], kLeft);
+  roof.sides.setMeeting(1, {2, {kLeft, kRight}});
+  EXPECT_EQ(roof.sides.sides(roof.mesh, 1).count, 2);
+  EXPECT_TRUE(roof.sides.isSharp(1));
+  roof.sides.setKinds(2, {Kind::Unknown});
+  EXPECT_EQ(roof.sides.sides(roof.mesh, 2).count, 0);
+  EXPECT_EQ(roof.sides.sharpCount(), 2U);
+}
+
+TEST(QuadSides, FitWhereADiagonalFollowsTheCrease) {
+  Roof roof;
+  const Quad& quad = roof.mesh.quads[0];
+  EXPECT_EQ(QuadSides(roof.mesh, roof.sides, quad).count(), 2);
+  EXPECT_FALSE(QuadSides(roof.mesh, roof.sides, quad).fits(false));
+  EXPECT_FALSE(QuadSides(roof.mesh, roof.sides, quad).fits(true));
+  // Corners 1 and 3 on the ridge: the diagonal between them leaves one side on either side.
+  roof.sides.setMeeting(quad.vertices[1], {2, {kLeft, kRight}});
+  roof.sides.setMeeting(quad.vertices[3], {2, {kLeft, kRight}});
+  EXPECT_FALSE(QuadSides(roof.mesh, roof.sides, quad).fits(false));
+  EXPECT_TRUE(QuadSides(roof.mesh, roof.sides, quad).fits(true));
+}
+
+TEST(PromoteToCreases, MovesTheNearestVerticesOntoTheRidge) {
+  Roof roof;
+  const Mesh before = roof.mesh;
+  base::Job job(2, {});
+  const std::size_t moved = promoteToCreases(roof.mesh, roof.sides, 1, job);
+  EXPECT_GT(moved, 0U);
+  EXPECT_EQ(moved, roof.sides.sharpCount());
+  for (VertexIndex v = 0; v < before.positions.size(); ++v) {
+    const Position& p = roof.mesh.positions[v];
+    if (roof.sides.kind(v) != Kind::Meeting) {
+      EXPECT_EQ(p, before.positions[v]);
+      continue;
+    }
+    EXPECT_EQ(v % 2, 1U) << "the right ones are nearer";
+    EXPECT_NEAR(p.x, 0, 1e-6);
+    EXPECT_NEAR(p.z, 0, 1e-6);
+    EXPECT_NEAR(p.y, before.positions[v].y, 1e-6);
+    EXPECT_NEAR(roof.mesh.normals[v].z, 1, 1e-6);
+  }
+  for (const Quad& quad : roof.mesh.quads) {
+    const QuadSides around(roof.mesh, roof.sides, quad);
+    EXPECT_TRUE(around.fits(false) || around.fits(true));
+  }
+}
+
+/// A band of quads along y whose vertices lie on one of three sides each, or nobody knows where.
+struct Band {
+  static constexpr int kWidth = 6;
+  Mesh mesh;
+  VertexSides sides;
+
+  Band(int from, int to) {
+    std::vector<Kind> kinds;
+    for (int y = from; y < to; ++y) {
+      // The same numbers at the same place.
+      std::mt19937 random(static_cast<unsigned>(y + 1));
+      std::uniform_real_distribution<double> shift(-0.3, 0.3);
+      for (int x = 0; x < kWidth; ++x) {
+        mesh.positions.emplace_back(x + shift(random), y + shift(random), shift(random));
+        const auto tilt = static_cast<float>(0.1 * shift(random));
+        const auto side = random() % 3;
+        mesh.normals.push_back(side == 0   ? Normal(-kHalf, tilt, kHalf)
+                               : side == 1 ? Normal(kHalf, tilt, kHalf)
+                                           : Normal(tilt, kHalf, kHalf));
+        kinds.push_back(random() % 4 == 0 ? Kind::Unknown : Kind::Near);
+      }
+    }
+    for (int y = 0; y + 1 < to - from; ++y) {
+      for (int x = 0; x + 1 < kWidth; ++x) {
+        const auto at = static_cast<VertexIndex>(y * kWidth + x);
+        mesh.quads.emplace_back(at, at + 1, at + 1 + kWidth, at + kWidth);
+      }
+    }
+    sides = VertexSides(mesh.positions.size());
+    sides.setKinds(0, kinds);
+  }
+};
+
+TEST(PromoteToCreases, DependsOnWhatIsNearAlone) {
+  constexpr int kReach = 12, kLength = 60;  // two cells in each of six rounds
+  const auto promote = [](int from, int to) {
+    Band band(from, to);
+    base::Job job(2, {});
+    EXPECT_GT(promoteToCreases(band.mesh, band.sides, 1, job), 0U);
+    return band.mesh;
+  };
+  const Mesh whole = promote(0, 400);
+  for (int from = 1; from + kLength < 400; from += 7) {
+    const Mesh part = promote(from, from + kLength);
+    for (int i = kReach * Band::kWidth; i < (kLength - kReach) * Band::kWidth; ++i) {
+      ASSERT_EQ(part.positions[i], whole.positions[from * Band::kWidth + i]) << from << " " << i;
+    }
+  }
+}
+
+TEST(PromoteToCreases, LeavesWhatIsTooFar) {
+  Roof roof;
+  base::Job job(1, {});
+  EXPECT_EQ(promoteToCreases(roof.mesh, roof.sides, 0.2, job), 0U);  // in voxels of a fifth
+}
+
+TEST(PromoteToCreases, LeavesSmoothVertices) {
+  Roof roof;
+  roof.sides = VertexSides(roof.mesh.positions.size());
+  base::Job job(1, {});
+  EXPECT_EQ(promoteToCreases(roof.mesh, roof.sides, 1, job), 0U);
+}
+
+}  // namespace
+}  // namespace tufa::creases
