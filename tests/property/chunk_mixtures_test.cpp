@@ -24,9 +24,9 @@ struct Made {
 
 Made makeChunks(const openvdb::GridBase& grid, const ChunkOptions& options) {
   Made made;
-  std::map<openvdb::Coord, Chunk> chunks;
+  std::map<Coord, Chunk> chunks;
   made.index = buildChunks(grid, options, [&](const ChunkIndex&, Chunk&& chunk) {
-    const openvdb::Coord at = chunk.index;
+    const Coord at = chunk.index;
     EXPECT_TRUE(chunks.emplace(at, std::move(chunk)).second) << at;
   });
   for (auto& [at, chunk] : chunks) made.chunks.push_back(std::move(chunk));
@@ -223,7 +223,7 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
   EXPECT_EQ(near.index.origin, Position(0, 0, 0));
   // A million voxels away, where floats hold no place to a thousandth of a voxel.
   grid->setTransform(grid->transform().copy());
-  grid->transform().postTranslate(openvdb::Vec3d(4e4, 0, 0));
+  grid->transform().postTranslate(Vec3(4e4, 0, 0));
   const Made far = makeChunks(*grid, options);
   EXPECT_NEAR(far.index.origin.x, 4e4, 10);
   std::mt19937 random(3);

@@ -101,7 +101,7 @@ void countVertices(const std::vector<Face>& faces, std::size_t count, MeshTopolo
   }
 }
 
-openvdb::Vec3d at(const Mesh& mesh, VertexIndex v) {
+Vec3 at(const Mesh& mesh, VertexIndex v) {
   const Position& p = mesh.positions[v];
   return {p.x, p.y, p.z};
 }
@@ -159,7 +159,7 @@ double area(const Mesh& mesh) {
 
 double volume(const Mesh& mesh) {
   if (mesh.positions.empty()) return 0;
-  const openvdb::Vec3d origin = at(mesh, 0);
+  const Vec3 origin = at(mesh, 0);
   double sum = 0;
   for (const Triangle& t : triangulate(mesh)) {
     const auto [a, b, c] = t.vertices;

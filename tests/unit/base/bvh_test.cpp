@@ -17,16 +17,15 @@ namespace {
 
 using base::Box;
 using base::Bvh;
-using openvdb::Vec3d;
 
 std::vector<Box> randomBoxes(std::size_t count, double size, std::mt19937& random) {
   std::uniform_real_distribution<double> place(0, 1);
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < count; ++i) {
     Box box = Box::empty();
-    const Vec3d corner(place(random), place(random), place(random));
+    const Vec3 corner(place(random), place(random), place(random));
     box.add(corner);
-    box.add(corner + Vec3d(place(random), place(random), place(random)) * size);
+    box.add(corner + Vec3(place(random), place(random), place(random)) * size);
     boxes.push_back(box);
   }
   return boxes;
@@ -61,7 +60,7 @@ TEST(CheckBvh, NearestIsTheNearest) {
   const Bvh tree(boxes, job);
   std::uniform_real_distribution<double> place(-1, 2);
   for (int run = 0; run < 200; ++run) {
-    const Vec3d from(place(random), place(random), place(random));
+    const Vec3 from(place(random), place(random), place(random));
     double expected = std::numeric_limits<double>::infinity();
     for (const Box& box : boxes) expected = std::min(expected, box.distanceSquared(from));
     double best = std::numeric_limits<double>::infinity();
@@ -75,7 +74,7 @@ TEST(CheckBvh, NearestIsTheNearest) {
 }
 
 TEST(CheckBvh, EqualBoxesDoNoHarm) {
-  const std::vector<Box> boxes(50, Box{Vec3d(1, 2, 3), Vec3d(1, 2, 3)});
+  const std::vector<Box> boxes(50, Box{Vec3(1, 2, 3), Vec3(1, 2, 3)});
   base::Job job(0, {});
   const Bvh tree(boxes, job);
   std::size_t pairs = 0;
@@ -94,7 +93,7 @@ TEST(CheckTriangleSoup, DistanceIsRightOverFacesEdgesAndCorners) {
   const checks::TriangleSoup soup(mesh, checks::Frame(grid), job);
   const auto distance = [&](double x, double y, double z) {
     std::uint32_t hint = Bvh::kNone;
-    return soup.distance(Vec3d(x, y, z), hint);
+    return soup.distance(Vec3(x, y, z), hint);
   };
   EXPECT_DOUBLE_EQ(distance(1, 1, 2), 2);
   EXPECT_DOUBLE_EQ(distance(1, 1, -2), 2);
@@ -107,7 +106,7 @@ TEST(CheckTriangleSoup, DistanceIsRightOverFacesEdgesAndCorners) {
   mesh.triangles = {Triangle(0, 1, 1)};
   const checks::TriangleSoup flat(mesh, checks::Frame(grid), job);
   std::uint32_t hint = Bvh::kNone;
-  EXPECT_DOUBLE_EQ(flat.distance(Vec3d(2, 3, 0), hint), 3);
+  EXPECT_DOUBLE_EQ(flat.distance(Vec3(2, 3, 0), hint), 3);
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ TEST_F(ChunkFiles, IndexKeepsEveryBit) {
   index.tolerances = {1.0 / 7, 2.0 / 7, 3.0 / 7};
   index.chunks[1].levels[2].maxErrorVoxels = std::sqrt(2.0);
   index.chunks[1].levels[2].intersectionsLeft = 3;
-  index.chunks[0].index = openvdb::Coord(-7, 3, 2);
+  index.chunks[0].index = Coord(-7, 3, 2);
   writeChunkIndex(index, name);
   const ChunkIndex read = readChunkIndex(name);
   EXPECT_EQ(read.grid, index.grid);

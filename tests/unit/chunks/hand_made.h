@@ -68,7 +68,7 @@ inline std::vector<Chunk> makeDrum() {
   std::vector<Chunk> chunks(2);
   for (int side = 0; side < 2; ++side) {
     Chunk& chunk = chunks[static_cast<std::size_t>(side)];
-    chunk.index = openvdb::Coord(side, 0, 0);
+    chunk.index = Coord(side, 0, 0);
     chunk.levels.resize(3);
     const double direction = side == 0 ? -1 : 1;
     const auto face = static_cast<std::size_t>(side == 0 ? 1 : 0);
@@ -121,7 +121,7 @@ inline std::vector<Chunk> makeSheet() {
   std::vector<Chunk> chunks(4);
   for (std::size_t turn = 0; turn < 4; ++turn) {
     Chunk& chunk = chunks[turn];
-    chunk.index = openvdb::Coord(kIndices[turn][0], kIndices[turn][1], 0);
+    chunk.index = Coord(kIndices[turn][0], kIndices[turn][1], 0);
     chunk.levels.resize(3);
     for (std::size_t k = 0; k < 3; ++k) {
       ChunkLevel& level = chunk.levels[k];

@@ -22,7 +22,7 @@ ChunkIndex makeIndex(int size, int levels) {
       for (int z = -size; z < size; ++z) {
         if ((x * 7 + y * 5 + z * 3) % 11 == 0) continue;
         ChunkEntry& chunk = index.chunks.emplace_back();
-        chunk.index = openvdb::Coord(x, y, z);
+        chunk.index = Coord(x, y, z);
         for (const double tolerance : index.tolerances) {
           ChunkLevelEntry& level = chunk.levels.emplace_back();
           level.least = Position(8.0 * x, 8.0 * y, 8.0 * z);
@@ -51,7 +51,7 @@ TEST(ChunkIndex, FindsChunksAndTheirNeighbours) {
   for (std::size_t i = 0; i < index.chunks.size(); ++i) {
     EXPECT_EQ(index.find(index.chunks[i].index), static_cast<std::ptrdiff_t>(i));
     for (int face = 0; face < kChunkFaces; ++face) {
-      openvdb::Coord beyond = index.chunks[i].index;
+      Coord beyond = index.chunks[i].index;
       beyond[face / 2] += face % 2 == 1 ? 1 : -1;
       const std::ptrdiff_t other = index.neighbour(i, face);
       EXPECT_EQ(other, index.find(beyond));
@@ -60,9 +60,9 @@ TEST(ChunkIndex, FindsChunksAndTheirNeighbours) {
       }
     }
   }
-  EXPECT_EQ(index.find(openvdb::Coord(0, 0, 0)), -1);  // one of those left out
-  EXPECT_EQ(index.find(openvdb::Coord(9, 0, 0)), -1);
-  EXPECT_EQ(ChunkIndex().find(openvdb::Coord(0)), -1);
+  EXPECT_EQ(index.find(Coord(0, 0, 0)), -1);  // one of those left out
+  EXPECT_EQ(index.find(Coord(9, 0, 0)), -1);
+  EXPECT_EQ(ChunkIndex().find(Coord(0)), -1);
 }
 
 TEST(RestrictLods, LowersToTheLargestRestrictedLevels) {
@@ -92,7 +92,7 @@ TEST(TransitionMask, HasABitForEachCoarserNeighbour) {
   const ChunkIndex index = makeIndex(2, 3);
   std::vector<std::size_t> lods(index.chunks.size(), 1);
   const auto place = [&](int x, int y, int z) {
-    return static_cast<std::size_t>(index.find(openvdb::Coord(x, y, z)));
+    return static_cast<std::size_t>(index.find(Coord(x, y, z)));
   };
   lods[place(1, 0, 1)] = 2;
   lods[place(0, -1, 1)] = 2;
@@ -141,7 +141,7 @@ TEST(SelectLods, IsFinestWhereTheEyeIs) {
   Camera camera;
   camera.eye = {12, 4, 4};
   const std::vector<std::size_t> lods = selectLods(index, camera, 30);
-  EXPECT_EQ(lods[static_cast<std::size_t>(index.find(openvdb::Coord(1, 0, 0)))], 0u);
+  EXPECT_EQ(lods[static_cast<std::size_t>(index.find(Coord(1, 0, 0)))], 0u);
   EXPECT_TRUE(isRestricted(index, lods));
   EXPECT_GT(*std::max_element(lods.begin(), lods.end()), 1u);
 }

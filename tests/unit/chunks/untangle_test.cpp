@@ -7,11 +7,9 @@
 namespace tufa::chunks {
 namespace {
 
-using openvdb::Coord;
-using openvdb::Vec3d;
 
 // A curve along y on a face across x, through the middles of cells, its vertices at these heights.
-void addCurve(Seams& seams, std::vector<Vec3d>& havens, const std::vector<double>& heights,
+void addCurve(Seams& seams, std::vector<Vec3>& havens, const std::vector<double>& heights,
               double haven) {
   SeamCurve curve;
   curve.axis = 0;
@@ -20,7 +18,7 @@ void addCurve(Seams& seams, std::vector<Vec3d>& havens, const std::vector<double
     curve.arcs.push_back(static_cast<SeamIndex>(seams.arcs.size()));
     seams.arcs.emplace_back();
     seams.vertices.push_back(
-        {Coord(16, static_cast<int>(i), 0), Vec3d(0, 0.5, heights[i]), Normal(0, 0, 1)});
+        {Coord(16, static_cast<int>(i), 0), Vec3(0, 0.5, heights[i]), Normal(0, 0, 1)});
     havens.emplace_back(0, 0.5, haven);
   }
   seams.curves.push_back(curve);
@@ -36,7 +34,7 @@ std::vector<double> heights(const Seams& seams, std::size_t curve) {
 
 TEST(Untangle, LeavesCurvesThatDoNotCross) {
   Seams seams;
-  std::vector<Vec3d> havens;
+  std::vector<Vec3> havens;
   addCurve(seams, havens, {0.2, 0.3, 0.2, 0.3}, 0.1);
   addCurve(seams, havens, {0.7, 0.6, 0.7, 0.6}, 0.9);
   untangle(havens, seams);
@@ -46,7 +44,7 @@ TEST(Untangle, LeavesCurvesThatDoNotCross) {
 
 TEST(Untangle, MovesNoMoreThanItMust) {
   Seams seams;
-  std::vector<Vec3d> havens;
+  std::vector<Vec3> havens;
   addCurve(seams, havens, {0.2, 0.2, 0.8, 0.2, 0.2}, 0.1);
   addCurve(seams, havens, {0.7, 0.7, 0.7, 0.7, 0.7}, 0.9);
   untangle(havens, seams);
@@ -56,7 +54,7 @@ TEST(Untangle, MovesNoMoreThanItMust) {
 
 TEST(Untangle, MovesVerticesThatLeadBack) {
   Seams seams;
-  std::vector<Vec3d> havens;
+  std::vector<Vec3> havens;
   addCurve(seams, havens, {0.5, 0.5, 0.5, 0.5, 0.5}, 0.6);
   // The third vertex lies behind the second.
   seams.vertices[1].offset[1] = 0.9;
@@ -68,7 +66,7 @@ TEST(Untangle, MovesVerticesThatLeadBack) {
 
 TEST(Untangle, LeavesSharpCorners) {
   Seams seams;
-  std::vector<Vec3d> havens;
+  std::vector<Vec3> havens;
   // Up and down again by ten voxels, one apart.
   addCurve(seams, havens, {0.5, 0.5, 10.5, 0.5, 0.5}, 0.6);
   untangle(havens, seams);
@@ -77,7 +75,7 @@ TEST(Untangle, LeavesSharpCorners) {
 
 TEST(Untangle, DoesNotMoveOneFaceForAnother) {
   Seams seams;
-  std::vector<Vec3d> havens;
+  std::vector<Vec3> havens;
   addCurve(seams, havens, {0.2, 0.8, 0.2}, 0.1);
   addCurve(seams, havens, {0.7, 0.7, 0.7}, 0.9);
   seams.curves[1].chunk = Coord(2, 0, 0);
@@ -89,16 +87,16 @@ TEST(Untangle, DoesNotMoveOneFaceForAnother) {
 // A point on a chunk edge belongs to several faces.
 TEST(Untangle, KeepsPointsOnChunkEdges) {
   Seams seams;
-  std::vector<Vec3d> havens;
+  std::vector<Vec3> havens;
   addCurve(seams, havens, {0.2, 0.2}, 0.1);
   addCurve(seams, havens, {0.7, 0.7}, 0.9);
-  seams.vertices.push_back({Coord(16, -1, 0), Vec3d(0, 0.5, 0.95), Normal(0, 0, 1)});
+  seams.vertices.push_back({Coord(16, -1, 0), Vec3(0, 0.5, 0.95), Normal(0, 0, 1)});
   seams.curves[0].begin = 4;
-  seams.vertices.push_back({Coord(16, -1, 0), Vec3d(0, 0.5, 0.3), Normal(0, 0, 1)});
+  seams.vertices.push_back({Coord(16, -1, 0), Vec3(0, 0.5, 0.3), Normal(0, 0, 1)});
   seams.curves[1].begin = 5;
   untangle(havens, seams);
-  EXPECT_EQ(seams.vertices[4].offset, Vec3d(0, 0.5, 0.95));
-  EXPECT_EQ(seams.vertices[5].offset, Vec3d(0, 0.5, 0.3));
+  EXPECT_EQ(seams.vertices[4].offset, Vec3(0, 0.5, 0.95));
+  EXPECT_EQ(seams.vertices[5].offset, Vec3(0, 0.5, 0.3));
   EXPECT_EQ(heights(seams, 0), (std::vector<double>{0.1, 0.2}));
 }
 

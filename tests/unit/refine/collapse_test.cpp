@@ -14,7 +14,6 @@
 namespace tufa::simplify {
 namespace {
 
-using openvdb::Vec3d;
 
 struct Problem {
   Mesh mesh;
@@ -35,11 +34,11 @@ Problem problemOf(Shape shape, double voxelSize, double allowed) {
   }
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Normal& n = mesh.normals[i];
-    problem.planes.emplace_back().addPlane(Vec3d(0.0), Vec3d(n.x, n.y, n.z));
+    problem.planes.emplace_back().addPlane(Vec3(0.0), Vec3(n.x, n.y, n.z));
     problem.bounds.samples.push_back({mesh.positions[i], n, polygonOf[i]});
   }
   problem.bounds.allowed.assign(mesh.positions.size(), static_cast<float>(allowed * voxelSize));
-  problem.bounds.distance = [](const Vec3d&, const Vec3d&, double) { return 0.0; };
+  problem.bounds.distance = [](const Vec3&, const Vec3&, double) { return 0.0; };
   return problem;
 }
 
@@ -50,21 +49,21 @@ Collapsed solve(const Problem& problem, int threads = 1) {
 
 TEST(PlaneSum, HasItsLeastErrorWhereThePlanesMeet) {
   PlaneSum sum;
-  const Vec3d corner(0.3, -0.2, 0.1);
-  for (const Vec3d& normal : {Vec3d(1, 0, 0), Vec3d(0, 0.6, 0.8), Vec3d(0, -0.8, 0.6)}) {
+  const Vec3 corner(0.3, -0.2, 0.1);
+  for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(0, 0.6, 0.8), Vec3(0, -0.8, 0.6)}) {
     sum.addPlane(corner, normal);
   }
   EXPECT_NEAR((sum.least() - corner).length(), 0, 2e-3);
   EXPECT_NEAR(sum.at(corner), 0, 1e-12);
-  const Vec3d away(0.5, 0.5, -1);
-  EXPECT_NEAR(sum.at(corner + away), away.lengthSqr(), 1e-12);
+  const Vec3 away(0.5, 0.5, -1);
+  EXPECT_NEAR(sum.at(corner + away), away.squaredLength(), 1e-12);
   EXPECT_NEAR(sum.seenFrom(away).at(corner - away), 0, 1e-12);
 }
 
 TEST(PlaneSum, LeavesFreeDirectionsAlone) {
   PlaneSum sum;
-  sum.addPlane(Vec3d(0, 0, 2), Vec3d(0, 0, 1));
-  const Vec3d least = sum.least();
+  sum.addPlane(Vec3(0, 0, 2), Vec3(0, 0, 1));
+  const Vec3 least = sum.least();
   EXPECT_EQ(least[0], 0);
   EXPECT_EQ(least[1], 0);
   EXPECT_NEAR(least[2], 2, 1e-2);
@@ -231,7 +230,7 @@ Problem pyramid() {
   problem.planes.resize(5);
   problem.bounds.allowed.assign(5, 0);
   problem.bounds.turning.assign(5, 0.1F);
-  problem.bounds.distance = [](const Vec3d&, const Vec3d&, double) { return 0.0; };
+  problem.bounds.distance = [](const Vec3&, const Vec3&, double) { return 0.0; };
   return problem;
 }
 
@@ -269,7 +268,7 @@ TEST(Collapse, TurnsAnEdgeThatMakesANeedle) {
 
 TEST(Collapse, TurnsNoEdgeWhereTheSurfaceIsTooFar) {
   Problem problem = pyramid();
-  problem.bounds.distance = [](const Vec3d&, const Vec3d&, double) { return 0.2; };
+  problem.bounds.distance = [](const Vec3&, const Vec3&, double) { return 0.2; };
   EXPECT_EQ(solve(problem).mesh.triangles, problem.mesh.triangles);
   problem = pyramid();
   problem.bounds.turning[3] = 0;

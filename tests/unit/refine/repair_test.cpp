@@ -265,22 +265,22 @@ TEST(Suspects, HaveAPartInEveryPair) {
     const auto grid = makeGrid(shape, 0.03);
     base::Job job(0, {});
     const grid::IsoChoice iso = grid::chooseIsovalue(*grid, {}, Inside::Auto);
-    const grid::Blocks<openvdb::FloatTree> blocks(grid->tree(), iso, NonFinite::Refuse, job);
+    const grid::Blocks blocks(grid->tree(), iso, NonFinite::Refuse, job);
     const grid::FieldScale scale = grid::readFieldScale(*grid, iso);
     const uniform::Topology topology =
         uniform::buildTopology(blocks, scale, Ambiguity::Separate, false, job);
     Mesh mesh;
-    const base::Affine affine(grid->transform());
+    const grid::Affine affine(grid->transform());
     uniform::VertexSides sides =
         uniform::placeVertices(blocks, scale, topology, affine, true, mesh, job);
-    const uniform::QuadContext<openvdb::FloatTree> quads{blocks, topology, scale, affine, sides};
+    const uniform::SurfaceView quads{blocks, topology, scale, affine, sides};
     uniform::connectQuads(quads, mesh, job);
     if (scale.distance) {
       uniform::promoteToCreases(mesh, sides, affine.voxelSize(), job);
       uniform::splitAtCreases(quads, mesh, job);
     }
     const std::vector<std::uint32_t> suspects =
-        uniform::findSuspects(quads, mesh, 1e-3 * affine.leastHeight(), job);
+        intersect::findSuspects(quads, mesh, 1e-3 * affine.leastHeight(), job);
     const refine::Surface surface(mesh, job);
     const auto all = refine::findPairs(surface, allPolygons(mesh), job);
     EXPECT_FALSE(all.empty());

@@ -172,7 +172,7 @@ TEST(Topology, EveryPairOfCellsAcrossAnAmbiguousFaceGivesAClosedManifold) {
 struct Stages {
   base::Job job{1, {}};
   grid::FieldScale scale;
-  grid::Blocks<openvdb::FloatTree> blocks;
+  grid::Blocks blocks;
   Topology topology;
 
   Stages(const FloatGrid& grid, grid::FieldScale fieldScale, Ambiguity rule, bool cap)
@@ -184,10 +184,10 @@ struct Stages {
   Mesh faces(const FloatGrid& grid) {
     Mesh mesh;
     mesh.positions.assign(topology.vertexCount, Position(0, 0, 0));
-    const base::Affine affine(grid.transform());
+    const grid::Affine affine(grid.transform());
     const uniform::VertexSides sides(topology.vertexCount);
     uniform::connectQuads(
-        uniform::QuadContext<openvdb::FloatTree>{blocks, topology, scale, affine, sides}, mesh,
+        uniform::SurfaceView{blocks, topology, scale, affine, sides}, mesh,
         job);
     return mesh;
   }

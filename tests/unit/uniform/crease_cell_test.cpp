@@ -11,11 +11,10 @@
 namespace tufa::creases {
 namespace {
 
-using openvdb::Vec3d;
 using test::BlockField;
 using test::distanceAroundBlock;
 
-Vec3d toVec3d(const uniform::Vector& v) { return {v[0], v[1], v[2]}; }
+Vec3 toVec3d(const uniform::Vector& v) { return {v[0], v[1], v[2]}; }
 
 /// Calls body(cell's middle, placement) for the surface cells of the block.
 template <class Body>
@@ -31,15 +30,15 @@ void forCells(const BlockField<>& field, const Body& body) {
       inside += field.samples()[at] < 0 ? 1 : 0;
     }
     if (inside == 0 || inside == 8) continue;
-    body(Vec3d(x + 0.5, y + 0.5, z + 0.5), creaseCell->place(x, y, z, {}));
+    body(Vec3(x + 0.5, y + 0.5, z + 0.5), creaseCell->place(x, y, z, {}));
   }
 }
 
 TEST(CreaseCell, OnAPlaneIsOnOneSide) {
-  const Vec3d normal = Vec3d(2, 1, -2) / 3;
-  const test::PlaneDistance plane{normal, normal.dot(Vec3d(3.6))};
+  const Vec3 normal = Vec3(2, 1, -2) / 3;
+  const test::PlaneDistance plane{normal, normal.dot(Vec3(3.6))};
   int cells = 0;
-  forCells(distanceAroundBlock(plane), [&](const Vec3d& middle, const CreasePlacement& placement) {
+  forCells(distanceAroundBlock(plane), [&](const Vec3& middle, const CreasePlacement& placement) {
     ++cells;
     ASSERT_EQ(placement.planes, 1);
     EXPECT_NEAR(plane(middle + toVec3d(placement.point)), 0, 1e-4);
@@ -50,19 +49,19 @@ TEST(CreaseCell, OnAPlaneIsOnOneSide) {
 
 TEST(CreaseCell, FindsTheCreasesAndTheCornerOfABox) {
   const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
-  const Vec3d corner = box.center + box.turn * box.half;
+  const Vec3 corner = box.center + box.turn * box.half;
   int corners = 0, creases = 0, sides = 0;
-  forCells(distanceAroundBlock(box), [&](const Vec3d& middle, const CreasePlacement& placement) {
+  forCells(distanceAroundBlock(box), [&](const Vec3& middle, const CreasePlacement& placement) {
     if (placement.planes == 0) return;
-    const Vec3d point = middle + toVec3d(placement.point);
+    const Vec3 point = middle + toVec3d(placement.point);
     EXPECT_LT(std::abs(box(point)), 0.03) << middle;
     if (placement.planes == 1) {
       ++sides;
       return;
     }
     // On a crease two of the box's coordinates are at their end, at the corner all three.
-    Vec3d off = box.turn.transpose() * (point - corner);
-    off = Vec3d(std::abs(off[0]), std::abs(off[1]), std::abs(off[2]));
+    Vec3 off = box.turn.transpose() * (point - corner);
+    off = Vec3(std::abs(off[0]), std::abs(off[1]), std::abs(off[2]));
     int ends = 0;
     for (int axis = 0; axis < 3; ++axis) ends += off[axis] < 0.15 ? 1 : 0;
     EXPECT_GE(ends, placement.planes) << middle << " " << off;
@@ -81,11 +80,11 @@ TEST(CreaseCell, FindsTheCreasesAndTheCornerOfABox) {
 }
 
 TEST(CreaseCell, FindsNoCreaseOnASphere) {
-  const Vec3d center = Vec3d(4) - Vec3d(0.3, 0.7, 1).unit() * 12;
-  const auto distance = [&](const Vec3d& p) { return (p - center).length() - 12; };
+  const Vec3 center = Vec3(4) - Vec3(0.3, 0.7, 1).unitOrX() * 12;
+  const auto distance = [&](const Vec3& p) { return (p - center).length() - 12; };
   int cells = 0;
   forCells(distanceAroundBlock(distance),
-           [&](const Vec3d& middle, const CreasePlacement& placement) {
+           [&](const Vec3& middle, const CreasePlacement& placement) {
              ++cells;
              EXPECT_LE(placement.planes, 1) << middle;
            });

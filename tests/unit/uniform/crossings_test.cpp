@@ -13,22 +13,21 @@ namespace {
 
 using grid::BlockSamples;
 using openvdb::Coord;
-using openvdb::Vec3d;
 using test::BlockField;
 using test::distanceAroundBlock;
 
 /// A crossing with the edge it lies on.
 struct Found {
-  Vec3d start;
+  Vec3 start;
   int axis = 0;
   Crossing crossing;
   double linear = 0;  ///< where linear interpolation puts it
-  [[nodiscard]] Vec3d point() const {
-    Vec3d at = start;
+  [[nodiscard]] Vec3 point() const {
+    Vec3 at = start;
     at[axis] += static_cast<double>(crossing.along);
     return at;
   }
-  [[nodiscard]] Vec3d normal() const {
+  [[nodiscard]] Vec3 normal() const {
     const auto& n = crossing.normal;
     return {n[0], n[1], n[2]};
   }
@@ -43,7 +42,7 @@ void addCrossings(const BlockField<>& field, std::vector<Found>& found) {
     const int lower = BlockSamples::index(x, y, z);
     const float a = samples[lower], b = samples[lower + BlockSamples::stride(axis)];
     if ((a < 0) == (b < 0)) continue;
-    found.push_back({Vec3d(x, y, z), axis, finder.at<axis>(lower), a / static_cast<double>(a - b)});
+    found.push_back({Vec3(x, y, z), axis, finder.at<axis>(lower), a / static_cast<double>(a - b)});
   }
 }
 
@@ -59,7 +58,7 @@ std::vector<Found> crossingsOf(const BlockField<>& field) {
 template <class Function>
 double rootOn(const Found& edge, const Function& distance) {
   const auto at = [&](double along) {
-    Vec3d p = edge.start;
+    Vec3 p = edge.start;
     p[edge.axis] += along;
     return distance(p) < 0;
   };
@@ -72,9 +71,9 @@ double rootOn(const Found& edge, const Function& distance) {
 }
 
 TEST(Crossings, OfAPlaneAreExact) {
-  for (const Vec3d& direction :
-       {Vec3d(1, 2, 3), Vec3d(-3, 1, 0.2), Vec3d(0, 0, 1), Vec3d(1, -1, 1)}) {
-    const test::PlaneDistance plane{direction.unit(), direction.unit().dot(Vec3d(4.2, 3.7, 3.9))};
+  for (const Vec3& direction :
+       {Vec3(1, 2, 3), Vec3(-3, 1, 0.2), Vec3(0, 0, 1), Vec3(1, -1, 1)}) {
+    const test::PlaneDistance plane{direction.unitOrX(), direction.unitOrX().dot(Vec3(4.2, 3.7, 3.9))};
     const auto field = distanceAroundBlock(plane);
     const auto found = crossingsOf(field);
     EXPECT_GE(found.size(), 64U);
@@ -88,12 +87,12 @@ TEST(Crossings, OfAPlaneAreExact) {
 
 TEST(Crossings, OfASphereAreWithinItsCurvature) {
   const double radius = 30;
-  const Vec3d center = Vec3d(4) - Vec3d(1, 0.7, 0.4).unit() * radius;
-  const auto distance = [&](const Vec3d& p) { return (p - center).length() - radius; };
+  const Vec3 center = Vec3(4) - Vec3(1, 0.7, 0.4).unitOrX() * radius;
+  const auto distance = [&](const Vec3& p) { return (p - center).length() - radius; };
   const auto field = distanceAroundBlock(distance);
   for (const Found& f : crossingsOf(field)) {
     EXPECT_LT(std::abs(distance(f.point())), 1 / (8 * radius) * 1.1);
-    EXPECT_LT((f.normal() - (f.point() - center).unit()).length(), 2e-3);
+    EXPECT_LT((f.normal() - (f.point() - center).unitOrX()).length(), 2e-3);
     EXPECT_NEAR(uniform::dot(f.crossing.normal, f.crossing.normal), 1, 1e-5);
   }
 }
@@ -133,7 +132,7 @@ void expectBatchesAgree(const BlockField<>& field) {
   for (std::size_t first = 0; first + CrossingBatch::kSize <= found.size(); ++first) {
     CrossingBatch batch;
     for (std::size_t lane = 0; lane < CrossingBatch::kSize; ++lane) {
-      const Vec3d& p = found[first + lane].start;
+      const Vec3& p = found[first + lane].start;
       batch.lower[lane] = static_cast<std::uint16_t>(BlockSamples::index(
           static_cast<int>(p[0]), static_cast<int>(p[1]), static_cast<int>(p[2])));
     }
@@ -167,12 +166,12 @@ TEST(Crossings, OfADensityAreNeverCreases) {
     EXPECT_FALSE(f.crossing.crease);
     EXPECT_NEAR(static_cast<double>(f.crossing.along), std::clamp(f.linear, 1e-3, 1 - 1e-3), 1e-5);
     // Outward is where the density falls.
-    EXPECT_GT(f.normal().dot(Vec3d(f.point()) - box.center), 0);
+    EXPECT_GT(f.normal().dot(Vec3(f.point()) - box.center), 0);
   }
 }
 
 TEST(Crossings, OnASampleStayOffTheEndOfTheirEdge) {
-  const test::PlaneDistance plane{Vec3d(0, 0, 1), 3};
+  const test::PlaneDistance plane{Vec3(0, 0, 1), 3};
   const auto field = distanceAroundBlock(plane);
   const auto found = crossingsOf(field);
   ASSERT_EQ(found.size(), 64U);
@@ -190,7 +189,7 @@ TEST(Crossings, WithoutGradientLookAlongTheirEdge) {
   const BlockField<> field(grid);
   for (const Found& f : crossingsOf(field)) {
     const bool rising = static_cast<int>(f.start.z()) % 2 != 0;
-    EXPECT_EQ(f.normal(), Vec3d(0, 0, rising ? 1 : -1));
+    EXPECT_EQ(f.normal(), Vec3(0, 0, rising ? 1 : -1));
     EXPECT_EQ(f.crossing.along, 0.5F);
   }
 }

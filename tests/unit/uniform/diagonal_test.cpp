@@ -7,7 +7,6 @@
 namespace tufa::polygons {
 namespace {
 
-using openvdb::Vec3d;
 using Kind = uniform::VertexSides::Kind;
 
 /// A quad around the z axis, its corners at (-1,-1), (1,-1), (1,1), (-1,1) and the heights given.
@@ -23,19 +22,19 @@ bool isSecondBetter(const Mesh& mesh, const LatticeCrossing& crossing, double vo
   return chooser.isSecondDiagonalBetter([&] { return crossing; });
 }
 
-const LatticeCrossing kAtHeight0{Vec3d(0, 0, 0), Vec3d(0, 0, 1)};
+const LatticeCrossing kAtHeight0{Vec3(0, 0, 0), Vec3(0, 0, 1)};
 
 TEST(SplitChooser, TakesTheDiagonalNearerToTheCrossing) {
   // The first diagonal passes at height 0, the second at 0.3; and the other way round.
   EXPECT_FALSE(isSecondBetter(quadOfHeights(0, 0.3, 0, 0.3), kAtHeight0));
   EXPECT_TRUE(isSecondBetter(quadOfHeights(0.3, 0, 0.3, 0), kAtHeight0));
-  EXPECT_TRUE(isSecondBetter(quadOfHeights(0, 0.3, 0, 0.3), {Vec3d(0, 0, 0.3), Vec3d(0, 0, 1)}));
+  EXPECT_TRUE(isSecondBetter(quadOfHeights(0, 0.3, 0, 0.3), {Vec3(0, 0, 0.3), Vec3(0, 0, 1)}));
 }
 
 TEST(SplitChooser, LooksAtTheTriangleThatTheCrossingLiesIn) {
   // Off the diagonals: height 0.2 is on the first split's triangle (0, 1, 2) there.
   const Mesh mesh = quadOfHeights(0, 0.4, 0, -0.5);
-  EXPECT_FALSE(isSecondBetter(mesh, {Vec3d(0.5, -0.5, 0.2), Vec3d(0, 0, 1)}));
+  EXPECT_FALSE(isSecondBetter(mesh, {Vec3(0.5, -0.5, 0.2), Vec3(0, 0, 1)}));
 }
 
 TEST(SplitChooser, TakesTheShorterDiagonalOfFlatQuads) {
@@ -51,7 +50,7 @@ TEST(SplitChooser, TakesTheInnerDiagonalOfConcaveQuads) {
   Mesh mesh = quadOfHeights(0, 0, 0, 0);
   mesh.positions[0] = Position(0.4, 0.4, 0);
   mesh.positions[2] = Position(4, 4, 0);
-  EXPECT_FALSE(isSecondBetter(mesh, {Vec3d(1, 1, 0), Vec3d(0, 0, 1)}));
+  EXPECT_FALSE(isSecondBetter(mesh, {Vec3(1, 1, 0), Vec3(0, 0, 1)}));
 }
 
 TEST(SplitChooser, MeasuresInVoxels) {
@@ -79,7 +78,7 @@ TEST(SplitChooser, FollowsACreaseBeforeAllElse) {
   sides.setMeeting(1, {2, {left, right}});
   sides.setMeeting(3, {2, {left, right}});
   const SplitChooser chooser(mesh, mesh.quads[0], 1);
-  const auto below = [] { return LatticeCrossing{Vec3d(0, 0, -1), Vec3d(0, 0, 1)}; };
+  const auto below = [] { return LatticeCrossing{Vec3(0, 0, -1), Vec3(0, 0, 1)}; };
   EXPECT_FALSE(chooser.isSecondDiagonalBetter(below));
   EXPECT_TRUE(chooser.isSecondDiagonalBetterAtCrease(sides, below));
 }

@@ -14,17 +14,16 @@ namespace tufa::qef {
 namespace {
 
 using openvdb::Mat3d;
-using openvdb::Vec3d;
 
 struct Plane {
-  Vec3d point;
-  Vec3d normal;
+  Vec3 point;
+  Vec3 normal;
 };
 
-Vector toVector(const Vec3d& v) {
+Vector toVector(const Vec3& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
-Vec3d toVec3d(const Vector& v) { return {v[0], v[1], v[2]}; }
+Vec3 toVec3d(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 Qef sumOf(const std::vector<Plane>& planes) {
   Qef sum;
@@ -32,14 +31,14 @@ Qef sumOf(const std::vector<Plane>& planes) {
   return sum;
 }
 
-double errorAt(const std::vector<Plane>& planes, const Vec3d& x) {
+double errorAt(const std::vector<Plane>& planes, const Vec3& x) {
   double sum = 0;
   for (const Plane& plane : planes) sum += std::pow(plane.normal.dot(x - plane.point), 2);
   return sum;
 }
 
-Vec3d massPoint(const std::vector<Plane>& planes) {
-  Vec3d sum(0);
+Vec3 massPoint(const std::vector<Plane>& planes) {
+  Vec3 sum(0);
   for (const Plane& plane : planes) sum += plane.point;
   return sum / static_cast<double>(planes.size());
 }
@@ -50,18 +49,18 @@ class Planes {
   double number(double from, double to) {
     return std::uniform_real_distribution<double>(from, to)(random_);
   }
-  Vec3d point(double half) {
+  Vec3 point(double half) {
     return {number(-half, half), number(-half, half), number(-half, half)};
   }
-  Vec3d direction() {
+  Vec3 direction() {
     std::normal_distribution<double> normal;
-    return Vec3d(normal(random_), normal(random_), normal(random_)).unit();
+    return Vec3(normal(random_), normal(random_), normal(random_)).unitOrX();
   }
   /// Planes whose normals lie about `mean`, the spread being 0 for equal ones.
-  std::vector<Plane> about(const Vec3d& mean, double spread, int count) {
+  std::vector<Plane> about(const Vec3& mean, double spread, int count) {
     std::vector<Plane> planes;
     for (int i = 0; i < count; ++i) {
-      planes.push_back({point(0.5), (mean + direction() * spread).unit()});
+      planes.push_back({point(0.5), (mean + direction() * spread).unitOrX()});
     }
     return planes;
   }
@@ -73,10 +72,10 @@ class Planes {
 
 /// The least-squares point nearest to the mass point by OpenVDB's eigen-solver in double; none
 /// where an eigenvalue lies too near the truncation for both to agree on it.
-std::optional<Vec3d> oracle(const std::vector<Plane>& planes) {
+std::optional<Vec3> oracle(const std::vector<Plane>& planes) {
   Mat3d a = Mat3d::zero();
-  Vec3d residual(0);
-  const Vec3d c = massPoint(planes);
+  Vec3 residual(0);
+  const Vec3 c = massPoint(planes);
   for (const Plane& plane : planes) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) a(i, j) += plane.normal[i] * plane.normal[j];
@@ -84,36 +83,36 @@ std::optional<Vec3d> oracle(const std::vector<Plane>& planes) {
     residual += plane.normal * plane.normal.dot(plane.point - c);
   }
   Mat3d vectors;
-  Vec3d values;
+  Vec3 values;
   openvdb::math::diagonalizeSymmetricMatrix(a, vectors, values);
   const double largest = std::max({values[0], values[1], values[2]});
-  Vec3d x = c;
+  Vec3 x = c;
   for (int i = 0; i < 3; ++i) {
     const double share = values[i] / largest;
     if (share > 0.007 && share < 0.013) return {};
-    const Vec3d v = vectors.col(i);
+    const Vec3 v = vectors.col(i);
     if (share > 0.01) x += v * (v.dot(residual) / values[i]);
   }
   return x;
 }
 
-bool isInCube(const Vec3d& x, double half) {
+bool isInCube(const Vec3& x, double half) {
   return std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])}) <= half;
 }
 
 constexpr float kFar = 1e6F;
 
 TEST(Qef, OfOnePlaneIsTheFootOfItsPoint) {
-  const Plane plane{{0.1, -0.2, 0.3}, Vec3d(1, 2, -2) / 3};
+  const Plane plane{{0.1, -0.2, 0.3}, Vec3(1, 2, -2) / 3};
   EXPECT_LT((toVec3d(solve(sumOf({plane}), 0.5F)) - plane.point).length(), 1e-6);
 }
 
 TEST(Qef, OfParallelPlanesIsOnTheirMeanBelowTheMassPoint) {
   Planes random(1);
   for (int n = 0; n < 200; ++n) {
-    const Vec3d normal = random.direction();
+    const Vec3 normal = random.direction();
     const auto planes = random.about(normal, 0, random.count(2, 9));
-    const Vec3d x = toVec3d(solve(sumOf(planes), kFar));
+    const Vec3 x = toVec3d(solve(sumOf(planes), kFar));
     EXPECT_LT((x - massPoint(planes)).length(), 2e-6);
   }
 }
@@ -121,17 +120,17 @@ TEST(Qef, OfParallelPlanesIsOnTheirMeanBelowTheMassPoint) {
 TEST(Qef, OfTwoSidesIsThePointOfTheirCreaseNearestToTheMassPoint) {
   Planes random(2);
   for (int n = 0; n < 200; ++n) {
-    const Vec3d a = random.direction(), b = random.direction();
-    const Vec3d along = a.cross(b);
+    const Vec3 a = random.direction(), b = random.direction();
+    const Vec3 along = a.cross(b);
     if (along.length() < 0.4) continue;
-    const Vec3d start = random.point(0.3);
+    const Vec3 start = random.point(0.3);
     std::vector<Plane> planes;
     for (int i = 0; i < 6; ++i) {
-      const Vec3d& normal = i < 3 ? a : b;
+      const Vec3& normal = i < 3 ? a : b;
       planes.push_back({start + normal.cross(random.point(0.3)), normal});
     }
-    const Vec3d direction = along.unit();
-    const Vec3d truth = start + direction * direction.dot(massPoint(planes) - start);
+    const Vec3 direction = along.unitOrX();
+    const Vec3 truth = start + direction * direction.dot(massPoint(planes) - start);
     EXPECT_LT((toVec3d(solve(sumOf(planes), kFar)) - truth).length(), 2e-5);
   }
 }
@@ -140,10 +139,10 @@ TEST(Qef, OfThreeSidesIsTheirCorner) {
   Planes random(3);
   int corners = 0;
   for (int n = 0; n < 300; ++n) {
-    const Vec3d corner = random.point(0.45);
+    const Vec3 corner = random.point(0.45);
     std::vector<Plane> planes;
     for (int side = 0; side < 3; ++side) {
-      const Vec3d normal = random.direction();
+      const Vec3 normal = random.direction();
       planes.push_back({corner + normal.cross(random.point(0.3)), normal});
       planes.push_back({corner + normal.cross(random.point(0.3)), normal});
     }
@@ -191,11 +190,11 @@ TEST(Qef, DirectionsBelowAHundredthOfTheLargestEigenvalueAreFree) {
     const double angle = degrees * std::acos(-1) / 180;
     std::vector<Plane> planes;
     for (const double side : {-1.0, 1.0}) {
-      const Vec3d normal(side * std::sin(angle), 0, std::cos(angle));
-      planes.push_back({Vec3d(0.2, 0.1, 0) + normal.cross(Vec3d(0, 0.1, 0)), normal});
+      const Vec3 normal(side * std::sin(angle), 0, std::cos(angle));
+      planes.push_back({Vec3(0.2, 0.1, 0) + normal.cross(Vec3(0, 0.1, 0)), normal});
     }
-    const Vec3d mass = massPoint(planes);
-    const Vec3d x = toVec3d(solve(sumOf(planes), kFar));
+    const Vec3 mass = massPoint(planes);
+    const Vec3 x = toVec3d(solve(sumOf(planes), kFar));
     EXPECT_NEAR(x.x(), degrees < 5.7 ? mass.x() : 0.2, 1e-4) << degrees;
     EXPECT_NEAR(x.y(), mass.y(), 1e-5) << degrees;
   }
@@ -207,22 +206,22 @@ TEST(Qef, BoundedSolutionIsTheBestOfTheCube) {
   int bounded = 0;
   for (int n = 0; n < 400; ++n) {
     const auto planes = random.about(random.direction(), 2, random.count(3, 8));
-    const Vec3d x = toVec3d(solve(sumOf(planes), kHalf));
+    const Vec3 x = toVec3d(solve(sumOf(planes), kHalf));
     ASSERT_TRUE(isInCube(x, kHalf)) << x;
     const auto truth = oracle(planes);
     if (!truth || isInCube(*truth, kHalf)) continue;
     ++bounded;
     // The bounded problem has a slight pull to the mass point, 0.003 of its squared distance a
     // plane.
-    const Vec3d c = massPoint(planes);
+    const Vec3 c = massPoint(planes);
     const double pull = 0.003 * static_cast<double>(planes.size());
     const double error = errorAt(planes, x);
     constexpr int kSteps = 16;
     for (int i = 0; i <= kSteps; ++i) {
       for (int j = 0; j <= kSteps; ++j) {
         for (int k = 0; k <= kSteps; ++k) {
-          const Vec3d p = Vec3d(i, j, k) / kSteps - Vec3d(0.5);
-          ASSERT_LT(error, errorAt(planes, p) + pull * (p - c).lengthSqr() + 1e-5) << n << " " << p;
+          const Vec3 p = Vec3(i, j, k) / kSteps - Vec3(0.5);
+          ASSERT_LT(error, errorAt(planes, p) + pull * (p - c).squaredLength() + 1e-5) << n << " " << p;
         }
       }
     }
@@ -232,13 +231,13 @@ TEST(Qef, BoundedSolutionIsTheBestOfTheCube) {
 
 TEST(Qef, BoundedSolutionIsNotTheClampedOne) {
   // A slanted crease that leaves the cube: clamping its nearest point would leave both planes.
-  const std::vector<Plane> planes = {{{0.4, 0.4, 0}, Vec3d(1, 0, 1).unit()},
-                                     {{0.4, -0.4, 0.3}, Vec3d(1, 0, -1).unit()},
-                                     {{-0.4, 0.4, -0.3}, Vec3d(0, 1, 0)}};
-  const Vec3d x = toVec3d(solve(sumOf(planes), 0.5F));
+  const std::vector<Plane> planes = {{{0.4, 0.4, 0}, Vec3(1, 0, 1).unitOrX()},
+                                     {{0.4, -0.4, 0.3}, Vec3(1, 0, -1).unitOrX()},
+                                     {{-0.4, 0.4, -0.3}, Vec3(0, 1, 0)}};
+  const Vec3 x = toVec3d(solve(sumOf(planes), 0.5F));
   const auto free = oracle(planes);
   ASSERT_TRUE(free);
-  Vec3d clamped;
+  Vec3 clamped;
   for (int i = 0; i < 3; ++i) clamped[i] = std::clamp((*free)[i], -0.5, 0.5);
   EXPECT_LE(errorAt(planes, x), errorAt(planes, clamped) + 1e-6);
 }
@@ -265,7 +264,7 @@ TEST(Qef, SumsDoNotDependOnTheOrigin) {
   Planes random(7);
   for (int n = 0; n < 100; ++n) {
     const auto planes = random.about(random.direction(), 3, 6);
-    const Vec3d origin = random.point(4);
+    const Vec3 origin = random.point(4);
     std::vector<Plane> moved = planes;
     for (Plane& plane : moved) plane.point -= origin;
     const Qef seen = sumOf(planes).seenFrom(toVector(origin));
