@@ -26,13 +26,14 @@ constexpr int kSide = 2 * kAround + 1;
 // The blocks around a point, each looked up once: entry by the lowest bits of its coordinates.
 class BlockCache {
  public:
-  explicit BlockCache(const octree::Level& blocks) : blocks_(blocks) {}
+  explicit BlockCache(const octree::ClusterForest& forest) : forest_(forest) {}
 
   [[nodiscard]] std::uint32_t at(const Coord& cell) {
-    const Coord wanted(cell[0] >> 3, cell[1] >> 3, cell[2] >> 3);
+    const Coord wanted = cell >> 3;
     const int slot = (wanted[0] & 1) * 4 + (wanted[1] & 1) * 2 + (wanted[2] & 1);
     Entry& entry = entries_[slot];
-    if (!entry.filled || entry.cell != wanted) entry = {true, wanted, blocks_.find(wanted)};
+    if (!entry.filled || entry.cell != wanted)
+      entry = {true, wanted, forest_.find(octree::ClusterForest::kBlockLevel, wanted)};
     return entry.block;
   }
 
@@ -42,7 +43,7 @@ class BlockCache {
     Coord cell;
     std::uint32_t block = octree::kNone;
   };
-  const octree::Level& blocks_;
+  const octree::ClusterForest& forest_;
   std::array<Entry, 8> entries_;
 };
 
@@ -69,9 +70,9 @@ const Offsets& nearestFirst() {
 
 }  // namespace
 
-BaseSurface::BaseSurface(const uniform::SurfaceView& base, const octree::Level& blockCells,
+BaseSurface::BaseSurface(const uniform::SurfaceView& base, const octree::ClusterForest& forest,
                          base::Job& job)
-    : base_(base), blockCells_(blockCells) {
+    : base_(base), forest_(forest) {
   base::resizeLarge(edges_, base.topology.blocks.size(), job);
   job.forRanges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -119,7 +120,7 @@ void BaseSurface::searchCell(std::uint32_t block, int cell, const Vec3& point, c
 BaseSurface::Near BaseSurface::vertexInCell(const Vec3& point, const Vec3& facing) const {
   const Vec3 at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord cell = base_.affine.origin() + floorCoord(at);
-  const std::uint32_t block = blockCells_.find(Coord(cell[0] >> 3, cell[1] >> 3, cell[2] >> 3));
+  const std::uint32_t block = forest_.find(octree::ClusterForest::kBlockLevel, cell >> 3);
   Near near;
   if (block == octree::kNone) return near;
   const int local = grid::cellIndex(cell[0] & 7, cell[1] & 7, cell[2] & 7);
@@ -131,7 +132,7 @@ BaseSurface::Near BaseSurface::nearestVertex(const Vec3& point, const Vec3& faci
                                              int reach) const {
   const Vec3 at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + floorCoord(at);
-  BlockCache blocks(blockCells_);
+  BlockCache blocks(forest_);
   Near near;
   // Rings of cells outward, one more after the first that holds a vertex: it may hold a nearer one.
   for (int radius = 1; radius <= reach; ++radius) {
@@ -214,7 +215,7 @@ double BaseSurface::distanceAround(const Vec3& point, const Vec3& facing, double
   double best = std::numeric_limits<double>::infinity();
   const Vec3 at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + floorCoord(at);
-  BlockCache blocks(blockCells_);
+  BlockCache blocks(forest_);
   // Polygons lie around up to four of the cells.
   std::bitset<std::size_t{3} * (kSide + 1) * (kSide + 1) * (kSide + 1)> known;
   for (const std::array<int, 3>& offset : nearestFirst()) {

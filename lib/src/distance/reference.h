@@ -5,6 +5,7 @@
 
 #include "base/vec3.h"
 #include "octree/cluster_forest.h"
+#include "uniform/surface_view.h"
 
 namespace tufa::distance {
 
@@ -12,7 +13,8 @@ namespace tufa::distance {
 /// sorted or searched: cells and crossed edges are bits, and their ranks are the indices.
 class BaseSurface {
  public:
-  BaseSurface(const uniform::SurfaceView& base, const octree::Level& blockCells, base::Job& job);
+  BaseSurface(const uniform::SurfaceView& base, const octree::ClusterForest& forest,
+              base::Job& job);
 
   /// An upper bound of the distance from `point` to the base mesh, exact if the nearest vertex has
   /// the nearest polygon: to the polygons around a base vertex in the point's own cell that does
@@ -47,7 +49,7 @@ class BaseSurface {
   [[nodiscard]] Near nearestVertex(const Vec3& point, const Vec3& facing, int reach) const;
 
   const uniform::SurfaceView base_;
-  const octree::Level& blockCells_;
+  const octree::ClusterForest& forest_;
   std::vector<Edges> edges_;
 };
 

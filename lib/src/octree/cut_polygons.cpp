@@ -9,30 +9,7 @@ namespace {
 
 constexpr std::size_t kChunk = 4096;
 
-// The lower corner of the cell of a cluster, and the cluster.
-struct Located {
-  Coord corner;
-  const Cluster* cluster;
-};
-
-Located locate(const Forest& forest, const ClusterRef& ref) {
-  const int level = ref.level;
-  if (level >= 3) {
-    const Level& cells = forest.levels[level - 3];
-    const Coord& cell = cells.cells[ref.parentCell];
-    return {Coord(cell[0] << level, cell[1] << level, cell[2] << level),
-            &cells.clusters[ref.cluster]};
-  }
-  const Coord& cell = forest.levels[0].cells[ref.parentCell];
-  const int bits = 3 - level, mask = (1 << bits) - 1;
-  return {
-      Coord((cell[0] << 3) + (((ref.cell >> (2 * bits)) & mask) << level),
-            (cell[1] << 3) + (((ref.cell >> bits) & mask) << level),
-            (cell[2] << 3) + ((ref.cell & mask) << level)),
-      &(level == 1 ? forest.level1(ref.parentCell) : forest.level2(ref.parentCell))[ref.cluster]};
-}
-
-void placeVertices(const Forest& forest, const Cut& cut, const Mesh& base,
+void placeVertices(const ClusterForest& forest, const Cut& cut, const Mesh& base,
                    const grid::Affine& affine, Mesh& mesh, base::Job& job) {
   mesh.positions.resize(cut.clusters.size());
   mesh.normals.resize(cut.clusters.size());
@@ -44,13 +21,14 @@ void placeVertices(const Forest& forest, const Cut& cut, const Mesh& base,
         mesh.normals[i] = base.normals[ref.cluster];
         continue;
       }
-      const Located at = locate(forest, ref);
+      const ClusterLevel& level = forest.at(ref.level);
+      const Cluster& cluster = level.clusters[ref.cluster];
       const double half = 0.5 * (1 << ref.level);
-      const auto& p = at.cluster->point;
+      const auto& p = cluster.point;
       mesh.positions[i] =
-          affine.position(at.corner, half + static_cast<double>(p[0]),
+          affine.position(level.corner(cluster.cell), half + static_cast<double>(p[0]),
                           half + static_cast<double>(p[1]), half + static_cast<double>(p[2]));
-      mesh.normals[i] = {at.cluster->normal[0], at.cluster->normal[1], at.cluster->normal[2]};
+      mesh.normals[i] = {cluster.normal[0], cluster.normal[1], cluster.normal[2]};
     }
   });
 }
@@ -101,12 +79,12 @@ struct Counts {
 
 }  // namespace
 
-CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base, const grid::Affine& affine,
-                base::Job& job) {
+CutMesh meshCut(const ClusterForest& forest, const Cut& cut, const Mesh& base,
+                const grid::Affine& affine, base::Job& job) {
   return meshCut(forest, cut, base, base.quads, affine, job);
 }
 
-CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base,
+CutMesh meshCut(const ClusterForest& forest, const Cut& cut, const Mesh& base,
                 const std::vector<Quad>& quads, const grid::Affine& affine, base::Job& job) {
   CutMesh result;
   Mesh& mesh = result.mesh;

@@ -18,10 +18,10 @@ struct CutMesh {
 
 /// The mesh of a cut: of every base quad the distinct vertices of the cut in their order; four make
 /// a quad, three a triangle, fewer nothing. Quads start where their better diagonal does.
-[[nodiscard]] CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base,
+[[nodiscard]] CutMesh meshCut(const ClusterForest& forest, const Cut& cut, const Mesh& base,
                               const grid::Affine& affine, base::Job& job);
 /// The same of other quads than those of the base mesh, between its vertices.
-[[nodiscard]] CutMesh meshCut(const Forest& forest, const Cut& cut, const Mesh& base,
+[[nodiscard]] CutMesh meshCut(const ClusterForest& forest, const Cut& cut, const Mesh& base,
                               const std::vector<Quad>& quads, const grid::Affine& affine,
                               base::Job& job);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/vec3.h"
+#include "grid/affine.h"
 #include "octree/cluster_forest.h"
 #include "octree/patch.h"
 

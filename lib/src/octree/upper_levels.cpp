@@ -19,21 +19,21 @@ struct Outcome {
 
 using ChildCells = std::array<std::uint32_t, kCorners>;
 
-Outcome tryCell(const LevelPatches& below, const ChildCells& cells, const grid::Affine& affine,
-                PatchJoiner& joiner) {
+Outcome tryCell(const ClusterLevel& below, const std::vector<Patch>& patches,
+                const ChildCells& cells, const grid::Affine& affine, PatchJoiner& joiner) {
   Outcome outcome;
   PatchJoiner::Children children;
   for (int child = 0; child < kCorners; ++child) {
     if (cells[child] == kNone) continue;
-    if (below.level.safe[cells[child]] == 0) return outcome;
-    const std::uint32_t first = below.level.first[cells[child]];
-    children[child] = {below.patches.data() + first, below.level.first[cells[child] + 1] - first};
+    if (below.safe[cells[child]] == 0) return outcome;
+    const std::uint32_t first = below.first[cells[child]];
+    children[child] = {patches.data() + first, below.first[cells[child] + 1] - first};
   }
   if (!joiner.join(children)) return outcome;
   outcome.safe = true;
   outcome.patches = joiner.patches();
   outcome.parents = joiner.parents();
-  const int childSize = 1 << below.level.level;
+  const int childSize = 1 << below.level;
   std::size_t next = 0;
   for (int child = 0; child < kCorners; ++child) {
     const Vec3 corner(((child >> 2) & 1) * childSize, ((child >> 1) & 1) * childSize,
@@ -51,18 +51,17 @@ Outcome tryCell(const LevelPatches& below, const ChildCells& cells, const grid::
 }
 
 // The cells above those of a level, in the order of their first child, and their children.
-std::vector<ChildCells> findCells(Level& below, Level& above, base::Job& job) {
+std::vector<ChildCells> findCells(ClusterLevel& below, ClusterLevel& above, base::Job& job) {
   std::vector<ChildCells> children;
   below.parentCells.resize(below.cells.size());
-  above.indices.reserve(below.cells.size());
+  above.table.reserve(below.cells.size());
   for (std::uint32_t i = 0; i < below.cells.size(); ++i) {
     job.lookAtTimes(i);
     const Coord& cell = below.cells[i];
-    const Coord parent(cell[0] >> 1, cell[1] >> 1, cell[2] >> 1);
     const auto fresh = static_cast<std::uint32_t>(above.cells.size());
-    const std::uint32_t own = above.indices.tryEmplace(parent, fresh);
+    const std::uint32_t own = above.table.tryEmplace(cell >> 1, fresh);
     if (own == fresh) {
-      above.cells.push_back(parent);
+      above.cells.push_back(cell >> 1);
       children.emplace_back().fill(kNone);
     }
     below.parentCells[i] = own;
@@ -73,38 +72,42 @@ std::vector<ChildCells> findCells(Level& below, Level& above, base::Job& job) {
 
 }  // namespace
 
-LevelPatches buildLevelAbove(LevelPatches& below, const grid::Affine& affine, base::Job& job) {
-  LevelPatches above;
-  Level& level = above.level;
-  level.level = below.level.level + 1;
-  const std::vector<ChildCells> children = findCells(below.level, level, job);
-  std::vector<Outcome> outcomes(level.cells.size());
+ClusterLevel buildLevelAbove(ClusterLevel& below, std::vector<Patch>& patches,
+                             const grid::Affine& affine, base::Job& job) {
+  ClusterLevel above;
+  above.level = below.level + 1;
+  const std::vector<ChildCells> children = findCells(below, above, job);
+  std::vector<Outcome> outcomes(above.cells.size());
   job.forRanges(outcomes.size(), 16, [&](std::size_t begin, std::size_t end) {
     PatchJoiner joiner;
     for (std::size_t i = begin; i < end; ++i) {
-      outcomes[i] = tryCell(below, children[i], affine, joiner);
+      outcomes[i] = tryCell(below, patches, children[i], affine, joiner);
     }
   });
-  level.safe.resize(outcomes.size());
-  level.first.reserve(outcomes.size() + 1);
-  level.first.push_back(0);
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+  patches.clear();
+  above.safe.resize(outcomes.size());
+  above.first.reserve(outcomes.size() + 1);
+  for (std::uint32_t i = 0; i < outcomes.size(); ++i) {
     job.lookAtTimes(i);
     Outcome& outcome = outcomes[i];
-    level.safe[i] = outcome.safe ? 1 : 0;
-    const auto first = static_cast<std::uint32_t>(level.clusters.size());
+    above.safe[i] = outcome.safe ? 1 : 0;
+    const auto first = static_cast<std::uint32_t>(above.clusters.size());
+    above.first.push_back(first);
     std::size_t next = 0;
     for (const std::uint32_t child : children[i]) {
       if (!outcome.safe || child == kNone) continue;
-      for (std::uint32_t c = below.level.first[child]; c < below.level.first[child + 1]; ++c) {
-        below.level.clusters[c].parent = first + outcome.parents[next++];
+      for (std::uint32_t c = below.first[child]; c < below.first[child + 1]; ++c) {
+        below.clusters[c].parent = first + outcome.parents[next++];
       }
     }
-    level.clusters.insert(level.clusters.end(), outcome.clusters.begin(), outcome.clusters.end());
-    above.patches.insert(above.patches.end(), outcome.patches.begin(), outcome.patches.end());
-    level.first.push_back(static_cast<std::uint32_t>(level.clusters.size()));
+    for (Cluster& cluster : outcome.clusters) {
+      cluster.cell = i;
+      above.clusters.push_back(cluster);
+    }
+    patches.insert(patches.end(), outcome.patches.begin(), outcome.patches.end());
     outcome = {};
   }
+  above.first.push_back(static_cast<std::uint32_t>(above.clusters.size()));
   return above;
 }
 

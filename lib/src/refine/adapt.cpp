@@ -53,28 +53,27 @@ std::int64_t eulerCharacteristic(const Mesh& mesh) {
 }
 
 // The coarsest cut found that keeps the rule.
-Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::Forest& forest,
+Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::ClusterForest& forest,
                        const octree::CutRule& rule, const Repair* repair,
                        distance::Certifier& certifier, AdaptiveMesh& adaptive, base::Job& job) {
   octree::CellFlags forbidden(forest);
   for (adaptive.rounds = 1;; ++adaptive.rounds) {
-    const octree::CellFlags merged =
-        octree::mergeCells(forest, base.topology, rule, forbidden, job);
+    const octree::CellFlags merged = octree::mergeCells(forest, rule, forbidden, job);
     Measured mesh;
     mesh.cut = octree::makeCut(forest, base.topology, merged, job);
     mesh.made = octree::meshCut(forest, mesh.cut, base.mesh, base.affine, job);
     // Mending comes once the tolerance holds: there is less to mend then.
     mesh.deviation = certifier.measure(mesh.cut, mesh.made);
-    if (splitCells(tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
+    if (splitCells(forest, tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
                    forbidden))
       continue;
     mendAndMeasure(certifier, repair, mesh, job);
-    bool split = splitCells(tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
-                            forbidden);
-    split |= splitCells(mesh.meeting, mesh.cut, rule.minLevel, forbidden);
+    bool split = splitCells(forest, tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut,
+                            rule.minLevel, forbidden);
+    split |= splitCells(forest, mesh.meeting, mesh.cut, rule.minLevel, forbidden);
     if (split) continue;
     if (repair != nullptr && base.topology.cutEdges == 0 &&
-        splitCells(topology::findMisplaced(mesh.made.mesh, job), mesh.cut, rule.minLevel,
+        splitCells(forest, topology::findMisplaced(mesh.made.mesh, job), mesh.cut, rule.minLevel,
                    forbidden)) {
       continue;
     }
@@ -85,7 +84,7 @@ Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::Forest& f
 
 // The tolerance of a cut of between two and four times so many triangles, found on the errors that
 // the forest has stored; 0 if all cells together have no more.
-double toleranceFor(std::size_t triangles, const octree::Forest& forest,
+double toleranceFor(std::size_t triangles, const octree::ClusterForest& forest,
                     const uniform::Topology& topology, octree::CutRule rule, base::Job& job) {
   const octree::CellFlags none(forest);
   const auto wanted = static_cast<double>(triangles);
@@ -94,7 +93,7 @@ double toleranceFor(std::size_t triangles, const octree::Forest& forest,
   double low = 0, high = 0;
   rule.tolerance = kFirstTolerance;
   for (int step = 0; step < kMostSteps; ++step) {
-    const octree::CellFlags merged = octree::mergeCells(forest, topology, rule, none, job);
+    const octree::CellFlags merged = octree::mergeCells(forest, rule, none, job);
     const auto found =
         2.0 * static_cast<double>(octree::makeCut(forest, topology, merged, job).clusters.size());
     if (found >= kLeastCut * wanted && found <= kMostCut * wanted) break;
@@ -177,7 +176,7 @@ AdaptiveMesh finish(const SurfaceModel& model, const octree::CutRule& rule, Meas
 AdaptiveMesh adapt(const SurfaceModel& model, const octree::CutRule& rule,
                    const AdaptOptions& options, base::Job& job, Measured* kept) {
   const uniform::SurfaceView base = model.view();
-  const octree::Forest& forest = model.forest();
+  const octree::ClusterForest& forest = model.forest();
   AdaptiveMesh adaptive;
   octree::CutRule cutRule = rule, last = rule;
   if (options.simplify) cutRule.tolerance *= kCutShare;

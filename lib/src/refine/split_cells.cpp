@@ -2,17 +2,14 @@
 
 namespace tufa::refine {
 
-bool splitCells(const std::vector<VertexIndex>& vertices, const octree::Cut& cut, int minLevel,
-                octree::CellFlags& forbidden) {
+bool splitCells(const octree::ClusterForest& forest, const std::vector<VertexIndex>& vertices,
+                const octree::Cut& cut, int minLevel, octree::CellFlags& forbidden) {
   bool any = false;
   for (const VertexIndex vertex : vertices) {
     const octree::ClusterRef& ref = cut.clusters[vertex];
     if (ref.level <= minLevel) continue;
     any = true;
-    if (ref.level == 1) forbidden.level1[ref.parentCell] |= std::uint64_t{1} << ref.cell;
-    if (ref.level == 2)
-      forbidden.level2[ref.parentCell] |= static_cast<std::uint8_t>(1 << ref.cell);
-    if (ref.level >= 3) forbidden.levels[ref.level - 3][ref.parentCell] = 1;
+    forbidden.at(ref.level)[forest.at(ref.level).clusters[ref.cluster].cell] = 1;
   }
   return any;
 }

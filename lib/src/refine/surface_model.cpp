@@ -1,4 +1,5 @@
 #include "refine/surface_model.h"
+#include "octree/build_forest.h"
 
 #include <utility>
 
@@ -21,7 +22,7 @@ SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
 
 void SurfaceModel::buildClusters(const octree::CutRule& rule, base::Job& job) {
   forest_ = octree::buildForest(view(), rule.maxLevel, rule.boundsAngle(), job);
-  reference_.emplace(view(), forest_.levels[0], job);
+  reference_.emplace(view(), forest_, job);
 }
 
 std::optional<Repair> SurfaceModel::repair(base::Job& job) const {

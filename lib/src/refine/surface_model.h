@@ -42,7 +42,7 @@ class SurfaceModel {
   [[nodiscard]] std::optional<Repair> repair(base::Job& job) const;
   /// What was read and found, but for the stages' times.
   [[nodiscard]] const ContourReport& report() const { return report_; }
-  [[nodiscard]] const octree::Forest& forest() const { return forest_; }
+  [[nodiscard]] const octree::ClusterForest& forest() const { return forest_; }
   [[nodiscard]] const distance::BaseSurface& reference() const { return *reference_; }
   /// The uniform mesh, for a caller that needs nothing else.
   [[nodiscard]] Mesh takeMesh() { return std::move(surface_.mesh); }
@@ -53,7 +53,7 @@ class SurfaceModel {
   Mesh before_;
   std::vector<std::uint32_t> suspects_;
   ContourReport report_;
-  octree::Forest forest_;
+  octree::ClusterForest forest_;
   std::optional<distance::BaseSurface> reference_;
 };
 

@@ -14,7 +14,7 @@
 #include "chunks/seams/seams.h"
 #include "distance/certifier.h"
 #include "intersect/surface.h"
-#include "octree/cluster_forest.h"
+#include "octree/build_forest.h"
 #include "octree/leaves.h"
 #include "refine/split_cells.h"
 
@@ -74,19 +74,12 @@ void keepInChunks(std::vector<Position>& positions, const std::vector<Coord>& ce
 }
 
 // Forbids every cell in chunks that are not to be made.
-octree::CellFlags forbidOthers(const octree::Forest& forest, const ChunkCells& chunks) {
+octree::CellFlags forbidOthers(const octree::ClusterForest& forest, const ChunkCells& chunks) {
   octree::CellFlags forbidden(forest);
-  for (std::size_t l = 0; l < forest.levels.size(); ++l) {
-    const octree::Level& level = forest.levels[l];
+  for (const octree::ClusterLevel& level : forest.levels) {
     for (std::size_t i = 0; i < level.cells.size(); ++i) {
-      const Coord& cell = level.cells[i];
-      const int shift = chunks.level - level.level;
-      const Coord chunk(cell[0] >> shift, cell[1] >> shift, cell[2] >> shift);
-      if (chunks.own.contains(chunk)) continue;
-      forbidden.levels[l][i] = 1;
-      if (l > 0) continue;
-      forbidden.level1[i] = ~std::uint64_t{0};
-      forbidden.level2[i] = 0xff;
+      const Coord chunk = level.cells[i] >> (chunks.level - level.level);
+      if (!chunks.own.contains(chunk)) forbidden.at(level.level)[i] = 1;
     }
   }
   return forbidden;
@@ -109,7 +102,7 @@ class RegionMaker {
         seamPositions_(
             worldPositions(seams_, model.surface().volume.transform, options.singlePrecision)),
         seamBase_(model.view().withMesh(seams_.mesh)),
-        surface_(seamBase_, forest_.levels[0], job),
+        surface_(seamBase_, forest_, job),
         mender_({cells_, model.suspects(), seams_, seamPositions_, chunks, base_.affine,
                  options.singlePrecision},
                 job),
@@ -154,8 +147,7 @@ class RegionMaker {
     SideFlags direct, directNext;
     LevelMender::Clean clean;
     for (int round = 0;; ++round) {
-      const octree::CellFlags merged =
-          octree::mergeCells(forest_, base_.topology, cutRule, forbidden, job_);
+      const octree::CellFlags merged = octree::mergeCells(forest_, cutRule, forbidden, job_);
       const octree::Cut cut = octree::makeCut(forest_, base_.topology, merged, job_);
       LevelMeshes meshes;
       meshes.regular = mesh(cut, lines_[level], direct);
@@ -230,8 +222,8 @@ class RegionMaker {
 
   bool splitFar(const SeamedCut& mesh, Certifier& certifier, octree::CellFlags& forbidden) {
     const distance::Deviation deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
-    return refine::splitCells(refine::tooCoarse(seams_.mesh, mesh.cut, deviation), mesh.cut,
-                              options_.rule.minLevel, forbidden);
+    return refine::splitCells(forest_, refine::tooCoarse(seams_.mesh, mesh.cut, deviation),
+                              mesh.cut, options_.rule.minLevel, forbidden);
   }
 
   // Where cells do not help strips that meet others, they are made as their arcs run: like the base
@@ -271,7 +263,7 @@ class RegionMaker {
 
   bool splitAround(const SeamedCut& mesh, const std::vector<intersect::PolygonIndex>& polygons,
                    octree::CellFlags& forbidden) {
-    return refine::splitCells(intersect::verticesOf(mesh.made.mesh, polygons), mesh.cut,
+    return refine::splitCells(forest_, intersect::verticesOf(mesh.made.mesh, polygons), mesh.cut,
                               options_.rule.minLevel, forbidden);
   }
 
@@ -287,7 +279,7 @@ class RegionMaker {
   std::vector<Coord> cells_;  ///< of the base vertices
   Mesh mesh_;                 ///< the base mesh, no vertex of it outside of its chunk
   uniform::SurfaceView base_;
-  octree::Forest forest_;
+  octree::ClusterForest forest_;
   Mesh before_;  ///< the base mesh before its repair, no vertex of it outside of its chunk
   Seams seams_;
   std::vector<Position> seamPositions_;  ///< in the world

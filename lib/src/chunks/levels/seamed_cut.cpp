@@ -60,7 +60,7 @@ std::vector<VertexIndex> addLines(const Seams& seams, const SeamLines& lines, oc
   for (SeamIndex i = 0; i < lines.size(); ++i) {
     if (lines[i] != i) continue;
     vertexOf[i] = static_cast<VertexIndex>(cut.clusters.size());
-    cut.clusters.push_back({0, 0, 0, static_cast<std::uint32_t>(baseCount + i)});
+    cut.clusters.push_back({0, static_cast<std::uint32_t>(baseCount + i)});
     result.seamOf.push_back(i);
   }
   for (const SeamIndex line : lines) cut.vertexOf.push_back(vertexOf[line]);
@@ -193,7 +193,7 @@ void keepInChunks(const std::vector<Coord>& vertexCells, const ChunkCells& chunk
   }
 }
 
-SeamedCut meshWithSeams(const octree::Forest& forest, octree::Cut cut, const Seams& seams,
+SeamedCut meshWithSeams(const octree::ClusterForest& forest, octree::Cut cut, const Seams& seams,
                         const SeamLines& lines, const std::vector<Coord>& vertexCells,
                         const ChunkCells& chunks, const grid::Affine& affine, SideFlags direct,
                         base::Job& job) {

@@ -49,7 +49,7 @@ struct SeamedCut {
 /// Takes the mesh of `cut`, which is one of the base mesh, with its seams as `lines` have them and
 /// strips along these in the chunks to be made, those of `direct` as their arcs run. `vertexCells`
 /// has the cell of each base vertex.
-[[nodiscard]] SeamedCut meshWithSeams(const octree::Forest& forest, octree::Cut cut,
+[[nodiscard]] SeamedCut meshWithSeams(const octree::ClusterForest& forest, octree::Cut cut,
                                       const Seams& seams, const SeamLines& lines,
                                       const std::vector<Coord>& vertexCells,
                                       const ChunkCells& chunks, const grid::Affine& affine,
