@@ -165,7 +165,7 @@ Json runToJson(const LodRun& run, const LodArguments& arguments) {
   json["inside"] = run.contour.insideIsBelow ? "below" : "above";
   json["active_voxels"] = run.contour.activeVoxels;
   json["non_finite_values"] = run.contour.nonFiniteValues;
-  json["cut_edges"] = run.contour.cutEdges;
+  json["open_edges"] = run.contour.openEdges;
   json["voxel_size"] = run.chain.voxelSize;
   json["levels"] = Json::array();
   for (std::size_t level = 0; level < run.chain.levels.size(); ++level) {

@@ -98,12 +98,12 @@ Json runToJson(const MeshRun& run, const MeshArguments& arguments) {
   json["non_finite_values"] = run.contour.nonFiniteValues;
   json["surface_cells"] = run.contour.surfaceCells;
   json["crease_cells"] = run.contour.creaseCells;
-  json["cut_edges"] = run.contour.cutEdges;
+  json["open_edges"] = run.contour.openEdges;
   json["face_flips"] = run.contour.faceFlips;
   json["repair"] = {{"pairs_found", run.contour.intersectionsFound},
                     {"pairs_left", run.contour.intersectionsLeft},
                     {"moved_vertices", run.contour.movedVertices},
-                    {"turned_quads", run.contour.turnedQuads},
+                    {"flipped_diagonals", run.contour.flippedDiagonals},
                     {"fanned_quads", run.contour.fannedQuads}};
   json["vertices"] = run.mesh.positions.size();
   json["triangles"] = run.mesh.triangleCount();

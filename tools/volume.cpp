@@ -31,7 +31,7 @@ std::string brokenPromises(const CheckReport& report) {
 
 /// Whether a mesh breaks no promise but to be closed, and that because the data ends.
 bool openOnlyWhereDataEnds(const CheckReport& check, const ContourReport& report) {
-  return report.cutEdges > 0 && check.boundaryEdges > 0 && check.manifold && check.oriented &&
+  return report.openEdges > 0 && check.boundaryEdges > 0 && check.manifold && check.oriented &&
          check.invalidFaces + check.duplicateFaces == 0;
 }
 
@@ -119,8 +119,8 @@ void noteData(const ContourReport& report) {
     printNote("note: " + formatCount(report.nonFiniteValues) +
               " NaN or infinite values were taken as outside");
   }
-  if (report.cutEdges > 0) {
-    printNote("note: the surface runs out of the data at " + formatCount(report.cutEdges) +
+  if (report.openEdges > 0) {
+    printNote("note: the surface runs out of the data at " + formatCount(report.openEdges) +
               " lattice edges and is open there; --cap closes it");
   }
 }

@@ -23,7 +23,7 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
   report = model.report();
   refine::ExtractedMesh extracted;
   if (options.uniform || model.mesh().positions.empty()) {
-    extracted.suspects = model.suspects();
+    extracted.candidates = model.candidates();
     extracted.mesh = model.takeMesh();
   } else {
     job.beginStage("forest", 0.7);
@@ -34,9 +34,9 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
         model, rule, {repair ? &*repair : nullptr, octree::maySimplify(options)}, job);
     report.certificate =
         refine::certificateOf(adaptive, model.affine().voxelSize(), options.keepLeaves);
-    report.intersectionsFound += adaptive.mended.pairsFound;
-    report.movedVertices += adaptive.mended.movedVertices;
-    report.turnedQuads += adaptive.mended.turnedQuads;
+    report.intersectionsFound += adaptive.repaired.pairsFound;
+    report.movedVertices += adaptive.repaired.movedVertices;
+    report.flippedDiagonals += adaptive.repaired.flippedDiagonals;
     extracted = std::move(adaptive.extracted);
   }
   job.beginStage("finish", 1.0);

@@ -40,10 +40,10 @@ struct ChunkSeam {
   /// For each arc the vertex inside the chunk that stands for it. From arc to arc the chunk's
   /// surface lies to the left of the face, seen from outside.
   std::vector<VertexIndex> tiles;
-  std::vector<VertexIndex> line;  ///< for each arc the vertex on the face that stands for it
-  VertexIndex begin = kNone;      ///< vertex on a chunk edge before the first arc, if any
-  VertexIndex end = kNone;        ///< vertex on a chunk edge behind the last arc, if any
-  bool closed = false;            ///< the last arc is followed by the first
+  std::vector<VertexIndex> polyline;  ///< for each arc the vertex on the face that stands for it
+  VertexIndex begin = kNone;          ///< vertex on a chunk edge before the first arc, if any
+  VertexIndex end = kNone;            ///< vertex on a chunk edge behind the last arc, if any
+  bool closed = false;                ///< the last arc is followed by the first
 };
 
 /// A chunk at one level: an interior, and for each face two strips of which one is drawn. All

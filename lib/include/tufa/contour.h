@@ -114,12 +114,12 @@ struct ContourReport {
   std::size_t surfaceCells = 0;     ///< cells of eight samples that the surface passes
   std::size_t creaseCells = 0;  ///< of these, cells whose vertex was placed on a crease or corner
   std::size_t faceFlips = 0;    ///< ambiguous faces joined against the rule to stay manifold
-  std::size_t cutEdges = 0;     ///< sign changes at the edge of the data, left open
+  std::size_t openEdges = 0;    ///< sign changes at the edge of the data, left open
   std::optional<Certificate> certificate;  ///< of an adaptive mesh
   std::size_t intersectionsFound = 0;      ///< pairs of polygons that met where they should not
   std::size_t intersectionsLeft = 0;       ///< of these or their like, pairs that still do
   std::size_t movedVertices = 0;           ///< by the repair
-  std::size_t turnedQuads = 0;             ///< split along their other diagonal by the repair
+  std::size_t flippedDiagonals = 0;        ///< split along their other diagonal by the repair
   std::size_t fannedQuads = 0;             ///< replaced by four triangles around a new vertex
   std::vector<StageTime> stages;           ///< in the order they ran
 };

@@ -28,7 +28,7 @@ void resizeLarge(std::vector<T>& vector, std::size_t count, Job& job) {
   reserveLarge(vector, count);
   while (vector.size() < count) {
     vector.resize(std::min(count, vector.size() + kAtOnce));
-    job.look(0, 1);
+    job.checkCancelled(0, 1);
   }
 }
 

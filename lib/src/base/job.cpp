@@ -67,7 +67,7 @@ void Job::tell(std::string_view stage, double inStage) {
   throwIfStopped();
 }
 
-void Job::look(std::size_t done, std::size_t count) {
+void Job::checkCancelled(std::size_t done, std::size_t count) {
   isCaller() ? report(done, count) : throwIfStopped();
 }
 

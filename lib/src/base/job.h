@@ -44,13 +44,13 @@ class Job {
 
   /// For long work on one thread, now and then: `done` of `count` parts of the stage are done.
   /// Throws Error(Cancelled) when asked to stop.
-  void look(std::size_t done, std::size_t count);
+  void checkCancelled(std::size_t done, std::size_t count);
 
   /// For short loops on one thread: looks once in many indices, without telling how far the loop
   /// is.
-  void lookAtTimes(std::size_t index) {
+  void pollCancelled(std::size_t index) {
     constexpr std::size_t kBetween = std::size_t{1} << 14;
-    if (index % kBetween == 0) look(0, 1);
+    if (index % kBetween == 0) checkCancelled(0, 1);
   }
 
  private:

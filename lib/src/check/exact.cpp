@@ -34,7 +34,7 @@ bool foldedOver(const std::array<Point, 3>& a, const Point& opposite) {
 }
 
 /// Triangles at one vertex meet elsewhere only if the far edge of one meets the other.
-bool meetBeyondVertex(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
+bool intersectBeyondVertex(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
   // Most pairs end here: if the far edge of b is on one side of a's plane, b touches that plane in
   // the shared vertex alone.
   const auto first = CGAL::orientation(a[0], a[1], a[2], b[1]);
@@ -62,7 +62,8 @@ bool areCollinear(const std::vector<Position>& positions, const Triangle& triang
                          toPoint(positions[v[2]]));
 }
 
-bool meetElsewhere(const std::vector<Position>& positions, const Triangle& a, const Triangle& b) {
+bool intersectElsewhere(const std::vector<Position>& positions, const Triangle& a,
+                        const Triangle& b) {
   auto va = a.vertices;
   auto vb = b.vertices;
   const int shared = alignShared(va, vb);
@@ -72,7 +73,7 @@ bool meetElsewhere(const std::vector<Position>& positions, const Triangle& a, co
   const std::array<Point, 3> pb{toPoint(positions[vb[0]]), toPoint(positions[vb[1]]),
                                 toPoint(positions[vb[2]])};
   if (shared == 2) return foldedOver(pa, pb[2]);
-  if (shared == 1) return meetBeyondVertex(pa, pb);
+  if (shared == 1) return intersectBeyondVertex(pa, pb);
   return CGAL::do_intersect(Kernel::Triangle_3(pa[0], pa[1], pa[2]),
                             Kernel::Triangle_3(pb[0], pb[1], pb[2]));
 }

@@ -13,8 +13,8 @@ namespace tufa::checks {
 
 /// True if two triangles meet elsewhere than in the vertices or the edge whose indices they share.
 /// Neither may be collinear.
-[[nodiscard]] bool meetElsewhere(const std::vector<Position>& positions, const Triangle& a,
-                                 const Triangle& b);
+[[nodiscard]] bool intersectElsewhere(const std::vector<Position>& positions, const Triangle& a,
+                                      const Triangle& b);
 
 /// True if the vertical ray that starts at `from` and goes up passes through the triangle.
 ///

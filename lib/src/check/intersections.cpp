@@ -29,7 +29,7 @@ std::size_t countIntersectingPairs(const Faces& faces, const Bvh& tree, base::Jo
     std::size_t pairs = 0;
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       tree.pairsOfLeaf(leaf, [&](std::uint32_t a, std::uint32_t b) {
-        pairs += meetElsewhere(faces.positions, solid[a], solid[b]) ? 1 : 0;
+        pairs += intersectElsewhere(faces.positions, solid[a], solid[b]) ? 1 : 0;
       });
     }
     return pairs;

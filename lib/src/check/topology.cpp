@@ -63,7 +63,7 @@ std::size_t countLoops(std::vector<Edge> edges) {
 }
 
 /// Numbers the pieces by their first vertices.
-Pieces findPieces(const Faces& faces, const VertexFaces& around) {
+Pieces findLoneComponents(const Faces& faces, const VertexFaces& around) {
   Pieces pieces;
   DisjointSets sets(around.vertexCount());
   for (const Triangle& face : faces.proper) {
@@ -144,7 +144,7 @@ Pieces analyseTopology(const Faces& faces, base::Job& job, CheckReport& report) 
   sumStars(stars, report);
   report.boundaryLoops = countLoops(std::move(boundaryEdges));
 
-  Pieces pieces = findPieces(faces, around);
+  Pieces pieces = findLoneComponents(faces, around);
   listPieces(countPieces(faces, stars, pieces), pieces, report);
 
   for (const CheckComponent& component : report.components) report.vertices += component.vertices;

@@ -187,7 +187,7 @@ class ChunkBuilder {
   // What was made of a region.
   struct Region {
     std::vector<chunks::MadeChunk> chunks;
-    std::uint64_t surfaceCells = 0, cutEdges = 0;
+    std::uint64_t surfaceCells = 0, openEdges = 0;
   };
 
   [[nodiscard]] Region makeRegion(const grid::Volume& volume, const ContourOptions& contour,
@@ -211,7 +211,7 @@ class ChunkBuilder {
 
   void handOut(Region&& region, const ChunkIndex& index) {
     report_.surfaceCells += region.surfaceCells;
-    report_.cutEdges += region.cutEdges;
+    report_.openEdges += region.openEdges;
     for (chunks::MadeChunk& made : region.chunks) {
       ChunkEntry entry = entryOf(made);
       for (const ChunkLevelEntry& level : entry.levels) {
@@ -232,7 +232,7 @@ class ChunkBuilder {
       if (block.special < 0) continue;
       for (const grid::BlockBits& cut : base.topology.specials[block.special].cut) {
         for (const std::uint64_t slab : cut.slabs) {
-          made.cutEdges += static_cast<std::size_t>(base::countBits(slab));
+          made.openEdges += static_cast<std::size_t>(base::countBits(slab));
         }
       }
     }

@@ -33,7 +33,7 @@ double toleranceAt(const octree::CutRule& rule, const grid::Affine& affine, cons
                           Vec3(origin));
 }
 
-Certifier::Certifier(const uniform::SurfaceView& base, const BaseSurface& surface,
+Certifier::Certifier(const uniform::SurfaceView& base, const UniformReference& surface,
                      const octree::CutRule& rule, base::Job& job)
     : base_(base), surface_(surface), rule_(rule), job_(job) {
   base::resizeLarge(vertexErrors_, base.mesh.positions.size(), job);
@@ -47,8 +47,8 @@ Deviation Certifier::measure(const Cut& cut, const octree::CutMesh& made,
   made_ = &made;
   altered_.assign(cut.clusters.size(), 0);
   for (const VertexIndex vertex : altered) altered_[vertex] = 1;
-  collectPieces();
-  pieceErrors_.assign(pieces_.size(), 0);
+  collectNewTriangles();
+  newTriangleErrors_.assign(newTriangles_.size(), 0);
   cornerErrors_.assign(cut.clusters.size(), 0);
   findChanges();
   Deviation total;
@@ -65,7 +65,8 @@ Deviation Certifier::measure(const Cut& cut, const octree::CutMesh& made,
       [&](std::size_t i, Part& part) { measureCorner(static_cast<VertexIndex>(i), part); }, samples,
       unused);
   forChunks(
-      pieces_.size(), [&](std::size_t i, Part& part) { measurePiece(i, part); }, samples, unused);
+      newTriangles_.size(), [&](std::size_t i, Part& part) { measureNewTriangle(i, part); },
+      samples, unused);
   largestKept_ = std::max({largestKept_, total.largest, samples.largest});
   total.largest = largestKept_;
   total.worst = std::max(total.worst, samples.worst);
@@ -75,7 +76,7 @@ Deviation Certifier::measure(const Cut& cut, const octree::CutMesh& made,
     std::sort(vertices->begin(), vertices->end());
     vertices->erase(std::unique(vertices->begin(), vertices->end()), vertices->end());
   }
-  job_.look(0, 1);
+  job_.checkCancelled(0, 1);
   positions_ = made.mesh.positions;
   if (vertexOf_.empty()) base::resizeLarge(vertexOf_, cut.vertexOf.size(), job_);
   vertexOf_ = cut.vertexOf;
@@ -94,46 +95,48 @@ std::vector<float> Certifier::errorsAtVertices() const {
       raise(cut_->vertexOf[corner], quadErrors_[i]);
     }
   }
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    for (const VertexIndex corner : pieces_[i].corners) raise(corner, pieceErrors_[i]);
+  for (std::size_t i = 0; i < newTriangles_.size(); ++i) {
+    for (const VertexIndex corner : newTriangles_[i].corners) raise(corner, newTriangleErrors_[i]);
   }
   return errors;
 }
 
-void Certifier::collectPieces() {
+void Certifier::collectNewTriangles() {
   const Mesh& mesh = made_->mesh;
-  pieces_.clear();
+  newTriangles_.clear();
   const auto take = [&](const std::array<VertexIndex, 4>& v, std::uint32_t source) {
-    pieces_.push_back({v, source,
-                       base::FlatTriangle(Vec3(mesh.positions[v[0]]), Vec3(mesh.positions[v[1]]),
-                                          Vec3(mesh.positions[v[2]]))});
+    newTriangles_.push_back(
+        {v, source,
+         base::FlatTriangle(Vec3(mesh.positions[v[0]]), Vec3(mesh.positions[v[1]]),
+                            Vec3(mesh.positions[v[2]]))});
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& v = mesh.triangles[i].vertices;
-    job_.lookAtTimes(i);
+    job_.pollCancelled(i);
     if (isFine(v[0]) && isFine(v[1]) && isFine(v[2])) continue;
     take({v[0], v[1], v[2], v[0]}, made_->triangleSources[i]);
   }
   for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
     const auto& v = mesh.quads[i].vertices;
-    job_.lookAtTimes(i);
+    job_.pollCancelled(i);
     if (std::all_of(v.begin(), v.end(), [&](VertexIndex vertex) { return isFine(vertex); }))
       continue;
     take({v[0], v[1], v[2], v[3]}, made_->quadSources[i]);
     take({v[0], v[2], v[3], v[1]}, made_->quadSources[i]);
   }
-  const auto countOf = [](const Piece& piece) {
-    return piece.corners[3] == piece.corners[0] ? 3 : 4;
+  const auto countOf = [](const NewTriangle& triangle) {
+    return triangle.corners[3] == triangle.corners[0] ? 3 : 4;
   };
   firstAround_.assign(mesh.positions.size() + 1, 0);
-  for (const Piece& piece : pieces_) {
-    for (int i = 0; i < countOf(piece); ++i) ++firstAround_[piece.corners[i] + 1];
+  for (const NewTriangle& triangle : newTriangles_) {
+    for (int i = 0; i < countOf(triangle); ++i) ++firstAround_[triangle.corners[i] + 1];
   }
   for (std::size_t i = 1; i < firstAround_.size(); ++i) firstAround_[i] += firstAround_[i - 1];
   around_.resize(firstAround_.back());
   std::vector<std::uint32_t> next(firstAround_.begin(), firstAround_.end() - 1);
-  for (std::uint32_t t = 0; t < pieces_.size(); ++t) {
-    for (int i = 0; i < countOf(pieces_[t]); ++i) around_[next[pieces_[t].corners[i]]++] = t;
+  for (std::uint32_t t = 0; t < newTriangles_.size(); ++t) {
+    for (int i = 0; i < countOf(newTriangles_[t]); ++i)
+      around_[next[newTriangles_[t].corners[i]]++] = t;
   }
 }
 
@@ -143,7 +146,7 @@ void Certifier::findChanges() {
   touched_ = changed_;
   if (positions_.empty()) return;
   for (std::size_t i = 0; i < vertexOf_.size(); ++i) {
-    job_.lookAtTimes(i);
+    job_.pollCancelled(i);
     const VertexIndex vertex = cut_->vertexOf[i], before = vertexOf_[i];
     if (altered_[vertex] != 0 || alteredKept_[before] != 0 ||
         !(positions[vertex] == positions_[before])) {
@@ -151,8 +154,8 @@ void Certifier::findChanges() {
     }
   }
   touched_ = changed_;
-  for (const Piece& piece : pieces_) {
-    const auto& v = piece.corners;
+  for (const NewTriangle& triangle : newTriangles_) {
+    const auto& v = triangle.corners;
     if (std::none_of(v.begin(), v.end(), [&](VertexIndex i) { return changed_[i] != 0; })) continue;
     for (const VertexIndex vertex : v) touched_[vertex] = 1;
   }
@@ -165,13 +168,13 @@ bool Certifier::findAround(VertexIndex vertex, const Vec3& point, double enough,
   const std::uint32_t begin = firstAround_[vertex], end = firstAround_[vertex + 1];
   for (std::uint32_t i = begin; i < end; ++i) {
     double height = 0;
-    if (!pieces_[around_[i]].shape.isAbove(point, height) || height > enough) continue;
+    if (!newTriangles_[around_[i]].shape.isAbove(point, height) || height > enough) continue;
     squared = height;
     nearest = around_[i];
     return true;
   }
   for (std::uint32_t i = begin; i < end; ++i) {
-    const base::FlatTriangle& shape = pieces_[around_[i]].shape;
+    const base::FlatTriangle& shape = newTriangles_[around_[i]].shape;
     if (shape.squaredHeight(point) >= squared) continue;
     const double distance = shape.squaredDistance(point);
     if (distance >= squared) continue;
@@ -187,7 +190,7 @@ void Certifier::walkNearer(const Vec3& point, double enough, double& squared,
                            std::uint32_t& nearest) const {
   for (std::uint32_t last = kNoPiece; squared > enough && last != nearest;) {
     last = nearest;
-    const auto corners = pieces_[nearest].corners;
+    const auto corners = newTriangles_[nearest].corners;
     for (const VertexIndex corner : corners) {
       if (findAround(corner, point, enough, squared, nearest)) return;
     }
@@ -211,7 +214,7 @@ float Certifier::distanceAround(const VertexIndex* vertices, int count, const Ve
   wandered = squared > bound * bound ? 1 : 0;
   walkNearer(point, bound * bound, squared, nearest);
   const double voxels = std::sqrt(squared) / base_.affine.voxelSize();
-  note(point, voxels, pieces_[nearest].corners.data(), 4, part);
+  note(point, voxels, newTriangles_[nearest].corners.data(), 4, part);
   return static_cast<float>(voxels);
 }
 
@@ -275,16 +278,16 @@ void Certifier::measureCorner(VertexIndex vertex, Part& part) {
   const octree::ClusterRef& ref = cut_->clusters[vertex];
   if (ref.level == 0 && made_->mesh.positions[vertex] == base_.mesh.positions[ref.cluster]) return;
   const Vec3 point = Vec3(made_->mesh.positions[vertex]);
-  const Piece& piece = pieces_[around_[firstAround_[vertex]]];
+  const NewTriangle& triangle = newTriangles_[around_[firstAround_[vertex]]];
   const double voxels =
-      distanceBelow(point, facing(&vertex, 1), piece.source) / base_.affine.voxelSize();
+      distanceBelow(point, facing(&vertex, 1), triangle.source) / base_.affine.voxelSize();
   cornerErrors_[vertex] = static_cast<float>(voxels);
   note(point, voxels, &vertex, 1, part);
 }
 
-void Certifier::measurePiece(std::size_t index, Part& part) {
-  const Piece& piece = pieces_[index];
-  const auto& v = piece.corners;
+void Certifier::measureNewTriangle(std::size_t index, Part& part) {
+  const NewTriangle& triangle = newTriangles_[index];
+  const auto& v = triangle.corners;
   if (std::none_of(v.begin(), v.end(), [&](VertexIndex i) { return changed_[i] != 0; })) return;
   const Mesh& mesh = made_->mesh;
   const Vec3 a = Vec3(mesh.positions[v[0]]), b = Vec3(mesh.positions[v[1]]),
@@ -299,9 +302,9 @@ void Certifier::measurePiece(std::size_t index, Part& part) {
       // The middles of small triangles that fill the large one.
       const double s = (i + 1.0 / 3) / steps, t = (j + 1.0 / 3) / steps;
       const Vec3 point = a + (b - a) * s + (c - a) * t;
-      const double voxels = distanceBelow(point, outward, piece.source) / voxel;
+      const double voxels = distanceBelow(point, outward, triangle.source) / voxel;
       note(point, voxels, v.data(), 4, part);
-      pieceErrors_[index] = std::max(pieceErrors_[index], static_cast<float>(voxels));
+      newTriangleErrors_[index] = std::max(newTriangleErrors_[index], static_cast<float>(voxels));
     }
   }
 }

@@ -39,7 +39,7 @@ struct Deviation {
 class Certifier {
  public:
   /// `surface` is that of the base mesh.
-  Certifier(const uniform::SurfaceView& base, const BaseSurface& surface,
+  Certifier(const uniform::SurfaceView& base, const UniformReference& surface,
             const octree::CutRule& rule, base::Job& job);
   /// From now on. Rules differ in their tolerance only.
   void setRule(const octree::CutRule& rule) { rule_ = rule; }
@@ -64,7 +64,7 @@ class Certifier {
 
  private:
   // A triangle of the mesh that the base mesh does not have.
-  struct Piece {
+  struct NewTriangle {
     // The corners of its polygon: the triangle's first, then a quad's fourth or the first again.
     std::array<VertexIndex, 4> corners;
     std::uint32_t source;  ///< the base quad its polygon comes from
@@ -82,11 +82,11 @@ class Certifier {
   [[nodiscard]] bool isFine(VertexIndex vertex) const {
     return cut_->clusters[vertex].level == 0 && altered_[vertex] == 0;
   }
-  void collectPieces();
+  void collectNewTriangles();
   void findChanges();
   void measureVertex(std::size_t index, Part& part);
   void measureQuad(std::size_t index, Part& part);
-  void measurePiece(std::size_t index, Part& part);
+  void measureNewTriangle(std::size_t index, Part& part);
   void measureCorner(VertexIndex vertex, Part& part);
   [[nodiscard]] bool findAround(VertexIndex vertex, const Vec3& point, double enough,
                                 double& squared, std::uint32_t& nearest) const;
@@ -105,7 +105,7 @@ class Certifier {
   void forChunks(std::size_t count, const Body& body, Deviation& total, double& sum);
 
   const uniform::SurfaceView base_;
-  const BaseSurface& surface_;
+  const UniformReference& surface_;
   octree::CutRule rule_;
   std::vector<std::uint8_t> ignored_;
   base::Job& job_;
@@ -122,8 +122,8 @@ class Certifier {
   std::vector<std::uint8_t> wandered_;
   std::vector<float> quadErrors_;  ///< of the base quads, voxels
   double largestKept_ = 0;         ///< of the samples of polygons, over all cuts
-  std::vector<Piece> pieces_;
-  std::vector<float> pieceErrors_;          ///< of those measured last, voxels
+  std::vector<NewTriangle> newTriangles_;
+  std::vector<float> newTriangleErrors_;    ///< of those measured last, voxels
   std::vector<float> cornerErrors_;         ///< of the vertices measured last, voxels
   std::vector<std::uint32_t> firstAround_;  ///< of each vertex, its pieces in around_
   std::vector<std::uint32_t> around_;

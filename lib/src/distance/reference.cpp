@@ -70,8 +70,8 @@ const Offsets& nearestFirst() {
 
 }  // namespace
 
-BaseSurface::BaseSurface(const uniform::SurfaceView& base, const octree::ClusterForest& forest,
-                         base::Job& job)
+UniformReference::UniformReference(const uniform::SurfaceView& base,
+                                   const octree::ClusterForest& forest, base::Job& job)
     : base_(base), forest_(forest) {
   base::resizeLarge(edges_, base.topology.blocks.size(), job);
   job.forRanges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -94,8 +94,8 @@ BaseSurface::BaseSurface(const uniform::SurfaceView& base, const octree::Cluster
   });
 }
 
-void BaseSurface::searchCell(std::uint32_t block, int cell, const Vec3& point, const Vec3& facing,
-                             Near& near) const {
+void UniformReference::searchCell(std::uint32_t block, int cell, const Vec3& point,
+                                  const Vec3& facing, Near& near) const {
   const SurfaceBlock& surface = base_.topology.blocks[block];
   const std::uint32_t first = base_.topology.firstVertexInBlock(surface, cell);
   std::uint32_t count = 1;
@@ -111,13 +111,13 @@ void BaseSurface::searchCell(std::uint32_t block, int cell, const Vec3& point, c
     const double squared = (Vec3(base_.mesh.positions[vertex]) - point).squaredLength();
     if (squared >= near.squared) continue;
     const Normal& n = base_.mesh.normals[vertex];
-    const bool sharp = base_.sides.isSharp(static_cast<VertexIndex>(vertex));
+    const bool sharp = base_.sheets.isSharp(static_cast<VertexIndex>(vertex));
     if (!sharp && Vec3(n.x, n.y, n.z).dot(facing) < kFacing) continue;
     near = {block, cell, squared};
   }
 }
 
-BaseSurface::Near BaseSurface::vertexInCell(const Vec3& point, const Vec3& facing) const {
+UniformReference::Near UniformReference::vertexInCell(const Vec3& point, const Vec3& facing) const {
   const Vec3 at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord cell = base_.affine.origin() + floorCoord(at);
   const std::uint32_t block = forest_.find(octree::ClusterForest::kBlockLevel, cell >> 3);
@@ -128,8 +128,8 @@ BaseSurface::Near BaseSurface::vertexInCell(const Vec3& point, const Vec3& facin
   return near;
 }
 
-BaseSurface::Near BaseSurface::nearestVertex(const Vec3& point, const Vec3& facing,
-                                             int reach) const {
+UniformReference::Near UniformReference::nearestVertex(const Vec3& point, const Vec3& facing,
+                                                       int reach) const {
   const Vec3 at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + floorCoord(at);
   BlockCache blocks(forest_);
@@ -156,7 +156,7 @@ BaseSurface::Near BaseSurface::nearestVertex(const Vec3& point, const Vec3& faci
   return near;
 }
 
-double BaseSurface::distanceToQuad(const Vec3& point, std::size_t quad) const {
+double UniformReference::distanceToQuad(const Vec3& point, std::size_t quad) const {
   const auto& v = base_.mesh.quads[quad].vertices;
   const Vec3 p[4] = {Vec3(base_.mesh.positions[v[0]]), Vec3(base_.mesh.positions[v[1]]),
                      Vec3(base_.mesh.positions[v[2]]), Vec3(base_.mesh.positions[v[3]])};
@@ -168,8 +168,8 @@ double BaseSurface::distanceToQuad(const Vec3& point, std::size_t quad) const {
 }
 
 template <class IsKnown>
-double BaseSurface::distanceAtCell(std::uint32_t cellBlock, int cellNumber, const Vec3& point,
-                                   const IsKnown& isKnown) const {
+double UniformReference::distanceAtCell(std::uint32_t cellBlock, int cellNumber, const Vec3& point,
+                                        const IsKnown& isKnown) const {
   double best = std::numeric_limits<double>::infinity();
   const std::array<int, 3> cell = {cellNumber >> 6, (cellNumber >> 3) & 7, cellNumber & 7};
   for (int edge = 0; edge < uniform::kEdges; ++edge) {
@@ -192,8 +192,8 @@ double BaseSurface::distanceAtCell(std::uint32_t cellBlock, int cellNumber, cons
   return best;
 }
 
-double BaseSurface::distance(const Vec3& point, const Vec3& facing, int reach,
-                             double enough) const {
+double UniformReference::distance(const Vec3& point, const Vec3& facing, int reach,
+                                  double enough) const {
   const auto distanceAt = [&](const Near& near) {
     return distanceAtCell(near.block, near.cell, point, [](int, int) { return false; });
   };
@@ -211,7 +211,8 @@ double BaseSurface::distance(const Vec3& point, const Vec3& facing, int reach,
 }
 
 // To the polygons around all vertices near the point that do not face away.
-double BaseSurface::distanceAround(const Vec3& point, const Vec3& facing, double enough) const {
+double UniformReference::distanceAround(const Vec3& point, const Vec3& facing,
+                                        double enough) const {
   double best = std::numeric_limits<double>::infinity();
   const Vec3 at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + floorCoord(at);

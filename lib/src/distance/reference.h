@@ -11,10 +11,10 @@ namespace tufa::distance {
 
 /// The uniform mesh, asked by place: which of its vertices and quads are near a point. Nothing is
 /// sorted or searched: cells and crossed edges are bits, and their ranks are the indices.
-class BaseSurface {
+class UniformReference {
  public:
-  BaseSurface(const uniform::SurfaceView& base, const octree::ClusterForest& forest,
-              base::Job& job);
+  UniformReference(const uniform::SurfaceView& base, const octree::ClusterForest& forest,
+                   base::Job& job);
 
   /// An upper bound of the distance from `point` to the base mesh, exact if the nearest vertex has
   /// the nearest polygon: to the polygons around a base vertex in the point's own cell that does

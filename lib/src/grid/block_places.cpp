@@ -34,17 +34,17 @@ void BlockPlaces::buildBox(const base::IndexBox& box,
 }
 
 void BlockPlaces::addTileBlocks(const std::vector<Coord>& origins, BlockRef first) {
-  std::vector<Coord> loose;
+  std::vector<Coord> widerBudget;
   for (std::size_t i = 0; i < origins.size(); ++i) {
     const BlockRef block = first + static_cast<BlockRef>(i);
     if (const BlockRef* node = nodeAt(origins[i])) {
       places_[static_cast<std::size_t>(node - places_.data()) + placeInNode(origins[i])] = block;
     } else {
-      loose.push_back(origins[i]);
+      widerBudget.push_back(origins[i]);
       looseBlocks_.push_back(block);
     }
   }
-  number(loose, looseTable_);
+  number(widerBudget, looseTable_);
 }
 
 }  // namespace tufa::grid

@@ -18,7 +18,7 @@ namespace {
 // Which cells of a block, and of the layer of cells below it on each axis, have several vertices.
 class SharedCells {
  public:
-  void fill(const uniform::Topology& topology, const SurfaceBlock& block) {
+  void fill(const uniform::CellTopology& topology, const SurfaceBlock& block) {
     if (any_) cells_.reset();
     any_ = false;
     for (int corner = 0; corner < uniform::kCorners; ++corner) {
@@ -56,9 +56,9 @@ class SharedCells {
   std::bitset<kSize * kSize * kSize> cells_;
 };
 
-bool hasStray(const uniform::VertexSides& sides, const Quad& quad) {
+bool hasVertexOutOfCell(const uniform::VertexSheets& sheets, const Quad& quad) {
   return std::any_of(quad.vertices.begin(), quad.vertices.end(),
-                     [&](VertexIndex vertex) { return sides.isStray(vertex); });
+                     [&](VertexIndex vertex) { return sheets.isOutOfCell(vertex); });
 }
 
 // Whether `inner` is behind the plane through `p` and `outer` in front, by more than `margin`.
@@ -82,9 +82,9 @@ bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, cons
 
 }  // namespace
 
-std::vector<std::uint32_t> findSuspects(const uniform::SurfaceView& context, const Mesh& mesh,
-                                        double margin, base::Job& job) {
-  std::vector<std::uint32_t> suspects;
+std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context, const Mesh& mesh,
+                                          double margin, base::Job& job) {
+  std::vector<std::uint32_t> candidates;
   std::mutex mutex;
   job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> found;
@@ -99,7 +99,7 @@ std::vector<std::uint32_t> findSuspects(const uniform::SurfaceView& context, con
         const Position start = context.affine.position(origin, x, y, z);
         const Vec3 lower(start.x, start.y, start.z);
         const Vec3 upper = lower + context.affine.axis(place.axis);
-        if (hasStray(context.sides, quad) || shared.touch(place) ||
+        if (hasVertexOutOfCell(context.sheets, quad) || shared.touch(place) ||
             !staysInEnvelope(mesh, quad, place.upward ? lower : upper, place.upward ? upper : lower,
                              margin)) {
           found.push_back(static_cast<std::uint32_t>(place.quad));
@@ -107,10 +107,10 @@ std::vector<std::uint32_t> findSuspects(const uniform::SurfaceView& context, con
       });
     }
     const std::scoped_lock lock(mutex);
-    suspects.insert(suspects.end(), found.begin(), found.end());
+    candidates.insert(candidates.end(), found.begin(), found.end());
   });
-  base::parallelSort(suspects.begin(), suspects.end(), std::less<>());
-  return suspects;
+  base::parallelSort(candidates.begin(), candidates.end(), std::less<>());
+  return candidates;
 }
 
 }  // namespace tufa::intersect

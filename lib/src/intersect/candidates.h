@@ -23,8 +23,8 @@ namespace tufa::intersect {
 ///
 /// Suspects are the quads that fail this, that touch a cell of several vertices, or that have a
 /// vertex outside of its cell.
-[[nodiscard]] std::vector<std::uint32_t> findSuspects(const uniform::SurfaceView& context,
-                                                      const Mesh& mesh, double margin,
-                                                      base::Job& job);
+[[nodiscard]] std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context,
+                                                        const Mesh& mesh, double margin,
+                                                        base::Job& job);
 
 }  // namespace tufa::intersect

@@ -35,14 +35,14 @@ bool areParted(std::span<const Position> positions, Corners a, Corners b) {
 
 }  // namespace
 
-bool meetElsewhere(std::span<const Position> positions, Corners a, Corners b, bool same) {
+bool intersectElsewhere(std::span<const Position> positions, Corners a, Corners b, bool same) {
   std::array<Triangle, 2> ta, tb;
   const int countA = trianglesOf(a, ta), countB = trianglesOf(b, tb);
-  if (same) return countA == 2 && meetElsewhere(positions, ta[0], ta[1]);
+  if (same) return countA == 2 && intersectElsewhere(positions, ta[0], ta[1]);
   if (areParted(positions, a, b)) return false;
   for (int i = 0; i < countA; ++i) {
     for (int j = 0; j < countB; ++j) {
-      if (meetElsewhere(positions, ta[i], tb[j])) return true;
+      if (intersectElsewhere(positions, ta[i], tb[j])) return true;
     }
   }
   return false;
@@ -50,7 +50,7 @@ bool meetElsewhere(std::span<const Position> positions, Corners a, Corners b, bo
 
 namespace {
 
-struct Suspect {
+struct Candidate {
   PolygonIndex polygon;
   Box box;
 };
@@ -61,15 +61,15 @@ constexpr PolygonIndex kGroup = 4;
 using Matters = std::function<bool(PolygonIndex, PolygonIndex)>;
 
 // The pairs of the polygons of one run with the suspects near it.
-void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspect>& near,
+void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Candidate>& near,
                 const Matters& matters, std::vector<PolygonPair>& pairs) {
   const PolygonIndex begin = surface.runBegin(run), end = surface.runEnd(run);
-  std::array<bool, Surface::kRun> isSuspect{};
-  for (const Suspect& suspect : near) {
-    if (suspect.polygon >= begin && suspect.polygon < end)
-      isSuspect[suspect.polygon - begin] = true;
+  std::array<bool, Surface::kRun> isCandidate{};
+  for (const Candidate& candidate : near) {
+    if (candidate.polygon >= begin && candidate.polygon < end)
+      isCandidate[candidate.polygon - begin] = true;
   }
-  std::vector<Suspect> nearer;
+  std::vector<Candidate> nearer;
   for (PolygonIndex group = begin; group < end; group += kGroup) {
     const PolygonIndex groupEnd = std::min(group + kGroup, end);
     std::array<Box, kGroup> boxes;
@@ -79,18 +79,18 @@ void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspe
       all.add(boxes[p - group]);
     }
     nearer.clear();
-    for (const Suspect& suspect : near) {
-      if (all.meets(suspect.box)) nearer.push_back(suspect);
+    for (const Candidate& candidate : near) {
+      if (all.meets(candidate.box)) nearer.push_back(candidate);
     }
     for (PolygonIndex p = group; p < groupEnd; ++p) {
-      for (const Suspect& other : nearer) {
+      for (const Candidate& other : nearer) {
         // Of two suspects the later one is found from the earlier.
-        if (!boxes[p - group].meets(other.box) || (isSuspect[p - begin] && other.polygon < p)) {
+        if (!boxes[p - group].meets(other.box) || (isCandidate[p - begin] && other.polygon < p)) {
           continue;
         }
         if (matters && !matters(p, other.polygon)) continue;
-        if (meetElsewhere(surface.mesh().positions, surface.corners(p),
-                          surface.corners(other.polygon), p == other.polygon)) {
+        if (intersectElsewhere(surface.mesh().positions, surface.corners(p),
+                               surface.corners(other.polygon), p == other.polygon)) {
           pairs.push_back({std::min(p, other.polygon), std::max(p, other.polygon)});
         }
       }
@@ -101,22 +101,22 @@ void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Suspe
 }  // namespace
 
 std::vector<PolygonPair> findPairs(const Surface& surface,
-                                   const std::vector<PolygonIndex>& suspects, base::Job& job,
+                                   const std::vector<PolygonIndex>& candidates, base::Job& job,
                                    const std::function<bool(PolygonIndex, PolygonIndex)>& matters) {
-  std::vector<Box> boxes(suspects.size());
-  job.forRanges(suspects.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) boxes[i] = surface.box(suspects[i]);
+  std::vector<Box> boxes(candidates.size());
+  job.forRanges(candidates.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) boxes[i] = surface.box(candidates[i]);
   });
   const base::Bvh tree(std::move(boxes), job);
   std::vector<PolygonPair> pairs;
   std::mutex mutex;
   job.forRanges(surface.runCount(), 16, [&](std::size_t begin, std::size_t end) {
-    std::vector<Suspect> near;
+    std::vector<Candidate> near;
     std::vector<PolygonPair> found;
     for (std::size_t run = begin; run < end; ++run) {
       near.clear();
       tree.itemsMeeting(surface.runBox(run), [&](std::uint32_t i, const Box& box) {
-        near.push_back({suspects[i], box});
+        near.push_back({candidates[i], box});
       });
       if (!near.empty()) pairsOfRun(surface, run, near, matters, found);
     }

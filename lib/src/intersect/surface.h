@@ -45,8 +45,8 @@ inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
 
 /// Whether two polygons, or if they are the `same` the triangles of one, meet elsewhere than in
 /// what they share.
-[[nodiscard]] bool meetElsewhere(std::span<const Position> positions, Corners a, Corners b,
-                                 bool same);
+[[nodiscard]] bool intersectElsewhere(std::span<const Position> positions, Corners a, Corners b,
+                                      bool same);
 
 /// The polygons of a mesh while they change, and where they lie.
 ///
@@ -101,7 +101,7 @@ class Surface {
 /// `matters` says so, if there is such a function. The result does not depend on the number of
 /// threads.
 [[nodiscard]] std::vector<PolygonPair> findPairs(
-    const Surface& surface, const std::vector<PolygonIndex>& suspects, base::Job& job,
+    const Surface& surface, const std::vector<PolygonIndex>& candidates, base::Job& job,
     const std::function<bool(PolygonIndex, PolygonIndex)>& matters = nullptr);
 
 }  // namespace tufa::intersect

@@ -54,7 +54,7 @@ int facingAxis(const Corners& t) {
 }
 
 // All in one plane. Two convex figures are apart if a line along a side of one parts them.
-bool meetsInPlane(const Position& p, const Position& q, const Corners& t) {
+bool intersectsInPlane(const Position& p, const Position& q, const Corners& t) {
   const int axis = facingAxis(t);
   if (axis < 0) return false;
   const int turn = orientationAcross(axis, t[0], t[1], t[2]);
@@ -71,9 +71,9 @@ bool meetsInPlane(const Position& p, const Position& q, const Corners& t) {
          first != orientationAcross(axis, p, q, t[2]);
 }
 
-bool segmentMeets(const Position& p, const Position& q, const Corners& t) {
+bool segmentIntersects(const Position& p, const Position& q, const Corners& t) {
   const int sideP = orientation(t[0], t[1], t[2], p), sideQ = orientation(t[0], t[1], t[2], q);
-  if (sideP == sideQ) return sideP == 0 && meetsInPlane(p, q, t);
+  if (sideP == sideQ) return sideP == 0 && intersectsInPlane(p, q, t);
   bool left = false, right = false;
   for (int i = 0; i < 3; ++i) {
     const int side = orientation(p, q, t[i], t[(i + 1) % 3]);
@@ -93,17 +93,18 @@ bool isBeside(const Corners& a, const Corners& b, int skip) {
   return true;
 }
 
-bool meetAnywhere(const Corners& a, const Corners& b) {
+bool intersectAnywhere(const Corners& a, const Corners& b) {
   if (isBeside(a, b, 0) || isBeside(b, a, 0)) return false;
   for (int i = 0; i < 3; ++i) {
-    if (segmentMeets(a[i], a[(i + 1) % 3], b) || segmentMeets(b[i], b[(i + 1) % 3], a)) return true;
+    if (segmentIntersects(a[i], a[(i + 1) % 3], b) || segmentIntersects(b[i], b[(i + 1) % 3], a))
+      return true;
   }
   return false;
 }
 
-bool meetBeyondVertex(const Corners& a, const Corners& b) {
+bool intersectBeyondVertex(const Corners& a, const Corners& b) {
   if (isBeside(a, b, 1) || isBeside(b, a, 1)) return false;
-  return segmentMeets(b[1], b[2], a) || segmentMeets(a[1], a[2], b);
+  return segmentIntersects(b[1], b[2], a) || segmentIntersects(a[1], a[2], b);
 }
 
 bool isFoldedOver(const Corners& a, const Corners& b) {
@@ -163,7 +164,7 @@ bool arePartedAlong(const Position& from, const Position& to, std::span<const Po
          std::all_of(b.begin(), b.end(), [&](const Position& p) { return isBeyond(p, -1); });
 }
 
-bool meetElsewhere(std::span<const Position> positions, const Triangle& a, const Triangle& b) {
+bool intersectElsewhere(std::span<const Position> positions, const Triangle& a, const Triangle& b) {
   auto va = a.vertices;
   auto vb = b.vertices;
   const int shared = alignShared(va, vb);
@@ -174,8 +175,8 @@ bool meetElsewhere(std::span<const Position> positions, const Triangle& a, const
       arePartedAt(pa[0], std::span(pa).subspan(skip), std::span(pb).subspan(skip), shared == 1)) {
     return false;
   }
-  const bool meet = shared == 0   ? meetAnywhere(pa, pb)
-                    : shared == 1 ? meetBeyondVertex(pa, pb)
+  const bool meet = shared == 0   ? intersectAnywhere(pa, pb)
+                    : shared == 1 ? intersectBeyondVertex(pa, pb)
                     : shared == 2 ? isFoldedOver(pa, pb)
                                   : true;
   return meet && facingAxis(pa) >= 0 && facingAxis(pb) >= 0;

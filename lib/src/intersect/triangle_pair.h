@@ -9,8 +9,8 @@ namespace tufa::intersect {
 /// decided exactly. Triangles over one edge do if one is folded flat onto the other, triangles at
 /// one vertex if the far edge of one meets the other, any others if they touch at all. Triangles
 /// whose corners lie on a line meet nothing. The same definition as that of check().
-[[nodiscard]] bool meetElsewhere(std::span<const Position> positions, const Triangle& a,
-                                 const Triangle& b);
+[[nodiscard]] bool intersectElsewhere(std::span<const Position> positions, const Triangle& a,
+                                      const Triangle& b);
 
 /// A quick test in floating point: whether a plane surely parts the points `a` from the points `b`;
 /// if `common`, one through the point `at`, with none of them on it. No answer is no proof. `at` is

@@ -14,7 +14,7 @@ using uniform::Components;
 using uniform::CornerMask;
 using uniform::SurfaceBlock;
 using uniform::SurfaceBlockIndex;
-using Kind = uniform::VertexSides::Kind;
+using Kind = uniform::VertexSheets::Kind;
 
 namespace {
 
@@ -135,7 +135,7 @@ bool BlockLevelsBuilder::join(int level, const Coord& cell, ClusterLevel* below,
 }
 
 void BlockLevelsBuilder::readVertices(std::size_t index) {
-  const uniform::Topology& topology = base_.topology;
+  const uniform::CellTopology& topology = base_.topology;
   const SurfaceBlock& block = topology.blocks[index];
   const CornerWords corners = base_.blocks.cornerWords(block.neighbours);
   const Coord& origin = base_.origin(index);
@@ -152,7 +152,7 @@ void BlockLevelsBuilder::readVertices(std::size_t index) {
       const CornerMask mask = uniform::cornerMask(corners, cell);
       const Components components =
           special ? topology.componentsAt(block, cell, mask) : uniform::componentsOf(mask, 0);
-      const unsigned cut = special ? topology.cutEdgesOf(block, cell) : 0;
+      const unsigned cut = special ? topology.openEdgesOf(block, cell) : 0;
       if (cut != 0) forbidden1_ |= parent;
       level.first[cell] = static_cast<std::uint32_t>(level.patches.size());
       level.count[cell] = static_cast<std::uint32_t>(components.count());
@@ -175,18 +175,18 @@ void BlockLevelsBuilder::addVertexPlanes(VertexIndex vertex, const Coord& origin
   const Vec3 point = base_.affine.latticePoint(base_.mesh.positions[vertex], origin);
   patch.planes.addPoint(point);
   const Normal& mean = base_.mesh.normals[vertex];
-  const Kind kind = base_.sides.kind(vertex);
+  const Kind kind = base_.sheets.kind(vertex);
   const bool flat = mean.x == 0 && mean.y == 0 && mean.z == 0;
   patch.cone.axis = {mean.x, mean.y, mean.z};
   if (kind == Kind::Meeting) {
-    const uniform::MeetingSides sides = base_.sides.sides(base_.mesh, vertex);
-    for (int i = 0; i < sides.count; ++i) {
-      patch.planes.addPlane(point, base_.affine.planeInLattice(sides.normals[i]));
+    const uniform::MeetingSheets sheets = base_.sheets.sheets(base_.mesh, vertex);
+    for (int i = 0; i < sheets.count; ++i) {
+      patch.planes.addPlane(point, base_.affine.planeInLattice(sheets.normals[i]));
       NormalCone side;
-      side.axis = {sides.normals[i].x, sides.normals[i].y, sides.normals[i].z};
+      side.axis = {sheets.normals[i].x, sheets.normals[i].y, sheets.normals[i].z};
       if (angles_) patch.cone.add(side);
     }
-    if (sides.count > 0) return;
+    if (sheets.count > 0) return;
   }
   if (!flat) patch.planes.addPlane(point, base_.affine.planeInLattice(mean));
   if (kind < Kind::Meeting && !flat) return;
@@ -221,7 +221,7 @@ void BlockLevelsBuilder::forbidBeside(std::size_t index) {
 }
 
 bool BlockLevelsBuilder::neighbourOwnsBothArcs(std::size_t index, int cell, int face) const {
-  const uniform::Topology& topology = base_.topology;
+  const uniform::CellTopology& topology = base_.topology;
   const SurfaceBlock* owner = &topology.blocks[index];
   const int axis = face / 2, shift = 6 - 3 * axis, step = (face & 1) != 0 ? 1 : -1;
   const int along = ((cell >> shift) & 7) + step;

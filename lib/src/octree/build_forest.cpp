@@ -66,7 +66,7 @@ class RangeJoiner {
     ClusterLevel& top = forest_.levels.back();
     top.table.reserve(top.cells.size());
     for (std::uint32_t i = 0; i < top.cells.size(); ++i) {
-      job_.lookAtTimes(i);
+      job_.pollCancelled(i);
       top.table.tryEmplace(top.cells[i], i);
     }
   }

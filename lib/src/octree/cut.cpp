@@ -12,8 +12,8 @@ namespace {
 // what the blocks before it have.
 class Numbering {
  public:
-  Numbering(const ClusterForest& forest, const uniform::Topology& topology, const CellFlags& merged,
-            base::Job& job)
+  Numbering(const ClusterForest& forest, const uniform::CellTopology& topology,
+            const CellFlags& merged, base::Job& job)
       : forest_(forest), topology_(topology), merged_(merged), job_(job) {}
 
   Cut make() {
@@ -25,7 +25,7 @@ class Numbering {
     for (std::size_t i = 0; i < count; ++i) first[i + 1] += first[i];
     cut_.clusters.resize(first[count]);
     numberLargeCells();
-    job_.look(0, 1);
+    job_.checkCancelled(0, 1);
     forBlocks([&](std::size_t i) { numberBlock(i, first[i]); });
     return std::move(cut_);
   }
@@ -121,7 +121,7 @@ class Numbering {
   }
 
   const ClusterForest& forest_;
-  const uniform::Topology& topology_;
+  const uniform::CellTopology& topology_;
   const CellFlags& merged_;
   base::Job& job_;
   Cut cut_;
@@ -131,8 +131,8 @@ class Numbering {
 
 }  // namespace
 
-Cut makeCut(const ClusterForest& forest, const uniform::Topology& topology, const CellFlags& merged,
-            base::Job& job) {
+Cut makeCut(const ClusterForest& forest, const uniform::CellTopology& topology,
+            const CellFlags& merged, base::Job& job) {
   return Numbering(forest, topology, merged, job).make();
 }
 

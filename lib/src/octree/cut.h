@@ -24,7 +24,7 @@ struct Cut {
 
 /// Numbers the leaf clusters: those in cells smaller than a block first, in the order of their
 /// uniform vertices, then those of larger cells, from the largest down.
-[[nodiscard]] Cut makeCut(const ClusterForest& forest, const uniform::Topology& topology,
+[[nodiscard]] Cut makeCut(const ClusterForest& forest, const uniform::CellTopology& topology,
                           const CellFlags& merged, base::Job& job);
 
 }  // namespace tufa::octree

@@ -111,7 +111,8 @@ CellFlags mergeCells(const ClusterForest& forest, const CutRule& rule, const Cel
   return Merger(forest, rule, forbidden, job).merge();
 }
 
-std::vector<LeafCell> collectLeaves(const ClusterForest& forest, const uniform::Topology& topology,
+std::vector<LeafCell> collectLeaves(const ClusterForest& forest,
+                                    const uniform::CellTopology& topology,
                                     const CellFlags& merged) {
   std::vector<LeafCell> leaves;
   for (std::uint32_t block = 0; block < topology.blocks.size(); ++block) {

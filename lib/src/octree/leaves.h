@@ -31,7 +31,7 @@ struct CellFlags {
 
 /// The surface cells that are leaves, by level.
 [[nodiscard]] std::vector<LeafCell> collectLeaves(const ClusterForest& forest,
-                                                  const uniform::Topology& topology,
+                                                  const uniform::CellTopology& topology,
                                                   const CellFlags& merged);
 
 }  // namespace tufa::octree

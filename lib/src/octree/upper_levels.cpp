@@ -56,7 +56,7 @@ std::vector<ChildCells> findCells(ClusterLevel& below, ClusterLevel& above, base
   below.parentCells.resize(below.cells.size());
   above.table.reserve(below.cells.size());
   for (std::uint32_t i = 0; i < below.cells.size(); ++i) {
-    job.lookAtTimes(i);
+    job.pollCancelled(i);
     const Coord& cell = below.cells[i];
     const auto fresh = static_cast<std::uint32_t>(above.cells.size());
     const std::uint32_t own = above.table.tryEmplace(cell >> 1, fresh);
@@ -88,7 +88,7 @@ ClusterLevel buildLevelAbove(ClusterLevel& below, std::vector<Patch>& patches,
   above.safe.resize(outcomes.size());
   above.first.reserve(outcomes.size() + 1);
   for (std::uint32_t i = 0; i < outcomes.size(); ++i) {
-    job.lookAtTimes(i);
+    job.pollCancelled(i);
     Outcome& outcome = outcomes[i];
     above.safe[i] = outcome.safe ? 1 : 0;
     const auto first = static_cast<std::uint32_t>(above.clusters.size());

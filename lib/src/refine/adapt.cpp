@@ -67,12 +67,12 @@ Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::ClusterFo
     if (splitCells(forest, tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
                    forbidden))
       continue;
-    mendAndMeasure(certifier, repair, mesh, job);
+    repairAndMeasure(certifier, repair, mesh, job);
     bool split = splitCells(forest, tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut,
                             rule.minLevel, forbidden);
     split |= splitCells(forest, mesh.meeting, mesh.cut, rule.minLevel, forbidden);
     if (split) continue;
-    if (repair != nullptr && base.topology.cutEdges == 0 &&
+    if (repair != nullptr && base.topology.openEdges == 0 &&
         splitCells(forest, topology::findMisplaced(mesh.made.mesh, job), mesh.cut, rule.minLevel,
                    forbidden)) {
       continue;
@@ -85,7 +85,7 @@ Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::ClusterFo
 // The tolerance of a cut of between two and four times so many triangles, found on the errors that
 // the forest has stored; 0 if all cells together have no more.
 double toleranceFor(std::size_t triangles, const octree::ClusterForest& forest,
-                    const uniform::Topology& topology, octree::CutRule rule, base::Job& job) {
+                    const uniform::CellTopology& topology, octree::CutRule rule, base::Job& job) {
   const octree::CellFlags none(forest);
   const auto wanted = static_cast<double>(triangles);
   // A closed mesh has two triangles for each vertex.
@@ -113,7 +113,7 @@ Measured collapseRest(const uniform::SurfaceView& base, Measured mesh, octree::C
   octree::CutRule sizes = rule;
   double next = options.drop ? dropComponents(base, sizes, mesh, dropped) : 0;
   if (!options.simplify) {
-    if (!dropped.empty()) mendAndMeasure(certifier, options.repair, mesh, job);
+    if (!dropped.empty()) repairAndMeasure(certifier, options.repair, mesh, job);
     return mesh;
   }
   for (;;) {
@@ -136,11 +136,11 @@ double presentShare(const Mesh& base, const octree::Cut& cut, const std::vector<
   std::size_t count = 0;
   if (std::all_of(used.begin(), used.end(), [](std::uint8_t is) { return is != 0; })) return 1;
   for (std::size_t i = 0; i < base.positions.size(); ++i) {
-    job.lookAtTimes(i);
+    job.pollCancelled(i);
     count += isUsed(static_cast<VertexIndex>(i)) ? 1 : 0;
   }
   for (std::size_t i = 0; i < base.quads.size(); ++i) {
-    job.lookAtTimes(i);
+    job.pollCancelled(i);
     count += isUsed(base.quads[i].vertices[0]) ? 1 : 0;
   }
   const std::size_t all = base.positions.size() + base.quads.size();
@@ -158,9 +158,9 @@ AdaptiveMesh finish(const SurfaceModel& model, const octree::CutRule& rule, Meas
     distance::Certifier again(model.view(), model.reference(), rule, job);
     adaptive.largestError = again.measure(mesh.cut, mesh.made, mesh.altered).worst;
   }
-  adaptive.mended = std::move(mesh.mended);
+  adaptive.repaired = std::move(mesh.repaired);
   ExtractedMesh& extracted = adaptive.extracted;
-  extracted.suspects = std::move(mesh.suspects);
+  extracted.candidates = std::move(mesh.candidates);
   extracted.baseVertices = baseVerticesOf(mesh.cut);
   extracted.baseQuads = std::move(mesh.made.quadSources);
   extracted.baseQuads.insert(extracted.baseQuads.end(), mesh.made.triangleSources.begin(),

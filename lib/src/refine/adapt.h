@@ -28,7 +28,7 @@ struct AdaptiveMesh {
   double largestError = 0;       ///< voxels
   double meanError = 0;          ///< voxels
   int rounds = 0;                ///< meshes made and measured
-  MendReport mended;             ///< of the last round
+  RepairReport repaired;         ///< of the last round
   double tolerance = 0;          ///< voxels; that it was collapsed with
   std::vector<Dropped> dropped;  ///< components that were left out
 };

@@ -37,7 +37,7 @@ void removeWhere(const std::vector<std::uint8_t>& gone, std::vector<Polygon>& po
 double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& rule, Measured& mesh,
                       std::vector<Dropped>& dropped) {
   Mesh& own = mesh.made.mesh;
-  const std::vector<VertexIndex> componentOf = topology::piecesOf(own);
+  const std::vector<VertexIndex> componentOf = topology::connectedComponentsOf(own);
   std::vector<Component> components(own.positions.size());
   for (const Quad& quad : own.quads) components[componentOf[quad.vertices[0]]].present = true;
   for (const Triangle& t : own.triangles) components[componentOf[t.vertices[0]]].present = true;

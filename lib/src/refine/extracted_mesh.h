@@ -18,7 +18,7 @@ struct ExtractedMesh {
   /// Uniform quad of each polygon, quads first; empty: the polygons are those of the uniform mesh.
   std::vector<std::uint32_t> baseQuads;
   std::vector<intersect::PolygonIndex>
-      suspects;  ///< polygons, of which each pair that meets has one; sorted
+      candidates;  ///< polygons, of which each pair that meets has one; sorted
 };
 
 }  // namespace tufa::refine

@@ -78,11 +78,11 @@ void finishMesh(const SurfaceModel& model, const ContourOptions& options, Extrac
   if (options.repair) {
     Source source = worldSource(model, extracted, job);
     source.singlePrecision = single;
-    const MendReport mended = mend(mesh, extracted.suspects, source, job);
-    report.intersectionsLeft = mended.left.size();
-    report.movedVertices += mended.movedVertices;
-    report.turnedQuads += mended.turnedQuads;
-    report.fannedQuads += mended.fannedQuads;
+    const RepairReport repaired = repairIntersections(mesh, extracted.candidates, source, job);
+    report.intersectionsLeft = repaired.left.size();
+    report.movedVertices += repaired.movedVertices;
+    report.flippedDiagonals += repaired.flippedDiagonals;
+    report.fannedQuads += repaired.fannedQuads;
   }
   if (options.normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
   if (options.normals == Normals::None) mesh.normals = {};

@@ -16,14 +16,14 @@ constexpr std::size_t kSides = 6;
 std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
   std::vector<std::uint8_t> quadsAt(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.quads.size(); ++i) {
-    job.lookAtTimes(i);
+    job.pollCancelled(i);
     for (const VertexIndex vertex : mesh.quads[i].vertices) {
       quadsAt[vertex] = static_cast<std::uint8_t>(std::min<int>(quadsAt[vertex] + 1, kThree + 1));
     }
   }
   std::vector<std::uint32_t> candidates;
   for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
-    job.lookAtTimes(i);
+    job.pollCancelled(i);
     const auto& v = mesh.quads[i].vertices;
     if (std::all_of(v.begin(), v.end(), [&](VertexIndex at) { return quadsAt[at] == kThree; })) {
       candidates.push_back(i);
@@ -33,36 +33,41 @@ std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
 }
 
 // Closed pieces of six quads; each in the order of the mesh.
-std::vector<std::array<std::uint32_t, kSides>> findPieces(const Mesh& mesh, base::Job& job) {
+std::vector<std::array<std::uint32_t, kSides>> findLoneComponents(const Mesh& mesh,
+                                                                  base::Job& job) {
   const std::vector<std::uint32_t> candidates = findCandidates(mesh, job);
   std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around;
   for (const std::uint32_t quad : candidates) {
     for (const VertexIndex vertex : mesh.quads[quad].vertices) around[vertex].push_back(quad);
   }
-  std::vector<std::array<std::uint32_t, kSides>> pieces;
-  std::vector<std::uint32_t> piece;
+  std::vector<std::array<std::uint32_t, kSides>> components;
+  std::vector<std::uint32_t> component;
   for (const std::uint32_t first : candidates) {
-    piece = {first};
-    for (std::size_t i = 0; i < piece.size() && piece.size() <= kSides; ++i) {
-      for (const VertexIndex vertex : mesh.quads[piece[i]].vertices) {
+    component = {first};
+    for (std::size_t i = 0; i < component.size() && component.size() <= kSides; ++i) {
+      for (const VertexIndex vertex : mesh.quads[component[i]].vertices) {
         for (const std::uint32_t next : around[vertex]) {
-          if (std::find(piece.begin(), piece.end(), next) == piece.end()) piece.push_back(next);
+          if (std::find(component.begin(), component.end(), next) == component.end())
+            component.push_back(next);
         }
       }
     }
-    if (piece.size() != kSides || *std::min_element(piece.begin(), piece.end()) != first) continue;
-    std::sort(piece.begin(), piece.end());
-    std::copy(piece.begin(), piece.end(), pieces.emplace_back().begin());
+    if (component.size() != kSides ||
+        *std::min_element(component.begin(), component.end()) != first)
+      continue;
+    std::sort(component.begin(), component.end());
+    std::copy(component.begin(), component.end(), components.emplace_back().begin());
   }
-  return pieces;
+  return components;
 }
 
 // Six times the volume of quads whose corners are at `at(vertex)`.
 template <class At>
-double volumeOf(const Mesh& mesh, const std::array<std::uint32_t, kSides>& piece, const At& at) {
-  const Vec3 origin = at(mesh.quads[piece[0]].vertices[0]);
+double volumeOf(const Mesh& mesh, const std::array<std::uint32_t, kSides>& component,
+                const At& at) {
+  const Vec3 origin = at(mesh.quads[component[0]].vertices[0]);
   double volume = 0;
-  for (const std::uint32_t quad : piece) {
+  for (const std::uint32_t quad : component) {
     const auto& v = mesh.quads[quad].vertices;
     const Vec3 p = at(v[0]) - origin, q = at(v[2]) - origin;
     volume += p.dot((at(v[1]) - origin).cross(q)) + p.dot(q.cross(at(v[3]) - origin));
@@ -72,11 +77,11 @@ double volumeOf(const Mesh& mesh, const std::array<std::uint32_t, kSides>& piece
 
 }  // namespace
 
-std::size_t unfoldLonePieces(Mesh& mesh, const Source& source, base::Job& job) {
-  const auto pieces = findPieces(mesh, job);
+std::size_t unfoldLoneComponents(Mesh& mesh, const Source& source, base::Job& job) {
+  const auto components = findLoneComponents(mesh, job);
   std::vector<VertexIndex> vertices;
-  for (const auto& piece : pieces) {
-    for (const std::uint32_t quad : piece) {
+  for (const auto& component : components) {
+    for (const std::uint32_t quad : component) {
       const auto& v = mesh.quads[quad].vertices;
       vertices.insert(vertices.end(), v.begin(), v.end());
     }
@@ -84,19 +89,21 @@ std::size_t unfoldLonePieces(Mesh& mesh, const Source& source, base::Job& job) {
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   if (vertices.empty()) return 0;
-  const std::vector<Position> havens = source.massPoints(vertices);
-  const auto havenOf = [&](VertexIndex vertex) {
+  const std::vector<Position> fallbacks = source.massPoints(vertices);
+  const auto fallbackOf = [&](VertexIndex vertex) {
     const auto found = std::lower_bound(vertices.begin(), vertices.end(), vertex);
-    return havens[static_cast<std::size_t>(found - vertices.begin())];
+    return fallbacks[static_cast<std::size_t>(found - vertices.begin())];
   };
   std::size_t moved = 0;
-  for (const auto& piece : pieces) {
-    const double is = volumeOf(mesh, piece, [&](VertexIndex v) { return Vec3(mesh.positions[v]); });
-    const double box = volumeOf(mesh, piece, [&](VertexIndex v) { return Vec3(havenOf(v)); });
+  for (const auto& component : components) {
+    const double is =
+        volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(mesh.positions[v]); });
+    const double box =
+        volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(fallbackOf(v)); });
     if (is * box > 0) continue;
-    for (const std::uint32_t quad : piece) {
+    for (const std::uint32_t quad : component) {
       for (const VertexIndex vertex : mesh.quads[quad].vertices) {
-        mesh.positions[vertex] = havenOf(vertex);
+        mesh.positions[vertex] = fallbackOf(vertex);
       }
     }
     moved += kCorners;

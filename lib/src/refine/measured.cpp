@@ -25,34 +25,34 @@ std::vector<intersect::PolygonIndex> withMarks(const Mesh& mesh,
 }
 
 // Makes small changes to what is not of the base mesh; pairs that these do not help are left.
-MendReport mendCut(const Repair& repair, const octree::Cut& cut,
-                   const std::vector<intersect::PolygonIndex>& suspects, Mesh& mesh,
-                   base::Job& job) {
+RepairReport repairCut(const Repair& repair, const octree::Cut& cut,
+                       const std::vector<intersect::PolygonIndex>& candidates, Mesh& mesh,
+                       base::Job& job) {
   Source source = repair.source;
   source.crossings = nullptr;
-  source.toTheFloor = false;
+  source.lastResort = false;
   source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
     std::vector<Position> points;
     for (const VertexIndex vertex : vertices) points.push_back(mesh.positions[vertex]);
     return points;
   };
   source.isFixed = [&](VertexIndex vertex) { return cut.clusters[vertex].level == 0; };
-  return mend(mesh, suspects, source, job);
+  return repairIntersections(mesh, candidates, source, job);
 }
 
 }  // namespace
 
-std::vector<intersect::PolygonIndex> suspectsOf(const octree::CutMesh& made, const octree::Cut& cut,
-                                                const std::vector<std::uint32_t>& baseSuspects,
-                                                const std::vector<VertexIndex>& altered) {
+std::vector<intersect::PolygonIndex> candidatesOf(
+    const octree::CutMesh& made, const octree::Cut& cut,
+    const std::vector<std::uint32_t>& uniformCandidates, const std::vector<VertexIndex>& altered) {
   std::vector<std::uint8_t> other(cut.clusters.size());
   for (std::size_t i = 0; i < other.size(); ++i) other[i] = cut.clusters[i].level != 0 ? 1 : 0;
   for (const VertexIndex vertex : altered) other[vertex] = 1;
-  std::vector<intersect::PolygonIndex> suspects;
+  std::vector<intersect::PolygonIndex> candidates;
   const auto look = [&](const auto& v, std::uint32_t source, std::size_t polygon) {
     if (std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return other[k] != 0; }) ||
-        std::binary_search(baseSuspects.begin(), baseSuspects.end(), source)) {
-      suspects.push_back(static_cast<intersect::PolygonIndex>(polygon));
+        std::binary_search(uniformCandidates.begin(), uniformCandidates.end(), source)) {
+      candidates.push_back(static_cast<intersect::PolygonIndex>(polygon));
     }
   };
   const std::size_t quads = made.mesh.quads.size();
@@ -62,21 +62,21 @@ std::vector<intersect::PolygonIndex> suspectsOf(const octree::CutMesh& made, con
   for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
     look(made.mesh.triangles[i].vertices, made.triangleSources[i], quads + i);
   }
-  return suspects;
+  return candidates;
 }
 
-void mendAndMeasure(distance::Certifier& certifier, const Repair* repair, Measured& mesh,
-                    base::Job& job, const std::vector<std::uint8_t>& fresh) {
+void repairAndMeasure(distance::Certifier& certifier, const Repair* repair, Measured& mesh,
+                      base::Job& job, const std::vector<std::uint8_t>& fresh) {
   if (repair != nullptr) {
-    mesh.suspects = suspectsOf(mesh.made, mesh.cut, repair->suspects);
-    mesh.mended = mendCut(*repair, mesh.cut, withMarks(mesh.made.mesh, mesh.suspects, fresh),
-                          mesh.made.mesh, job);
-    const std::vector<VertexIndex> mended =
-        intersect::verticesOf(mesh.made.mesh, mesh.mended.changed);
-    mesh.altered.insert(mesh.altered.end(), mended.begin(), mended.end());
+    mesh.candidates = candidatesOf(mesh.made, mesh.cut, repair->candidates);
+    mesh.repaired = repairCut(*repair, mesh.cut, withMarks(mesh.made.mesh, mesh.candidates, fresh),
+                              mesh.made.mesh, job);
+    const std::vector<VertexIndex> repaired =
+        intersect::verticesOf(mesh.made.mesh, mesh.repaired.changed);
+    mesh.altered.insert(mesh.altered.end(), repaired.begin(), repaired.end());
   }
   mesh.deviation = certifier.measure(mesh.cut, mesh.made, mesh.altered);
-  mesh.meeting = intersect::verticesOf(mesh.made.mesh, intersect::polygonsOf(mesh.mended.left));
+  mesh.meeting = intersect::verticesOf(mesh.made.mesh, intersect::polygonsOf(mesh.repaired.left));
 }
 
 }  // namespace tufa::refine

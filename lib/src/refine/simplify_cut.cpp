@@ -12,7 +12,7 @@
 namespace tufa::refine {
 namespace {
 
-using uniform::VertexSides;
+using uniform::VertexSheets;
 
 // The level of vertices that stand for several clusters: above all others, so that they are blamed
 // first.
@@ -25,8 +25,8 @@ constexpr double kFirstShare = 0.9;
 // anew any more.
 constexpr float kLess = 0.6F;
 constexpr int kSoftRounds = 5;
-constexpr int kUndoRounds = 6;
-constexpr int kMostStrikes = 30;
+constexpr int kRollBackRounds = 6;
+constexpr int kMostFailures = 30;
 // After so many further rounds its neighbours are undone, too, then theirs, at most so far at once.
 constexpr int kRoundsPerRing = 4;
 constexpr int kMostRings = 8;
@@ -46,18 +46,18 @@ std::vector<base::Quadric> gatherPlanes(const uniform::SurfaceView& base, const 
   };
   // Positions behind those of the cells are fixed.
   for (std::size_t i = 0; i < base.topology.vertexCount; ++i) {
-    job.lookAtTimes(i);
+    job.pollCancelled(i);
     const auto vertex = static_cast<VertexIndex>(i);
     const VertexIndex to = mesh.cut.vertexOf[i];
     const Vec3 offset = Vec3(base.mesh.positions[i]) - Vec3(mesh.made.mesh.positions[to]);
-    const VertexSides::Kind kind = base.sides.kind(vertex);
-    const uniform::MeetingSides sides = kind == VertexSides::Kind::Meeting
-                                            ? base.sides.sides(base.mesh, vertex)
-                                            : uniform::MeetingSides();
-    for (int side = 0; side < sides.count; ++side) add(to, offset, sides.normals[side]);
-    if (sides.count > 0) continue;
+    const VertexSheets::Kind kind = base.sheets.kind(vertex);
+    const uniform::MeetingSheets sheets = kind == VertexSheets::Kind::Meeting
+                                              ? base.sheets.sheets(base.mesh, vertex)
+                                              : uniform::MeetingSheets();
+    for (int side = 0; side < sheets.count; ++side) add(to, offset, sheets.normals[side]);
+    if (sheets.count > 0) continue;
     add(to, offset, base.mesh.normals[i]);
-    if (kind < VertexSides::Kind::Meeting) continue;
+    if (kind < VertexSheets::Kind::Meeting) continue;
     // Several sides that could not be told apart: the vertex itself must be kept.
     for (const Normal& axis : {Normal(1, 0, 0), Normal(0, 1, 0), Normal(0, 0, 1)}) {
       add(to, offset, axis);
@@ -122,7 +122,7 @@ class Samples {
     std::vector<VertexIndex> nearest(own.positions.size());
     std::vector<double> least(own.positions.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < base_.mesh.positions.size(); ++i) {
-      job.lookAtTimes(i);
+      job.pollCancelled(i);
       const VertexIndex to = mesh_.cut.vertexOf[i];
       const double squared =
           (Vec3(base_.mesh.positions[i]) - Vec3(own.positions[to])).squaredLength();
@@ -180,7 +180,7 @@ void forgiveOthers(const uniform::SurfaceView& base, const Collapsed& collapsed,
   std::vector<std::uint8_t> own(collapsed.members.size(), 0);
   for (std::size_t i = 0; i < own.size(); ++i) own[i] = collapsed.members[i] > 1 ? 1 : 0;
   for (const VertexIndex vertex : collapsed.turned) own[vertex] = 1;
-  own = topology::widen(mesh.made.mesh, std::move(own), 1);
+  own = topology::dilate(mesh.made.mesh, std::move(own), 1);
   const auto isOther = [&](VertexIndex vertex) { return own[vertex] == 0; };
   std::erase_if(mesh.meeting, isOther);
   std::erase_if(mesh.deviation.protruding, isOther);
@@ -195,25 +195,26 @@ void forgiveOthers(const uniform::SurfaceView& base, const Collapsed& collapsed,
 // Marks the last collapses behind each faulty vertex and, so many rings wide, its neighbours; as
 // many rings as it takes. How many is doubled each time, which `strikes` of the vertices before the
 // collapse count. False if there are no such collapses.
-bool undo(const Collapsed& collapsed, const Mesh& mesh, std::vector<std::uint8_t> faulty, int rings,
-          std::vector<std::uint8_t>& strikes, std::vector<std::uint8_t>& undone) {
-  undone.assign(collapsed.steps.size(), 0);
-  faulty = topology::widen(mesh, std::move(faulty), rings);
+bool rollBack(const Collapsed& collapsed, const Mesh& mesh, std::vector<std::uint8_t> faulty,
+              int rings, std::vector<std::uint8_t>& failures,
+              std::vector<std::uint8_t>& rolledBack) {
+  rolledBack.assign(collapsed.steps.size(), 0);
+  faulty = topology::dilate(mesh, std::move(faulty), rings);
   for (int wider = 0; wider < kMostRings;
-       ++wider, faulty = topology::widen(mesh, std::move(faulty), 1)) {
+       ++wider, faulty = topology::dilate(mesh, std::move(faulty), 1)) {
     std::vector<std::uint64_t> left(collapsed.members.size());
-    for (std::size_t i = 0; i < strikes.size(); ++i) {
+    for (std::size_t i = 0; i < failures.size(); ++i) {
       const VertexIndex vertex = collapsed.vertexOf[i];
       if (faulty[vertex] == 0) continue;
-      left[vertex] = std::max(left[vertex], std::uint64_t{1} << strikes[i]);
-      strikes[i] = static_cast<std::uint8_t>(std::min(strikes[i] + 1, kMostStrikes));
+      left[vertex] = std::max(left[vertex], std::uint64_t{1} << failures[i]);
+      failures[i] = static_cast<std::uint8_t>(std::min(failures[i] + 1, kMostFailures));
     }
     bool any = false;
     for (std::size_t i = collapsed.steps.size(); i-- > 0;) {
       std::uint64_t& count = left[collapsed.vertexOf[collapsed.steps[i].keep]];
       if (count == 0) continue;
       --count;
-      undone[i] = 1;
+      rolledBack[i] = 1;
       any = true;
     }
     if (any) return true;
@@ -222,32 +223,32 @@ bool undo(const Collapsed& collapsed, const Mesh& mesh, std::vector<std::uint8_t
 }
 
 // Lets what is undone not be collapsed again in another way.
-void keepUndone(const Collapsed& collapsed, Bounds& bounds) {
-  bounds.firm.resize(bounds.allowed.size(), 0);
-  for (std::size_t i = 0; i < bounds.undone.size(); ++i) {
-    if (bounds.undone[i] == 0) continue;
-    bounds.firm[collapsed.steps[i].keep] = 1;
-    bounds.firm[collapsed.steps[i].drop] = 1;
+void keepRolledBack(const Collapsed& collapsed, Bounds& bounds) {
+  bounds.locked.resize(bounds.budget.size(), 0);
+  for (std::size_t i = 0; i < bounds.rolledBack.size(); ++i) {
+    if (bounds.rolledBack[i] == 0) continue;
+    bounds.locked[collapsed.steps[i].keep] = 1;
+    bounds.locked[collapsed.steps[i].drop] = 1;
   }
 }
 
 // Takes shares of freedom, which are squared, from what went into faulty vertices. False if none
 // was left.
-bool takeFreedom(const Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
-                 std::vector<float>& shares, std::vector<float>& allowed) {
+bool takeBudget(const Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
+                std::vector<float>& shares, std::vector<float>& budget) {
   bool any = false;
-  for (std::size_t i = 0; i < allowed.size(); ++i) {
-    if (faulty[collapsed.vertexOf[i]] == 0 || !(allowed[i] > 0)) continue;
+  for (std::size_t i = 0; i < budget.size(); ++i) {
+    if (faulty[collapsed.vertexOf[i]] == 0 || !(budget[i] > 0)) continue;
     any = true;
-    allowed[i] *= shares[i];
+    budget[i] *= shares[i];
     shares[i] *= shares[i];
   }
   return any;
 }
 
 // Lets no edges be turned at what went into faulty vertices. Whether one had been turned there.
-bool stiffen(const Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
-             std::vector<float>& turning) {
+bool lockAround(const Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
+                std::vector<float>& turning) {
   std::vector<std::uint8_t> turned(faulty.size(), 0);
   for (const VertexIndex vertex : collapsed.turned) turned[vertex] = faulty[vertex];
   bool any = false;
@@ -305,7 +306,7 @@ void compose(const Measured& from, const Collapsed& collapsed, bool keepAltered,
 // all beside what was `tooFar`, which mending may have made so.
 std::vector<std::uint8_t> findFresh(const Collapsed& before, const Measured& was,
                                     const std::vector<std::uint8_t>& tooFar, const Collapsed& now) {
-  std::vector<std::uint8_t> other = topology::widen(was.made.mesh, tooFar, kRingsAnew);
+  std::vector<std::uint8_t> other = topology::dilate(was.made.mesh, tooFar, kRingsAnew);
   for (const VertexIndex vertex : was.meeting) other[vertex] = 1;
   std::vector<std::uint8_t> fresh(now.members.size(), 0);
   for (const VertexIndex vertex : before.turned) other[vertex] = 1;
@@ -326,14 +327,14 @@ std::vector<std::uint8_t> findFresh(const Collapsed& before, const Measured& was
 }
 
 // Moves the vertices that are not fresh to where mending had moved them. Whether there are any.
-bool moveAsMended(const Collapsed& before, const Mesh& mended, const Collapsed& now,
-                  const std::vector<std::uint8_t>& fresh, Measured& mesh) {
+bool moveAsRepaired(const Collapsed& before, const Mesh& repaired, const Collapsed& now,
+                    const std::vector<std::uint8_t>& fresh, Measured& mesh) {
   bool any = false;
   for (std::size_t i = 0; i < now.vertexOf.size(); ++i) {
     const VertexIndex from = before.vertexOf[i], to = now.vertexOf[i];
     Position& position = mesh.made.mesh.positions[to];
-    if (fresh[to] != 0 || position == mended.positions[from]) continue;
-    position = mended.positions[from];
+    if (fresh[to] != 0 || position == repaired.positions[from]) continue;
+    position = repaired.positions[from];
     mesh.altered.push_back(to);
     any = true;
   }
@@ -357,33 +358,33 @@ Measured simplifyCut(const uniform::SurfaceView& base, const Measured& mesh, oct
   const double tolerance = rule.tolerance;
   for (const Position& p : mesh.made.mesh.positions) {
     const double least = std::max(0.0, distance::toleranceAt(rule, base.affine, Vec3(p)));
-    bounds.allowed.push_back(static_cast<float>(kFirstShare * least * base.affine.voxelSize()));
+    bounds.budget.push_back(static_cast<float>(kFirstShare * least * base.affine.voxelSize()));
   }
-  for (const VertexIndex vertex : goal.fixed) bounds.allowed[vertex] = 0;
-  bounds.turning = bounds.allowed;
-  std::vector<float> shares(bounds.allowed.size(), kLess);
-  std::vector<std::uint8_t> strikes(bounds.allowed.size(), 0);
+  for (const VertexIndex vertex : goal.fixed) bounds.budget[vertex] = 0;
+  bounds.turning = bounds.budget;
+  std::vector<float> shares(bounds.budget.size(), kLess);
+  std::vector<std::uint8_t> failures(bounds.budget.size(), 0);
   std::vector<std::uint64_t> farBefore;
   Collapsed collapsed;
   Measured result;
-  int undoRounds = 0;
-  bool keepMended = true;
+  int rollBackRounds = 0;
+  bool keepRepaired = true;
   std::vector<std::uint8_t> tooFar;  // vertices, in the round before
   for (int round = 1;; ++round) {
     bounds.samples = samples.all();
     Collapsed next = collapse(mesh.made.mesh, planes, bounds, job);
-    const bool anew = round == 1 || !keepMended;
+    const bool anew = round == 1 || !keepRepaired;
     const std::vector<std::uint8_t> fresh =
         anew ? std::vector<std::uint8_t>() : findFresh(collapsed, result, tooFar, next);
-    const Mesh mended = std::move(result.made.mesh);
-    rule.tolerance = tolerance * next.looseness;
+    const Mesh repaired = std::move(result.made.mesh);
+    rule.tolerance = tolerance * next.budgetScale;
     certifier.setRule(rule);
     compose(mesh, next, !goal.fixed.empty(), result, job);
-    const bool kept = !anew && moveAsMended(collapsed, mended, next, fresh, result);
+    const bool kept = !anew && moveAsRepaired(collapsed, repaired, next, fresh, result);
     collapsed = std::move(next);
     const std::size_t count = result.made.mesh.triangleCount();
     if (goal.giveUp > 0 && count >= goal.giveUp) return result;
-    mendAndMeasure(certifier, repair, result, job, fresh);
+    repairAndMeasure(certifier, repair, result, job, fresh);
     if (!goal.fixed.empty()) forgiveOthers(base, collapsed, result);
     for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);
     // Points that stay too far although they are samples are not helped by more rounds.
@@ -397,28 +398,28 @@ Measured simplifyCut(const uniform::SurfaceView& base, const Measured& mesh, oct
     markAround(base, result, far, tooFar);
     bool any = soft && !result.deviation.farPoints.empty();
     if (soft) {
-      any |= takeFreedom(collapsed, faulty, shares, bounds.allowed);
+      any |= takeBudget(collapsed, faulty, shares, bounds.budget);
     }
-    bounds.undone.clear();
-    const auto undoFaulty = [&] {
-      const int rings = std::max(0, undoRounds - kUndoRounds) / kRoundsPerRing;
-      any = undo(collapsed, result.made.mesh, faulty, rings, strikes, bounds.undone);
-      keepUndone(collapsed, bounds);
-      bounds.onlyRepeat = ++undoRounds > kUndoRounds;
+    bounds.rolledBack.clear();
+    const auto rollBackFaulty = [&] {
+      const int rings = std::max(0, rollBackRounds - kRollBackRounds) / kRoundsPerRing;
+      any = rollBack(collapsed, result.made.mesh, faulty, rings, failures, bounds.rolledBack);
+      keepRolledBack(collapsed, bounds);
+      bounds.onlyRepeat = ++rollBackRounds > kRollBackRounds;
     };
-    if (!any) undoFaulty();
+    if (!any) rollBackFaulty();
     // What stays may have no polygons on its other side.
-    const bool closed = goal.fixed.empty() && base.topology.cutEdges == 0;
+    const bool closed = goal.fixed.empty() && base.topology.openEdges == 0;
     if (!any && repair != nullptr && closed) {
       for (const VertexIndex vertex : topology::findMisplaced(result.made.mesh, job))
         faulty[vertex] = 1;
-      undoFaulty();
+      rollBackFaulty();
     }
-    any |= stiffen(collapsed, faulty, bounds.turning);
+    any |= lockAround(collapsed, faulty, bounds.turning);
     bounds.before = &collapsed;
     if (!any && kept && std::find(faulty.begin(), faulty.end(), 1) != faulty.end()) {
       // Nothing is left to be undone there: it was what mending had moved.
-      keepMended = false;
+      keepRepaired = false;
       continue;
     }
     if (!any || (!goal.fixed.empty() && round >= kRoundsBesideFixed)) return result;

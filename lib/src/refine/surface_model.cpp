@@ -17,7 +17,7 @@ SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
     before_.quads = surface_.mesh.quads;
   }
   job.beginStage("repair", ends.repair);
-  if (repairs_) suspects_ = repairUniform(surface_, report_, job);
+  if (repairs_) candidates_ = repairUniform(surface_, report_, job);
 }
 
 void SurfaceModel::buildClusters(const octree::CutRule& rule, base::Job& job) {
@@ -27,7 +27,7 @@ void SurfaceModel::buildClusters(const octree::CutRule& rule, base::Job& job) {
 
 std::optional<Repair> SurfaceModel::repair(base::Job& job) const {
   if (!repairs_) return std::nullopt;
-  return Repair{suspects_, sourceOf(surface_, job)};
+  return Repair{candidates_, sourceOf(surface_, job)};
 }
 
 }  // namespace tufa::refine

@@ -37,13 +37,13 @@ class SurfaceModel {
   /// depend on what is near them alone.
   [[nodiscard]] const Mesh& meshBeforeRepair() const { return before_; }
   /// Quads of the uniform mesh of which each pair that meets, even after rounding, has one. Sorted.
-  [[nodiscard]] const std::vector<std::uint32_t>& suspects() const { return suspects_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& candidates() const { return candidates_; }
   /// How meshes taken from this one are repaired; nothing if they are not to be.
   [[nodiscard]] std::optional<Repair> repair(base::Job& job) const;
   /// What was read and found, but for the stages' times.
   [[nodiscard]] const ContourReport& report() const { return report_; }
   [[nodiscard]] const octree::ClusterForest& forest() const { return forest_; }
-  [[nodiscard]] const distance::BaseSurface& reference() const { return *reference_; }
+  [[nodiscard]] const distance::UniformReference& reference() const { return *reference_; }
   /// The uniform mesh, for a caller that needs nothing else.
   [[nodiscard]] Mesh takeMesh() { return std::move(surface_.mesh); }
 
@@ -51,10 +51,10 @@ class SurfaceModel {
   bool repairs_;
   uniform::UniformSurface surface_;
   Mesh before_;
-  std::vector<std::uint32_t> suspects_;
+  std::vector<std::uint32_t> candidates_;
   ContourReport report_;
   octree::ClusterForest forest_;
-  std::optional<distance::BaseSurface> reference_;
+  std::optional<distance::UniformReference> reference_;
 };
 
 }  // namespace tufa::refine

@@ -22,38 +22,38 @@ class UniformRepair {
       : surface_(surface), mesh_(surface.mesh), report_(report), job_(job) {}
 
   std::vector<std::uint32_t> run() {
-    report_.movedVertices = unfoldLonePieces(mesh_, sourceOf(surface_, job_), job_);
+    report_.movedVertices = unfoldLoneComponents(mesh_, sourceOf(surface_, job_), job_);
     // Rounding moves each of two polygons.
     const double margin = 2 * kMostRounding * surface_.affine().leastHeight();
-    suspects_ = intersect::findSuspects(surface_.view(), mesh_, margin, job_);
-    mendSuspects();
-    for (int i = 0; i < kMostReturns && putBackPieces(); ++i) mendSuspects();
-    return std::move(suspects_);
+    candidates_ = intersect::findCandidates(surface_.view(), mesh_, margin, job_);
+    repairCandidates();
+    for (int i = 0; i < kMostReturns && putBackComponents(); ++i) repairCandidates();
+    return std::move(candidates_);
   }
 
  private:
-  void mendSuspects() {
+  void repairCandidates() {
     Source own = sourceOf(surface_, job_);
     own.crossings = nullptr;  // a forest has no place for the centres of fans
-    const MendReport mended = mend(mesh_, suspects_, own, job_);
-    addSuspects(mended.changed);
-    report_.intersectionsFound = std::max(report_.intersectionsFound, mended.pairsFound);
-    report_.intersectionsLeft = mended.left.size();
-    report_.movedVertices += mended.movedVertices;
-    report_.turnedQuads += mended.turnedQuads;
+    const RepairReport repaired = repairIntersections(mesh_, candidates_, own, job_);
+    addCandidates(repaired.changed);
+    report_.intersectionsFound = std::max(report_.intersectionsFound, repaired.pairsFound);
+    report_.intersectionsLeft = repaired.left.size();
+    report_.movedVertices += repaired.movedVertices;
+    report_.flippedDiagonals += repaired.flippedDiagonals;
   }
 
   // Vertices that a crease or the repair drew out of their cells may have passed small pieces:
   // these and what is beside them goes back into its cells. Whether there are any.
-  bool putBackPieces() {
-    if (surface_.sides.sharpCount() == 0 || surface_.topology.cutEdges > 0 ||
+  bool putBackComponents() {
+    if (surface_.sheets.sharpCount() == 0 || surface_.topology.openEdges > 0 ||
         surface_.volume.blocks.isPart()) {
       return false;
     }
     const std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_);
     if (misplaced.empty()) return false;
-    const std::vector<Position> havens = sourceOf(surface_, job_).massPoints(misplaced);
-    for (std::size_t i = 0; i < misplaced.size(); ++i) mesh_.positions[misplaced[i]] = havens[i];
+    const std::vector<Position> fallbacks = sourceOf(surface_, job_).massPoints(misplaced);
+    for (std::size_t i = 0; i < misplaced.size(); ++i) mesh_.positions[misplaced[i]] = fallbacks[i];
     report_.movedVertices += misplaced.size();
     std::vector<intersect::PolygonIndex> around;
     for (std::uint32_t i = 0; i < mesh_.quads.size(); ++i) {
@@ -64,22 +64,22 @@ class UniformRepair {
         around.push_back(i);
       }
     }
-    addSuspects(around);
+    addCandidates(around);
     return true;
   }
 
-  void addSuspects(const std::vector<intersect::PolygonIndex>& polygons) {
+  void addCandidates(const std::vector<intersect::PolygonIndex>& polygons) {
     std::vector<std::uint32_t> all;
-    std::set_union(suspects_.begin(), suspects_.end(), polygons.begin(), polygons.end(),
+    std::set_union(candidates_.begin(), candidates_.end(), polygons.begin(), polygons.end(),
                    std::back_inserter(all));
-    suspects_ = std::move(all);
+    candidates_ = std::move(all);
   }
 
   uniform::UniformSurface& surface_;
   Mesh& mesh_;
   ContourReport& report_;
   base::Job& job_;
-  std::vector<std::uint32_t> suspects_;
+  std::vector<std::uint32_t> candidates_;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace tufa::topology {
 
-std::vector<std::uint8_t> widen(const Mesh& mesh, std::vector<std::uint8_t> marks, int rings) {
+std::vector<std::uint8_t> dilate(const Mesh& mesh, std::vector<std::uint8_t> marks, int rings) {
   for (int ring = 0; ring < rings; ++ring) {
     std::vector<std::uint8_t> wider = marks;
     const auto look = [&](const auto& v) {

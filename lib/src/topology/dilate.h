@@ -7,7 +7,7 @@
 namespace tufa::topology {
 
 /// The marks of a mesh's vertices and those of all neighbours, so many rings of them.
-[[nodiscard]] std::vector<std::uint8_t> widen(const Mesh& mesh, std::vector<std::uint8_t> marks,
-                                              int rings);
+[[nodiscard]] std::vector<std::uint8_t> dilate(const Mesh& mesh, std::vector<std::uint8_t> marks,
+                                               int rings);
 
 }  // namespace tufa::topology

@@ -39,17 +39,17 @@ bool isAbove(const std::vector<Position>& positions, const Triangle& triangle,
 // neighbours in its arrays too: boxes of runs of polygons are all the index there is.
 class Pieces {
  public:
-  Pieces(const Mesh& mesh, const std::vector<VertexIndex>& pieces, base::Job& job)
-      : mesh_(mesh), pieces_(pieces), runs_(boxesOfRuns(job), job) {}
+  Pieces(const Mesh& mesh, const std::vector<VertexIndex>& components, base::Job& job)
+      : mesh_(mesh), components_(components), runs_(boxesOfRuns(job), job) {}
 
   // Six times the volume inside of each piece, by its least vertex.
   [[nodiscard]] std::vector<double> volumes() const {
-    std::vector<double> volumes(pieces_.size());
+    std::vector<double> volumes(components_.size());
     forTriangles(0, mesh_.quads.size() + mesh_.triangles.size(), [&](const Triangle& triangle) {
       const auto& v = triangle.vertices;
-      const VertexIndex piece = pieces_[v[0]];
-      const Vec3 origin = at(piece);
-      volumes[piece] += (at(v[0]) - origin).dot((at(v[1]) - origin).cross(at(v[2]) - origin));
+      const VertexIndex component = components_[v[0]];
+      const Vec3 origin = at(component);
+      volumes[component] += (at(v[0]) - origin).dot((at(v[1]) - origin).cross(at(v[2]) - origin));
     });
     return volumes;
   }
@@ -59,7 +59,7 @@ class Pieces {
     bool inside = false;
     runs_.itemsAbove(at(vertex), [&](std::uint32_t run) {
       forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
-        if (pieces_[triangle.vertices[0]] == pieces_[vertex]) return;
+        if (components_[triangle.vertices[0]] == components_[vertex]) return;
         inside ^= isAbove(mesh_.positions, triangle, mesh_.positions[vertex]);
       });
     });
@@ -73,7 +73,7 @@ class Pieces {
       double least = best;
       forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
         const auto& v = triangle.vertices;
-        if (pieces_[v[0]] == pieces_[vertex]) return;
+        if (components_[v[0]] == components_[vertex]) return;
         const double squared = base::squaredDistanceTo(at(vertex), at(v[0]), at(v[1]), at(v[2]));
         if (squared >= least) return;
         least = squared;
@@ -120,13 +120,13 @@ class Pieces {
   }
 
   const Mesh& mesh_;
-  const std::vector<VertexIndex>& pieces_;
+  const std::vector<VertexIndex>& components_;
   base::Bvh runs_;
 };
 
 }  // namespace
 
-std::vector<VertexIndex> piecesOf(const Mesh& mesh) {
+std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
   std::vector<VertexIndex> parents(mesh.positions.size());
   std::iota(parents.begin(), parents.end(), VertexIndex{0});
   const auto rootOf = [&](VertexIndex i) {
@@ -146,22 +146,22 @@ std::vector<VertexIndex> piecesOf(const Mesh& mesh) {
 }
 
 std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
-  const std::vector<VertexIndex> names = piecesOf(mesh);
+  const std::vector<VertexIndex> names = connectedComponentsOf(mesh);
   std::vector<VertexIndex> misplaced;
   if (std::all_of(names.begin(), names.end(), [](VertexIndex name) { return name == 0; })) {
     return misplaced;
   }
-  const Pieces pieces(mesh, names, job);
+  const Pieces components(mesh, names, job);
   // Vertices that no polygon uses are pieces without volume. The piece with the largest lies in no
   // other one.
-  const std::vector<double> volumes = pieces.volumes();
+  const std::vector<double> volumes = components.volumes();
   const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const double outermost = *std::max_element(volumes.begin(), volumes.end(), isSmaller);
   const auto isWrong = [&](std::size_t vertex) {
     const double volume = volumes[names[vertex]];
     if (volume == 0) return false;
     const bool isHole = (volume < 0) != (outermost < 0);
-    return pieces.isInside(static_cast<VertexIndex>(vertex)) != isHole;
+    return components.isInside(static_cast<VertexIndex>(vertex)) != isHole;
   };
   std::vector<std::uint8_t> wrong(names.size(), 0);
   job.forRanges(names.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -175,7 +175,7 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
     if (wrong[names[i]] == 0) continue;
     misplaced.push_back(i);
     Triangle nearest;
-    if (!pieces.findNearestOther(i, nearest)) continue;
+    if (!components.findNearestOther(i, nearest)) continue;
     misplaced.insert(misplaced.end(), nearest.vertices.begin(), nearest.vertices.end());
   }
   std::sort(misplaced.begin(), misplaced.end());

@@ -8,7 +8,7 @@
 namespace tufa::topology {
 
 /// For each vertex the least one of its connected piece of surface.
-[[nodiscard]] std::vector<VertexIndex> piecesOf(const Mesh& mesh);
+[[nodiscard]] std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh);
 
 /// Vertices of the pieces of a closed mesh that lie on the wrong side of another one, and of the
 /// polygons of other pieces that are nearest to them; sorted. Directions must alternate from the

@@ -17,7 +17,7 @@ constexpr float kHalfCell = 0.499F;
 // A mean normal shorter than this is of more than one side (two of equal weight, 30 degrees apart).
 constexpr float kOneSide = 0.966F;
 
-using Kind = VertexSides::Kind;
+using Kind = VertexSheets::Kind;
 
 // Whether the planes of a QEF seem to belong to one smooth side.
 Kind kindOf(const Qef& qef) {
@@ -50,13 +50,13 @@ constexpr auto kSlotInSlab = [] {
 
 }  // namespace
 
-void BlockVertices::place(const grid::Blocks& blocks, const Topology& topology,
+void BlockVertices::place(const grid::Blocks& blocks, const CellTopology& topology,
                           const SurfaceBlock& block, grid::Accessor& accessor) {
   gather(blocks, topology, block, accessor);
   solveVertices();
 }
 
-void BlockVertices::gather(const grid::Blocks& blocks, const Topology& topology,
+void BlockVertices::gather(const grid::Blocks& blocks, const CellTopology& topology,
                            const SurfaceBlock& block, grid::Accessor& accessor) {
   const CornerWords corners = blocks.cornerWords(block.neighbours);
   samples_.gather(blocks, scale_, block.block, block.neighbours, accessor);
@@ -66,7 +66,7 @@ void BlockVertices::gather(const grid::Blocks& blocks, const Topology& topology,
   addEdges<2>(corners);
 }
 
-void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock& block,
+void BlockVertices::numberVertices(const CellTopology& topology, const SurfaceBlock& block,
                                    const CornerWords& corners) {
   special_ = block.special >= 0;
   firstVertexOf_.fill(kNobody);
@@ -80,7 +80,7 @@ void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock&
       int count = 1;
       if (special_) {
         componentsOf_[slot] = topology.componentsAt(block, cell, cornerMask(corners, cell));
-        cutEdgesOf_[slot] = static_cast<std::uint16_t>(topology.cutEdgesOf(block, cell));
+        openEdgesOf_[slot] = static_cast<std::uint16_t>(topology.openEdgesOf(block, cell));
         count = componentsOf_[slot].count();
       }
       const Vector& corner = kPointOf[slot];
@@ -93,7 +93,7 @@ void BlockVertices::numberVertices(const Topology& topology, const SurfaceBlock&
   qefs_.assign(cells_.size() + 1, {});
   kinds_.assign(cells_.size(), Kind::Smooth);
   meetings_.clear();
-  strays_.clear();
+  outOfCell_.clear();
 }
 
 // Every crossed edge of the block's cells along one axis, those on its upper faces included.
@@ -158,7 +158,7 @@ void BlockVertices::addCrossing(int slot, const Qef& plane, bool crease) {
     int vertex = firstVertexOf_[cell];
     if (special_ && vertex != kNobody) {
       const int edge = axis * 4 + side;
-      if (((cutEdgesOf_[cell] >> edge) & 1) != 0) continue;
+      if (((openEdgesOf_[cell] >> edge) & 1) != 0) continue;
       vertex += componentsOf_[cell].of(edge);
     }
     qefs_[vertex] += plane;
@@ -191,10 +191,10 @@ void BlockVertices::placeAtCrease(std::size_t vertex) {
   }
   points_[vertex] = placement.point;
   normals_[vertex] = placement.normal;
-  if (placement.stray) strays_.push_back(static_cast<std::uint32_t>(vertex));
+  if (placement.outOfCell) outOfCell_.push_back(static_cast<std::uint32_t>(vertex));
   if (placement.planes == 1) return;
   kinds_[vertex] = Kind::Meeting;
-  meetings_.push_back({static_cast<std::uint32_t>(vertex), placement.planes, placement.sides});
+  meetings_.push_back({static_cast<std::uint32_t>(vertex), placement.planes, placement.sheets});
 }
 
 }  // namespace tufa::uniform

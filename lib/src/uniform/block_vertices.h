@@ -22,11 +22,11 @@ class BlockVertices {
       : scale_(scale), finder_(samples_, scale), creaseCell_(samples_, scale) {}
 
   /// Fills the results below for one block.
-  void place(const grid::Blocks& blocks, const Topology& topology, const SurfaceBlock& block,
+  void place(const grid::Blocks& blocks, const CellTopology& topology, const SurfaceBlock& block,
              grid::Accessor& accessor);
 
   /// The first half of place(): what massPoint() needs.
-  void gather(const grid::Blocks& blocks, const Topology& topology, const SurfaceBlock& block,
+  void gather(const grid::Blocks& blocks, const CellTopology& topology, const SurfaceBlock& block,
               grid::Accessor& accessor);
 
   /// Surface cell of each vertex of the block, in their order.
@@ -45,9 +45,9 @@ class BlockVertices {
   };
   [[nodiscard]] const std::vector<Meeting>& meetings() const { return meetings_; }
   /// Vertices of the block that may lie outside of their cells.
-  [[nodiscard]] const std::vector<std::uint32_t>& strays() const { return strays_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& outOfCell() const { return outOfCell_; }
   /// Each vertex's relation to creases.
-  [[nodiscard]] const std::vector<VertexSides::Kind>& kinds() const { return kinds_; }
+  [[nodiscard]] const std::vector<VertexSheets::Kind>& kinds() const { return kinds_; }
 
  private:
   // Samples and cells are numbered alike, by BlockSamples::index() of a cell's first corner.
@@ -57,7 +57,7 @@ class BlockVertices {
   static constexpr int kMostEdges =
       grid::kBlockSize * (grid::kBlockSize + 1) * (grid::kBlockSize + 1);
 
-  void numberVertices(const Topology& topology, const SurfaceBlock& block,
+  void numberVertices(const CellTopology& topology, const SurfaceBlock& block,
                       const grid::CornerWords& corners);
   template <int axis>
   void addEdges(const grid::CornerWords& corners);
@@ -75,16 +75,16 @@ class BlockVertices {
   bool special_ = false;
   std::array<std::uint16_t, kSlots> firstVertexOf_{};                   ///< kNobody, or number + 1
   std::array<Components, kSlots> componentsOf_{};                       ///< if special_
-  std::array<std::uint16_t, kSlots> cutEdgesOf_{};                      ///< if special_
+  std::array<std::uint16_t, kSlots> openEdgesOf_{};                     ///< if special_
   std::array<std::uint16_t, kMostEdges + CrossingBatch::kSize> edges_;  ///< slots
   int edgeCount_ = 0;
   std::array<Qef, CrossingBatch::kSize> planes_;  ///< of the batch at hand
   std::vector<std::uint16_t> cells_;
   std::vector<Vector> centers_;  ///< middle of each vertex's cell
   std::vector<Qef> qefs_;
-  std::vector<VertexSides::Kind> kinds_;
+  std::vector<VertexSheets::Kind> kinds_;
   std::vector<Meeting> meetings_;
-  std::vector<std::uint32_t> strays_;
+  std::vector<std::uint32_t> outOfCell_;
   std::vector<Vector> points_;
   std::vector<Vector> normals_;
 };

@@ -105,10 +105,10 @@ class Components {
 
 /// Joins the crossings of a cell. `cutEdges` has a bit for each crossing that is left out because
 /// the data ends there: the loops fall apart into chains, each a component.
-inline constexpr Components joinCrossings(CornerMask mask, FaceBits joined, unsigned cutEdges) {
+inline constexpr Components joinCrossings(CornerMask mask, FaceBits joined, unsigned openEdges) {
   std::array<int, kEdges> root{};
   for (int edge = 0; edge < kEdges; ++edge) {
-    root[edge] = isCrossed(mask, edge) && ((cutEdges >> edge) & 1) == 0 ? edge : -1;
+    root[edge] = isCrossed(mask, edge) && ((openEdges >> edge) & 1) == 0 ? edge : -1;
   }
   const auto join = [&root](int a, int b) {
     if (root[a] < 0 || root[b] < 0 || root[a] == root[b]) return;

@@ -30,7 +30,7 @@ std::array<std::uint64_t, 3> crossedEdges(const CornerWords& corners, int x) {
   return {here[0] ^ corners.words[x + 1][0], here[0] ^ here[2], here[0] ^ here[1]};
 }
 
-std::uint32_t Topology::firstVertexInBlock(const SurfaceBlock& block, int cell) const {
+std::uint32_t CellTopology::firstVertexInBlock(const SurfaceBlock& block, int cell) const {
   const int slab = cell >> 6;
   const std::uint64_t before = block.cells.slabs[slab] & base::bitsBelow(cell & 63);
   const auto rank = static_cast<std::uint32_t>(block.cellsBefore[slab] + base::countBits(before));
@@ -51,7 +51,7 @@ struct Step {
 
 // Where a lattice point, up to one past the end of a block on each axis, lies: the special block
 // there, and its index in it. Null where nothing is special.
-const SpecialBlock* specialAt(const Topology& topology, const SurfaceBlock& block, int cell,
+const SpecialBlock* specialAt(const CellTopology& topology, const SurfaceBlock& block, int cell,
                               Step step, int& local) {
   const int x = (cell >> 6) + step.dx, y = ((cell >> 3) & 7) + step.dy, z = (cell & 7) + step.dz;
   local = grid::cellIndex(x & 7, y & 7, z & 7);
@@ -66,7 +66,7 @@ const SpecialBlock* specialAt(const Topology& topology, const SurfaceBlock& bloc
 
 }  // namespace
 
-FaceBits Topology::faceBits(const SurfaceBlock& block, int cell) const {
+FaceBits CellTopology::faceBits(const SurfaceBlock& block, int cell) const {
   unsigned bits = 0;
   for (int face = 0; face < kFaces; ++face) {
     const int axis = face / 2;
@@ -79,8 +79,8 @@ FaceBits Topology::faceBits(const SurfaceBlock& block, int cell) const {
   return static_cast<FaceBits>(bits);
 }
 
-unsigned Topology::cutEdgesOf(const SurfaceBlock& block, int cell) const {
-  if (cutEdges == 0) return 0;
+unsigned CellTopology::openEdgesOf(const SurfaceBlock& block, int cell) const {
+  if (openEdges == 0) return 0;
   unsigned bits = 0;
   for (int edge = 0; edge < kEdges; ++edge) {
     const int corner = edgeCorners(edge)[0];
@@ -92,16 +92,17 @@ unsigned Topology::cutEdgesOf(const SurfaceBlock& block, int cell) const {
   return bits;
 }
 
-Components Topology::componentsAt(const SurfaceBlock& block, int cell, CornerMask mask) const {
+Components CellTopology::componentsAt(const SurfaceBlock& block, int cell, CornerMask mask) const {
   const FaceBits ambiguous = ambiguousFaces(mask);
   const FaceBits joined =
       ambiguous == 0 ? FaceBits{0} : static_cast<FaceBits>(faceBits(block, cell) & ambiguous);
-  const unsigned cut = cutEdgesOf(block, cell);
+  const unsigned cut = openEdgesOf(block, cell);
   return cut == 0 ? componentsOf(mask, joined) : joinCrossings(mask, joined, cut);
 }
 
-bool Topology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask, int face) const {
-  const unsigned cut = cutEdgesOf(block, cell);
+bool CellTopology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask,
+                                int face) const {
+  const unsigned cut = openEdgesOf(block, cell);
   const auto& edges = kFaceEdges[face];
   const FaceBits joined = faceBits(block, cell) & ambiguousFaces(mask);
   const Components components =
@@ -120,12 +121,12 @@ bool Topology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask
 namespace {
 
 // Builds a Topology step by step; each step is one parallel pass over blocks.
-class TopologyBuilder {
+class CellTopologyBuilder {
  public:
-  TopologyBuilder(const grid::Blocks& blocks, const grid::FieldScale& scale, base::Job& job)
+  CellTopologyBuilder(const grid::Blocks& blocks, const grid::FieldScale& scale, base::Job& job)
       : blocks_(blocks), scale_(scale), job_(job) {}
 
-  Topology build(Ambiguity rule, bool cap) {
+  CellTopology build(Ambiguity rule, bool cap) {
     findSurfaceBlocks();
     chooseSpecialBlocks(scale_.narrowBand && !cap, blocks_.isPart());
     joinFaces(rule);
@@ -155,7 +156,7 @@ class TopologyBuilder {
     base::reserveLarge(topology_.blocks, static_cast<std::size_t>(std::count(
                                              found.begin(), found.end(), std::uint8_t{1})));
     for (std::size_t i = 0; i < blocks_.count(); ++i) {
-      job_.lookAtTimes(i);
+      job_.pollCancelled(i);
       if (found[i] == 0) continue;
       topology_.surfaceBlockOf[i] = static_cast<SurfaceBlockIndex>(topology_.blocks.size());
       topology_.blocks.emplace_back();
@@ -197,14 +198,14 @@ class TopologyBuilder {
       block.quadCount = countCrossedEdges(corners);
       special[i] = mayHaveSeveralComponents(corners) ? 1 : 0;
       Cuts own{};
-      bool any = dataEnds && findCutEdges(block, corners, accessor, own);
+      bool any = dataEnds && findOpenEdges(block, corners, accessor, own);
       any |= blocksEnd && cutAtMissing(block, corners, own);
       if (!any) return;
       hasCut[i] = 1;
       cuts[i] = std::make_unique<Cuts>(own);
     });
     for (std::size_t i = 0; i < count; ++i) {
-      job_.lookAtTimes(i);
+      job_.pollCancelled(i);
       SurfaceBlock& block = topology_.blocks[i];
       for (int corner = 0; cut && corner < kCorners; ++corner) {
         const SurfaceBlockIndex above =
@@ -217,7 +218,7 @@ class TopologyBuilder {
       if (!cut || cuts[i] == nullptr) continue;
       topology_.specials.back().cut = *cuts[i];
       for (const BlockBits& bits : *cuts[i]) {
-        topology_.cutEdges += countAll(bits);
+        topology_.openEdges += countAll(bits);
         block.quadCount -= static_cast<std::uint32_t>(countAll(bits));
       }
     }
@@ -291,8 +292,8 @@ class TopologyBuilder {
   }
 
   // Sign changes between an active and an inactive sample that a distance cannot make in one step.
-  bool findCutEdges(const SurfaceBlock& block, const CornerWords& corners, Accessor& accessor,
-                    std::array<BlockBits, 3>& cuts) const {
+  bool findOpenEdges(const SurfaceBlock& block, const CornerWords& corners, Accessor& accessor,
+                     std::array<BlockBits, 3>& cuts) const {
     const grid::SampleReader samples(blocks_, scale_, block.block, block.neighbours, accessor);
     bool any = false;
     for (int x = 0; x < kBlockSize; ++x) {
@@ -447,14 +448,14 @@ class TopologyBuilder {
   const grid::Blocks& blocks_;
   const grid::FieldScale& scale_;
   base::Job& job_;
-  Topology topology_;
+  CellTopology topology_;
 };
 
 }  // namespace
 
-Topology buildTopology(const grid::Blocks& blocks, const grid::FieldScale& scale, Ambiguity rule,
-                       bool cap, base::Job& job) {
-  return TopologyBuilder(blocks, scale, job).build(rule, cap);
+CellTopology buildCellTopology(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                               Ambiguity rule, bool cap, base::Job& job) {
+  return CellTopologyBuilder(blocks, scale, job).build(rule, cap);
 }
 
 }  // namespace tufa::uniform

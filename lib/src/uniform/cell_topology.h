@@ -48,7 +48,7 @@ struct SurfaceBlock {
 
 /// Which vertices and quads there will be, before any is placed: the level-0 mesh up to geometry.
 /// Vertices are numbered by block, then cell, then component; quads by block, axis, lattice point.
-struct Topology {
+struct CellTopology {
   std::vector<SurfaceBlock> blocks;
   std::vector<SpecialBlock> specials;
   std::vector<SurfaceBlockIndex> surfaceBlockOf;  ///< for each block of Blocks
@@ -56,7 +56,7 @@ struct Topology {
   std::uint64_t quadCount = 0;
   std::size_t cellCount = 0;
   std::size_t faceFlips = 0;
-  std::size_t cutEdges = 0;
+  std::size_t openEdges = 0;
 
   /// The surface block at an offset of -1..1 blocks, or kNoSurfaceBlock.
   [[nodiscard]] SurfaceBlockIndex neighbour(const SurfaceBlock& from, int dx, int dy,
@@ -69,7 +69,7 @@ struct Topology {
   /// The joined bits of the ambiguous faces of a cell, meaningless for the other faces.
   [[nodiscard]] FaceBits faceBits(const SurfaceBlock& block, int cell) const;
   /// A bit for each cut edge of a cell.
-  [[nodiscard]] unsigned cutEdgesOf(const SurfaceBlock& block, int cell) const;
+  [[nodiscard]] unsigned openEdgesOf(const SurfaceBlock& block, int cell) const;
   /// The components of a cell of a block, all rules applied.
   [[nodiscard]] Components componentsAt(const SurfaceBlock& block, int cell, CornerMask mask) const;
   /// Whether one component of the cell owns both arcs of its ambiguous face `face`.
@@ -90,7 +90,8 @@ struct Topology {
 /// an edge of four faces; such a face is joined the other way (Wenger 2013). That splits the
 /// component of both cells and never merges any, so treating the faces in six classes whose members
 /// share no cell (three axes, even and odd) leaves none, in one sweep.
-[[nodiscard]] Topology buildTopology(const grid::Blocks& blocks, const grid::FieldScale& scale,
-                                     Ambiguity rule, bool cap, base::Job& job);
+[[nodiscard]] CellTopology buildCellTopology(const grid::Blocks& blocks,
+                                             const grid::FieldScale& scale, Ambiguity rule,
+                                             bool cap, base::Job& job);
 
 }  // namespace tufa::uniform

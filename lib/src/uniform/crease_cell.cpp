@@ -31,7 +31,7 @@ constexpr int kProjections = 8;
 constexpr float kEdgeSlack = 0.01F;
 // Slack of the empty-ball test, in voxels.
 constexpr float kBallSlack = 0.06F;
-constexpr int kMostSides = 5;
+constexpr int kMostSheets = 5;
 // Planes are nearly parallel if the square of the sine of their angle, or the volume that three
 // normals span, is less.
 constexpr float kLeastSquaredSine = 0.05F;
@@ -121,14 +121,14 @@ CreasePlacement CreaseCell::place(int x, int y, int z, const Vector& massPoint) 
   CreasePlacement placement;
   cell_ = {x, y, z};
   collectPlanes();
-  sortIntoSides();
-  dropBlendedSides();
+  sortIntoSheets();
+  dropBlendedSheets();
   readBalls();
-  markCrossedSides();
+  markCrossedSheets();
   if (placeOnCorner(massPoint, false, placement) || placeOnCrease(massPoint, false, placement) ||
       placeOnCorner(massPoint, true, placement) || placeOnCrease(massPoint, true, placement) ||
       placeOnSide(massPoint, placement)) {
-    placement.stray = outside(placement.point) > -kSureInside;
+    placement.outOfCell = outside(placement.point) > -kSureInside;
     return placement;
   }
   return {};
@@ -154,44 +154,44 @@ void CreaseCell::collectPlanes() {
 }
 
 // Greedy: the best plane left starts a side, planes that agree with it join.
-void CreaseCell::sortIntoSides() {
-  sides_.clear();
-  while (static_cast<int>(sides_.size()) < kMostSides) {
+void CreaseCell::sortIntoSheets() {
+  sheets_.clear();
+  while (static_cast<int>(sheets_.size()) < kMostSheets) {
     const auto best = std::max_element(weights_.begin(), weights_.end());
     if (best == weights_.end() || *best <= 0) break;
     const PatchPlane seed = near_[static_cast<std::size_t>(best - weights_.begin())];
-    Side side;
+    Sheet sheet;
     Vector point{};
     members_.clear();
     for (std::size_t i = 0; i < near_.size(); ++i) {
       if (weights_[i] <= 0 || dot(near_[i].normal, seed.normal) < kSameSide) continue;
       const Vector apart = plus(near_[i].foot, seed.foot, -1);
       if (std::abs(dot(seed.normal, apart)) > kSameSheet) continue;
-      side.normal = plus(side.normal, near_[i].normal, weights_[i]);
+      sheet.normal = plus(sheet.normal, near_[i].normal, weights_[i]);
       point = plus(point, near_[i].foot, weights_[i]);
-      side.weight += weights_[i];
+      sheet.weight += weights_[i];
       members_.push_back(i);
     }
-    const float length = std::sqrt(dot(side.normal, side.normal));
-    for (float& n : side.normal) n /= length;
-    side.offset = dot(side.normal, point) / side.weight;
-    for (int i = 0; i < 3; ++i) side.middle[i] = point[i] / side.weight;
-    bendSide(side);
+    const float length = std::sqrt(dot(sheet.normal, sheet.normal));
+    for (float& n : sheet.normal) n /= length;
+    sheet.offset = dot(sheet.normal, point) / sheet.weight;
+    for (int i = 0; i < 3; ++i) sheet.middle[i] = point[i] / sheet.weight;
+    bendSide(sheet);
     for (const std::size_t member : members_) weights_[member] = 0;
-    sides_.push_back(side);
+    sheets_.push_back(sheet);
   }
 }
 
 // The matrix H of least squares in n_i - n = H (f_i - m), over the feet f_i and normals n_i, damped
 // where the feet do not spread, and made symmetric. A surface of that bend through m is
 // n . (p - m) + (p - m) H (p - m) / 2 = 0.
-void CreaseCell::bendSide(Side& side) const {
+void CreaseCell::bendSide(Sheet& sheet) const {
   std::array<float, 6> spread{};  // xx, xy, xz, yy, yz, zz
   std::array<Vector, 3> turn{};   // turn[i][j]: change of normal i with step j
   for (const std::size_t member : members_) {
-    const float weight = weights_[member] / side.weight;
-    const Vector step = plus(near_[member].foot, side.middle, -1);
-    const Vector change = plus(near_[member].normal, side.normal, -1);
+    const float weight = weights_[member] / sheet.weight;
+    const Vector step = plus(near_[member].foot, sheet.middle, -1);
+    const Vector change = plus(near_[member].normal, sheet.normal, -1);
     for (int i = 0, k = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) turn[i][j] += weight * change[i] * step[j];
       for (int j = i; j < 3; ++j) spread[k++] += weight * step[i] * step[j];
@@ -207,32 +207,32 @@ void CreaseCell::bendSide(Side& side) const {
   const float determinant = dot(r0, adjoint[0]);
   for (int i = 0, k = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) {
-      side.bend[k++] = (dot(turn[i], adjoint[j]) + dot(turn[j], adjoint[i])) / (2 * determinant);
+      sheet.bend[k++] = (dot(turn[i], adjoint[j]) + dot(turn[j], adjoint[i])) / (2 * determinant);
     }
   }
   for (const std::size_t member : members_) {
-    const Vector step = plus(near_[member].foot, side.middle, -1);
-    side.rise += weights_[member] / side.weight * 0.5F * dot(step, bent(side.bend, step));
+    const Vector step = plus(near_[member].foot, sheet.middle, -1);
+    sheet.rise += weights_[member] / sheet.weight * 0.5F * dot(step, bent(sheet.bend, step));
   }
 }
 
-TangentPlane CreaseCell::tangentAt(const Side& side, const Vector& point) {
-  const Vector step = plus(point, side.middle, -1);
-  const Vector turn = bent(side.bend, step);
-  const float value = dot(side.normal, step) + 0.5F * dot(step, turn) - side.rise;
-  TangentPlane plane{plus(side.normal, turn, 1), 0};
+TangentPlane CreaseCell::tangentAt(const Sheet& sheet, const Vector& point) {
+  const Vector step = plus(point, sheet.middle, -1);
+  const Vector turn = bent(sheet.bend, step);
+  const float value = dot(sheet.normal, step) + 0.5F * dot(step, turn) - sheet.rise;
+  TangentPlane plane{plus(sheet.normal, turn, 1), 0};
   const float length = std::sqrt(dot(plane.normal, plane.normal));
   for (float& n : plane.normal) n /= length;
   plane.offset = dot(plane.normal, point) - value / length;
   return plane;
 }
 
-void CreaseCell::followBends(Vector& point, std::initializer_list<int> sides) const {
+void CreaseCell::followBends(Vector& point, std::initializer_list<int> sheets) const {
   const Vector start = point;
   for (int round = 0; round < kBendRounds; ++round) {
     std::array<TangentPlane, 3> planes;
     int count = 0;
-    for (const int side : sides) planes[count++] = tangentAt(sides_[side], point);
+    for (const int sheet : sheets) planes[count++] = tangentAt(sheets_[sheet], point);
     const bool found = count == 1   ? moveOnto(planes[0], point)
                        : count == 2 ? moveOntoBoth(planes[0], planes[1], point)
                                     : moveOntoAll(planes, point);
@@ -246,51 +246,51 @@ void CreaseCell::followBends(Vector& point, std::initializer_list<int> sides) co
 
 // Beyond a convex edge the nearest point of the surface is on the edge, and the planes seen there
 // touch it at angles between those of the two sides. They are no sides of their own.
-bool CreaseCell::isBlend(const Side& side, const Side& a, const Side& b) const {
-  if (side.weight > a.weight || side.weight > b.weight) return false;
+bool CreaseCell::isBlend(const Sheet& sheet, const Sheet& a, const Sheet& b) const {
+  if (sheet.weight > a.weight || sheet.weight > b.weight) return false;
   // side.normal = s a.normal + t b.normal, with s and t positive, up to a few degrees.
   const float cosine = dot(a.normal, b.normal);
   const float squared = 1 - cosine * cosine;
   if (squared < 0.05F) return false;
-  const float da = dot(side.normal, a.normal), db = dot(side.normal, b.normal);
+  const float da = dot(sheet.normal, a.normal), db = dot(sheet.normal, b.normal);
   const float s = (da - cosine * db) / squared, t = (db - cosine * da) / squared;
   if (s < 0 || t < 0) return false;
   const Vector between = plus(plus({}, a.normal, s), b.normal, t);
-  const Vector apart = plus(side.normal, between, -1);
+  const Vector apart = plus(sheet.normal, between, -1);
   return dot(apart, apart) < kBlendAngle * kBlendAngle &&
-         std::abs(side.offset - s * a.offset - t * b.offset) < kBlendDistance;
+         std::abs(sheet.offset - s * a.offset - t * b.offset) < kBlendDistance;
 }
 
-void CreaseCell::dropBlendedSides() {
-  std::array<bool, kMostSides> drop{};
-  for (std::size_t k = 0; k < sides_.size(); ++k) {
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      for (std::size_t j = i + 1; j < sides_.size(); ++j) {
-        if (i != k && j != k && isBlend(sides_[k], sides_[i], sides_[j])) drop[k] = true;
+void CreaseCell::dropBlendedSheets() {
+  std::array<bool, kMostSheets> drop{};
+  for (std::size_t k = 0; k < sheets_.size(); ++k) {
+    for (std::size_t i = 0; i < sheets_.size(); ++i) {
+      for (std::size_t j = i + 1; j < sheets_.size(); ++j) {
+        if (i != k && j != k && isBlend(sheets_[k], sheets_[i], sheets_[j])) drop[k] = true;
       }
     }
   }
   std::size_t kept = 0;
-  for (std::size_t k = 0; k < sides_.size(); ++k) {
-    if (!drop[k]) sides_[kept++] = sides_[k];
+  for (std::size_t k = 0; k < sheets_.size(); ++k) {
+    if (!drop[k]) sheets_[kept++] = sheets_[k];
   }
-  sides_.resize(kept);
+  sheets_.resize(kept);
 }
 
 // A side is crossed where its plane meets a crossed edge of the cell in a point of the surface.
-void CreaseCell::markCrossedSides() {
+void CreaseCell::markCrossedSheets() {
   for (int edge = 0; edge < kEdges; ++edge) {
     const auto [lower, upper] = edgeCorners(edge);
     if ((sampleAt(lower) < 0) == (sampleAt(upper) < 0)) continue;
     const Vector from = cornerPoint(lower);
     const int axis = edge / 4;
-    for (Side& side : sides_) {
-      if (side.crossed || std::abs(side.normal[axis]) < 1e-3F) continue;
-      const float along = (side.offset - dot(side.normal, from)) / side.normal[axis];
+    for (Sheet& sheet : sheets_) {
+      if (sheet.crossed || std::abs(sheet.normal[axis]) < 1e-3F) continue;
+      const float along = (sheet.offset - dot(sheet.normal, from)) / sheet.normal[axis];
       if (along < -kEdgeSlack || along > 1 + kEdgeSlack) continue;
       Vector point = from;
       point[axis] += along;
-      side.crossed = isOnSurface(point);
+      sheet.crossed = isOnSurface(point);
     }
   }
 }
@@ -330,27 +330,27 @@ bool CreaseCell::isOnSurface(const Vector& point) const {
   return inBalls == 0;
 }
 
-void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const {
+void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int> sheets) const {
   Vector sum{};
   int count = 0;
-  for (const int side : sides) {
-    const Vector normal = tangentAt(sides_[side], placement.point).normal;
+  for (const int sheet : sheets) {
+    const Vector normal = tangentAt(sheets_[sheet], placement.point).normal;
     sum = plus(sum, normal, 1);
-    placement.sides[count++] = normal;
+    placement.sheets[count++] = normal;
   }
   const float length = std::sqrt(dot(sum, sum));
   for (int i = 0; i < 3; ++i) placement.normal[i] = length > 0 ? sum[i] / length : 0;
-  placement.planes = static_cast<int>(sides.size());
+  placement.planes = static_cast<int>(sheets.size());
 }
 
 bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,
                                CreasePlacement& placement) const {
   float nearest = std::numeric_limits<float>::infinity();
-  const int count = static_cast<int>(sides_.size());
+  const int count = static_cast<int>(sheets_.size());
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       for (int k = j + 1; k < count; ++k) {
-        if (beyond && !(sides_[i].crossed && sides_[j].crossed && sides_[k].crossed)) continue;
+        if (beyond && !(sheets_[i].crossed && sheets_[j].crossed && sheets_[k].crossed)) continue;
         Vector point{};
         if (!moveOntoAll({planeOf(i), planeOf(j), planeOf(k)}, point)) continue;
         if (outside(point) > kBeyond + kFarthestBend) continue;
@@ -370,16 +370,16 @@ bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,
 bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
                                CreasePlacement& placement) const {
   float nearest = std::numeric_limits<float>::infinity();
-  const int count = static_cast<int>(sides_.size());
+  const int count = static_cast<int>(sheets_.size());
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
-      if (beyond && !(sides_[i].crossed && sides_[j].crossed)) continue;
+      if (beyond && !(sheets_[i].crossed && sheets_[j].crossed)) continue;
       // The point of both sides nearest to the mass point, then along the crease into the cell.
       Vector point = massPoint;
       if (!moveOntoBoth(planeOf(i), planeOf(j), point)) continue;
       followBends(point, {i, j});
       const Vector direction =
-          cross(tangentAt(sides_[i], point).normal, tangentAt(sides_[j], point).normal);
+          cross(tangentAt(sheets_[i], point).normal, tangentAt(sheets_[j], point).normal);
       const Vector before = point;
       if (!slideInto(kHalfCell + (beyond ? kBeyond : 0), direction, point)) continue;
       if (point != before) followBends(point, {i, j});
@@ -395,14 +395,14 @@ bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
 
 bool CreaseCell::placeOnSide(const Vector& massPoint, CreasePlacement& placement) const {
   float nearest = std::numeric_limits<float>::infinity();
-  for (int i = 0; i < static_cast<int>(sides_.size()); ++i) {
-    const float away = std::abs(sides_[i].offset - dot(sides_[i].normal, massPoint));
+  for (int i = 0; i < static_cast<int>(sheets_.size()); ++i) {
+    const float away = std::abs(sheets_[i].offset - dot(sheets_[i].normal, massPoint));
     if (away >= nearest) continue;
     // Into the cell and onto the plane in turn: ends where the two meet, if they do.
     Vector point = massPoint;
     for (int step = 0; step < kProjections; ++step) {
       for (float& p : point) p = std::clamp(p, -kHalfCell, kHalfCell);
-      point = plus(point, sides_[i].normal, sides_[i].offset - dot(sides_[i].normal, point));
+      point = plus(point, sheets_[i].normal, sheets_[i].offset - dot(sheets_[i].normal, point));
     }
     if (outside(point) > kSideSlack) continue;
     followBends(point, {i});

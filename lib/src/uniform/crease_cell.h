@@ -11,8 +11,8 @@ namespace tufa::uniform {
 struct CreasePlacement {
   Vector point{};   ///< in voxels from the middle of the cell
   Vector normal{};  ///< outward unit normal: of the plane, or the mean of those that meet
-  std::array<Vector, 3> sides{};  ///< normals of the planes that meet
-  bool stray = false;             ///< the point may lie outside of the cell
+  std::array<Vector, 3> sheets{};  ///< normals of the planes that meet
+  bool outOfCell = false;          ///< the point may lie outside of the cell
   int planes = 0;  ///< 1: the cell lies on one smooth side; 2: a crease; 3: a corner; 0: unknown
 };
 
@@ -45,7 +45,7 @@ class CreaseCell {
 
  private:
   /// A smooth side of the surface near the cell: the plane normal . p = offset, and how that bends.
-  struct Side {
+  struct Sheet {
     Vector normal{};
     float offset = 0;
     float weight = 0;
@@ -56,10 +56,10 @@ class CreaseCell {
     float rise = 0;  ///< mean of the bent surface's height over the plane at the feet
   };
   void collectPlanes();
-  void sortIntoSides();
-  void dropBlendedSides();
-  [[nodiscard]] bool isBlend(const Side& side, const Side& a, const Side& b) const;
-  void markCrossedSides();
+  void sortIntoSheets();
+  void dropBlendedSheets();
+  [[nodiscard]] bool isBlend(const Sheet& sheet, const Sheet& a, const Sheet& b) const;
+  void markCrossedSheets();
   void readBalls();
   [[nodiscard]] float sampleAt(int corner) const;
   [[nodiscard]] bool isOnSurface(const Vector& point) const;
@@ -69,22 +69,22 @@ class CreaseCell {
   [[nodiscard]] bool placeOnCrease(const Vector& massPoint, bool beyond,
                                    CreasePlacement& placement) const;
   [[nodiscard]] bool placeOnSide(const Vector& massPoint, CreasePlacement& placement) const;
-  [[nodiscard]] TangentPlane planeOf(int side) const {
-    return {sides_[side].normal, sides_[side].offset};
+  [[nodiscard]] TangentPlane planeOf(int sheet) const {
+    return {sheets_[sheet].normal, sheets_[sheet].offset};
   }
-  void bendSide(Side& side) const;
+  void bendSide(Sheet& sheet) const;
   // The tangent plane of a side near a point.
-  [[nodiscard]] static TangentPlane tangentAt(const Side& side, const Vector& point);
+  [[nodiscard]] static TangentPlane tangentAt(const Sheet& sheet, const Vector& point);
   // Moves a point of the planes of some sides to where the bent sides meet.
-  void followBends(Vector& point, std::initializer_list<int> sides) const;
-  void setNormal(CreasePlacement& placement, std::initializer_list<int> sides) const;
+  void followBends(Vector& point, std::initializer_list<int> sheets) const;
+  void setNormal(CreasePlacement& placement, std::initializer_list<int> sheets) const;
 
   const grid::BlockSamples& samples_;
   const grid::FieldScale& scale_;
   PatchPlanes planes_;
   std::vector<PatchPlane> near_;  ///< feet in voxels from the middle of the cell
   std::vector<float> weights_;    ///< of near_
-  std::vector<Side> sides_;
+  std::vector<Sheet> sheets_;
   std::vector<std::size_t> members_;  ///< of near_: those of the side at hand
   /// Squared radii of the balls around the 64 samples nearest to the cell that the surface does not
   /// enter.

@@ -33,10 +33,10 @@ class SplitChooser {
   }
 
   template <class Crossing>
-  [[nodiscard]] bool isSecondDiagonalBetterAtCrease(const VertexSides& sides,
+  [[nodiscard]] bool isSecondDiagonalBetterAtCrease(const VertexSheets& sheets,
                                                     const Crossing& crossing) const {
-    if (!QuadSides::isOneSide(mesh_, sides, quad_)) {
-      const QuadSides around(mesh_, sides, quad_);
+    if (!QuadSheets::isOneSheet(mesh_, sheets, quad_)) {
+      const QuadSheets around(mesh_, sheets, quad_);
       const bool fits[2] = {around.fits(false), around.fits(true)};
       if (fits[0] != fits[1]) return fits[1];
     }

@@ -9,22 +9,22 @@
 namespace tufa::uniform {
 namespace {
 
-MeetingSides worldSides(const BlockVertices::Meeting& meeting, const grid::Affine& affine) {
-  MeetingSides sides;
-  sides.count = static_cast<std::uint8_t>(meeting.count);
+MeetingSheets worldSheets(const BlockVertices::Meeting& meeting, const grid::Affine& affine) {
+  MeetingSheets sheets;
+  sheets.count = static_cast<std::uint8_t>(meeting.count);
   for (int i = 0; i < meeting.count; ++i) {
     const Vector& n = meeting.normals[i];
-    sides.normals[i] = affine.normal(n[0], n[1], n[2]);
+    sheets.normals[i] = affine.normal(n[0], n[1], n[2]);
   }
-  return sides;
+  return sheets;
 }
 
 }  // namespace
 
-VertexSides placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
-                          const Topology& topology, const grid::Affine& affine, bool normals,
-                          Mesh& mesh, base::Job& job) {
-  VertexSides sides(topology.vertexCount);
+VertexSheets placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                           const CellTopology& topology, const grid::Affine& affine, bool normals,
+                           Mesh& mesh, base::Job& job) {
+  VertexSheets sheets(topology.vertexCount);
   std::mutex mutex;
   base::resizeLarge(mesh.positions, topology.vertexCount, job);
   if (normals) base::resizeLarge(mesh.normals, topology.vertexCount, job);
@@ -46,24 +46,24 @@ VertexSides placeVertices(const grid::Blocks& blocks, const grid::FieldScale& sc
         const Vector& n = work.normals()[v];
         mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
       }
-      sides.setKinds(block.firstVertex, work.kinds());
-      for (const std::uint32_t vertex : work.strays()) {
-        sides.setStray(static_cast<VertexIndex>(block.firstVertex + vertex));
+      sheets.setKinds(block.firstVertex, work.kinds());
+      for (const std::uint32_t vertex : work.outOfCell()) {
+        sheets.setOutOfCell(static_cast<VertexIndex>(block.firstVertex + vertex));
       }
       if (!work.meetings().empty()) {
         const std::scoped_lock lock(mutex);
         for (const BlockVertices::Meeting& meeting : work.meetings()) {
-          sides.setMeeting(static_cast<VertexIndex>(block.firstVertex + meeting.vertex),
-                           worldSides(meeting, affine));
+          sheets.setMeeting(static_cast<VertexIndex>(block.firstVertex + meeting.vertex),
+                            worldSheets(meeting, affine));
         }
       }
     }
   });
-  return sides;
+  return sheets;
 }
 
 std::vector<Position> massPoints(const grid::Blocks& blocks, const grid::FieldScale& scale,
-                                 const Topology& topology, const grid::Affine& affine,
+                                 const CellTopology& topology, const grid::Affine& affine,
                                  const std::vector<VertexIndex>& vertices, base::Job& job) {
   std::vector<Position> points(vertices.size());
   job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {

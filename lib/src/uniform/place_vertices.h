@@ -15,17 +15,15 @@ namespace tufa::uniform {
 
 /// Sizes and fills the positions of the mesh and, if asked, its normals from the field's gradient.
 /// Returns which vertices lie near or on creases.
-[[nodiscard]] VertexSides placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
-                                        const Topology& topology, const grid::Affine& affine,
-                                        bool normals, Mesh& mesh, base::Job& job);
+[[nodiscard]] VertexSheets placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                                         const CellTopology& topology, const grid::Affine& affine,
+                                         bool normals, Mesh& mesh, base::Job& job);
 
 /// The mean of the crossings of each of some vertices, sorted, in world space: a point inside the
 /// vertex's cell.
-[[nodiscard]] std::vector<Position> massPoints(const grid::Blocks& blocks,
-                                               const grid::FieldScale& scale,
-                                               const Topology& topology, const grid::Affine& affine,
-                                               const std::vector<VertexIndex>& vertices,
-                                               base::Job& job);
+[[nodiscard]] std::vector<Position> massPoints(
+    const grid::Blocks& blocks, const grid::FieldScale& scale, const CellTopology& topology,
+    const grid::Affine& affine, const std::vector<VertexIndex>& vertices, base::Job& job);
 
 /// Gives each vertex the mean of the normals of its faces, weighted by their angles at the vertex.
 void setFaceNormals(Mesh& mesh, base::Job& job);

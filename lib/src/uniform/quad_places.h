@@ -38,9 +38,9 @@ void forQuads(const SurfaceView& context, const SurfaceBlock& block, const Body&
 }
 
 /// Whether one of a quad's vertices lies near or on a crease.
-[[nodiscard]] inline bool isNearCrease(const VertexSides& sides, const Quad& quad) {
+[[nodiscard]] inline bool isNearCrease(const VertexSheets& sheets, const Quad& quad) {
   for (const VertexIndex vertex : quad.vertices) {
-    if (sides.kind(vertex) != VertexSides::Kind::Smooth) return true;
+    if (sheets.kind(vertex) != VertexSheets::Kind::Smooth) return true;
   }
   return false;
 }

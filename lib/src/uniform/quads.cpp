@@ -19,7 +19,7 @@ namespace {
 // The vertices of a block's cells and of the layer of cells below it on each axis.
 class VertexTable {
  public:
-  VertexTable(const grid::Blocks& blocks, const Topology& topology)
+  VertexTable(const grid::Blocks& blocks, const CellTopology& topology)
       : blocks_(blocks), topology_(topology) {}
 
   void fill(const SurfaceBlock& block) {
@@ -78,7 +78,7 @@ class VertexTable {
   }
 
   const grid::Blocks& blocks_;
-  const Topology& topology_;
+  const CellTopology& topology_;
   bool special_ = false;
   std::array<VertexIndex, kSize * kSize * kSize> first_{};
   std::array<Components, kSize * kSize * kSize> components_{};
@@ -136,7 +136,7 @@ LatticeCrossing crossingOf(const SurfaceView& context, const SurfaceBlock& block
 }  // namespace
 
 void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job) {
-  const Topology& topology = context.topology;
+  const CellTopology& topology = context.topology;
   base::resizeLarge(mesh.quads, topology.quadCount, job);
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     VertexTable table(context.blocks, topology);
@@ -146,7 +146,7 @@ void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job) {
       table.fill(block);
       forQuads(context, block, [&](const QuadPlace& place) {
         Quad quad = quadAround(table, place, context.affine.mirrored());
-        if (!isNearCrease(context.sides, quad)) {
+        if (!isNearCrease(context.sheets, quad)) {
           const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
           if (chooser.isSecondDiagonalBetter(
                   [&] { return crossingOf(context, block, place, *accessor); })) {
@@ -160,22 +160,22 @@ void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job) {
 }
 
 void splitAtCreases(const SurfaceView& context, Mesh& mesh, base::Job& job) {
-  const Topology& topology = context.topology;
+  const CellTopology& topology = context.topology;
   job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
     const auto accessor = context.blocks.accessor();
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = topology.blocks[i];
       const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
       if (std::none_of(first, first + block.quadCount,
-                       [&](const Quad& quad) { return isNearCrease(context.sides, quad); })) {
+                       [&](const Quad& quad) { return isNearCrease(context.sheets, quad); })) {
         continue;
       }
       forQuads(context, block, [&](const QuadPlace& place) {
         Quad& quad = mesh.quads[place.quad];
-        if (!isNearCrease(context.sides, quad)) return;
+        if (!isNearCrease(context.sheets, quad)) return;
         const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
         if (chooser.isSecondDiagonalBetterAtCrease(
-                context.sides, [&] { return crossingOf(context, block, place, *accessor); })) {
+                context.sheets, [&] { return crossingOf(context, block, place, *accessor); })) {
           turn(quad);
         }
       });

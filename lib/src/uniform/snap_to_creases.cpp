@@ -34,7 +34,7 @@ struct Move {
   std::size_t quad = 0;
   VertexIndex vertex = 0;
   Vec3 point;
-  MeetingSides sides;
+  MeetingSheets sheets;
 };
 
 Normal toNormal(const Vec3& v) {
@@ -60,10 +60,10 @@ std::optional<Vec3> onAll(const Plane& a, const Plane& b, const Plane& c) {
          volume;
 }
 
-class Promoter {
+class CreaseSnapper {
  public:
-  Promoter(Mesh& mesh, VertexSides& sides, double voxelSize)
-      : mesh_(mesh), sides_(sides), voxelSize_(voxelSize) {}
+  CreaseSnapper(Mesh& mesh, VertexSheets& sheets, double voxelSize)
+      : mesh_(mesh), sheets_(sheets), voxelSize_(voxelSize) {}
 
   std::size_t run(base::Job& job) {
     collectCorners();
@@ -76,7 +76,7 @@ class Promoter {
       std::size_t inRound = 0;
       for (const Move& move : moves) {
         // Two quads apart may have found the same corner.
-        if (move.sides.count > 2 && isCorner(move.point)) continue;
+        if (move.sheets.count > 2 && isCorner(move.point)) continue;
         apply(move);
         ++inRound;
       }
@@ -90,8 +90,8 @@ class Promoter {
   void collectCorners() {
     for (std::size_t v = 0; v < mesh_.positions.size(); ++v) {
       const auto vertex = static_cast<VertexIndex>(v);
-      if (sides_.kind(vertex) != VertexSides::Kind::Meeting) continue;
-      if (sides_.sides(mesh_, vertex).count > 2) corners_.push_back(pointOf(vertex));
+      if (sheets_.kind(vertex) != VertexSheets::Kind::Meeting) continue;
+      if (sheets_.sheets(mesh_, vertex).count > 2) corners_.push_back(pointOf(vertex));
     }
   }
 
@@ -116,7 +116,7 @@ class Promoter {
       for (std::size_t quad = begin; quad < end; ++quad) {
         const auto& v = mesh_.quads[quad].vertices;
         const bool near = std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
-          return first ? sides_.kind(vertex) != VertexSides::Kind::Smooth : touched_[vertex] != 0;
+          return first ? sheets_.kind(vertex) != VertexSheets::Kind::Smooth : touched_[vertex] != 0;
         });
         if (!near) continue;
         if (auto move = moveFor(quad)) found.push_back(*move);
@@ -171,8 +171,8 @@ class Promoter {
   // The shortest move that mends a quad; none if it needs none or none is short enough.
   [[nodiscard]] std::optional<Move> moveFor(std::size_t quad) const {
     const Quad& q = mesh_.quads[quad];
-    if (QuadSides::isOneSide(mesh_, sides_, q)) return {};
-    const QuadSides around(mesh_, sides_, q);
+    if (QuadSheets::isOneSheet(mesh_, sheets_, q)) return {};
+    const QuadSheets around(mesh_, sheets_, q);
     if (around.fits(false) || around.fits(true)) return {};
     Move best;
     for (int corner = 0; corner < 4; ++corner) {
@@ -191,12 +191,12 @@ class Promoter {
   }
 
   // The plane of a side, through the vertex itself if it lies on it.
-  [[nodiscard]] std::optional<Plane> planeOf(const Quad& quad, const QuadSides& around, int side,
+  [[nodiscard]] std::optional<Plane> planeOf(const Quad& quad, const QuadSheets& around, int side,
                                              int corner) const {
     for (int i = 0; i < 4; ++i) {
       const int candidate = (corner + i) % 4;
       if (!around.known(candidate) || !around.lies(candidate, side)) continue;
-      const MeetingSides own = sides_.sides(mesh_, quad.vertices[candidate]);
+      const MeetingSheets own = sheets_.sheets(mesh_, quad.vertices[candidate]);
       Plane plane{pointOf(quad.vertices[candidate]), around.normal(side)};
       double nearest = -1;
       for (int k = 0; k < own.count; ++k) {
@@ -211,8 +211,8 @@ class Promoter {
   }
 
   // The planes of all sides, as far as they are known, seen from one corner.
-  using Planes = std::array<std::optional<Plane>, QuadSides::kMost>;
-  [[nodiscard]] Planes planesOf(const Quad& quad, const QuadSides& around, int corner) const {
+  using Planes = std::array<std::optional<Plane>, QuadSheets::kMost>;
+  [[nodiscard]] Planes planesOf(const Quad& quad, const QuadSheets& around, int corner) const {
     Planes planes;
     for (int side = 0; side < around.count(); ++side) {
       planes[side] = planeOf(quad, around, side, corner);
@@ -220,9 +220,9 @@ class Promoter {
     return planes;
   }
 
-  void proposeCreases(const Quad& quad, const QuadSides& around, int corner, Move& best) const {
+  void proposeCreases(const Quad& quad, const QuadSheets& around, int corner, Move& best) const {
     const VertexIndex vertex = quad.vertices[corner];
-    if (sides_.isSharp(vertex)) return;
+    if (sheets_.isSharp(vertex)) return;
     const Vec3 from = pointOf(vertex);
     const Planes planes = planesOf(quad, around, corner);
     for (int a = 0; a < around.count(); ++a) {
@@ -235,9 +235,9 @@ class Promoter {
     }
   }
 
-  void proposeCorners(const Quad& quad, const QuadSides& around, int corner, Move& best) const {
+  void proposeCorners(const Quad& quad, const QuadSheets& around, int corner, Move& best) const {
     const VertexIndex vertex = quad.vertices[corner];
-    if (around.count() < 3 || sides_.sides(mesh_, vertex).count > 2) return;
+    if (around.count() < 3 || sheets_.sheets(mesh_, vertex).count > 2) return;
     const Vec3 from = pointOf(vertex);
     const Planes planes = planesOf(quad, around, corner);
     for (int a = 0; a < around.count(); ++a) {
@@ -261,9 +261,9 @@ class Promoter {
     best.distance = distance;
     best.vertex = vertex;
     best.point = point;
-    best.sides = {};
+    best.sheets = {};
     for (const Plane& plane : planes) {
-      best.sides.normals[best.sides.count++] = toNormal(plane.normal);
+      best.sheets.normals[best.sheets.count++] = toNormal(plane.normal);
     }
   }
 
@@ -271,18 +271,18 @@ class Promoter {
     touched_[move.vertex] = 1;
     mesh_.positions[move.vertex] = {move.point[0], move.point[1], move.point[2]};
     Vec3 sum(0);
-    for (int i = 0; i < move.sides.count; ++i) {
-      const Normal& n = move.sides.normals[i];
+    for (int i = 0; i < move.sheets.count; ++i) {
+      const Normal& n = move.sheets.normals[i];
       sum += Vec3(n.x, n.y, n.z);
     }
     mesh_.normals[move.vertex] = toNormal(sum.unitOrX());
-    sides_.setMeeting(move.vertex, move.sides);
-    sides_.setStray(move.vertex);
-    if (move.sides.count > 2) corners_.push_back(move.point);
+    sheets_.setMeeting(move.vertex, move.sheets);
+    sheets_.setOutOfCell(move.vertex);
+    if (move.sheets.count > 2) corners_.push_back(move.point);
   }
 
   Mesh& mesh_;
-  VertexSides& sides_;
+  VertexSheets& sheets_;
   double voxelSize_;
   std::vector<Vec3> corners_;
   std::vector<std::uint8_t> touched_;  // vertices where the last round left something to look at
@@ -292,8 +292,8 @@ class Promoter {
 
 }  // namespace
 
-std::size_t promoteToCreases(Mesh& mesh, VertexSides& sides, double voxelSize, base::Job& job) {
-  return Promoter(mesh, sides, voxelSize).run(job);
+std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job) {
+  return CreaseSnapper(mesh, sheets, voxelSize).run(job);
 }
 
 }  // namespace tufa::uniform

@@ -16,6 +16,6 @@ namespace tufa::uniform {
 /// where three sides meet, to their corner. The vertex leaves its cell, by a voxel at most, into a
 /// cell that has none. Uses positions and normals of the mesh, each exact on its side, and changes
 /// both. `voxelSize` is in world units. Returns the number of vertices moved.
-std::size_t promoteToCreases(Mesh& mesh, VertexSides& sides, double voxelSize, base::Job& job);
+std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job);
 
 }  // namespace tufa::uniform

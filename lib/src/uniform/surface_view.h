@@ -17,8 +17,8 @@ struct SurfaceView {
   const grid::Blocks& blocks;
   const grid::FieldScale& scale;
   const grid::Affine& affine;
-  const Topology& topology;
-  const VertexSides& sides;
+  const CellTopology& topology;
+  const VertexSheets& sheets;
   const Mesh& mesh;  ///< with normals
 
   [[nodiscard]] const Coord& origin(std::size_t surfaceBlock) const {
@@ -26,7 +26,7 @@ struct SurfaceView {
   }
   /// The same cells with other vertices.
   [[nodiscard]] SurfaceView withMesh(const Mesh& other) const {
-    return {blocks, scale, affine, topology, sides, other};
+    return {blocks, scale, affine, topology, sheets, other};
   }
 };
 

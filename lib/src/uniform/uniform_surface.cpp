@@ -13,10 +13,10 @@
 namespace tufa::uniform {
 namespace {
 
-Topology checkedTopology(const grid::Volume& volume, const ContourOptions& options,
-                         base::Job& job) {
-  Topology topology =
-      buildTopology(volume.blocks, volume.scale, options.ambiguity, options.cap, job);
+CellTopology checkedTopology(const grid::Volume& volume, const ContourOptions& options,
+                             base::Job& job) {
+  CellTopology topology =
+      buildCellTopology(volume.blocks, volume.scale, options.ambiguity, options.cap, job);
   if (topology.vertexCount > std::numeric_limits<VertexIndex>::max()) {
     throw Error(ErrorCode::LimitExceeded,
                 "the mesh would have " + std::to_string(topology.vertexCount) +
@@ -30,18 +30,18 @@ Topology checkedTopology(const grid::Volume& volume, const ContourOptions& optio
 UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,
                                   const StageEnds& ends, base::Job& job) {
   job.beginStage("topology", ends.topology);
-  Topology topology = checkedTopology(volume, options, job);
-  UniformSurface surface{std::move(volume), std::move(topology), VertexSides(), Mesh()};
+  CellTopology topology = checkedTopology(volume, options, job);
+  UniformSurface surface{std::move(volume), std::move(topology), VertexSheets(), Mesh()};
   const grid::FieldScale& scale = surface.volume.scale;
   job.beginStage("vertices", ends.vertices);
   const bool normals = options.normals == Normals::Gradient || scale.distance || !options.uniform;
-  surface.sides = placeVertices(surface.volume.blocks, scale, surface.topology, surface.affine(),
-                                normals, surface.mesh, job);
+  surface.sheets = placeVertices(surface.volume.blocks, scale, surface.topology, surface.affine(),
+                                 normals, surface.mesh, job);
   job.beginStage("polygons", ends.polygons);
   connectQuads(surface.view(), surface.mesh, job);
   job.beginStage("creases", ends.creases);
   if (scale.distance) {
-    promoteToCreases(surface.mesh, surface.sides, surface.affine().voxelSize(), job);
+    snapToCreases(surface.mesh, surface.sheets, surface.affine().voxelSize(), job);
     splitAtCreases(surface.view(), surface.mesh, job);
   }
   return surface;
@@ -56,9 +56,9 @@ ContourReport reportOf(const UniformSurface& surface) {
   report.activeVoxels = blocks.activeVoxels();
   report.nonFiniteValues = blocks.nonFiniteValues();
   report.surfaceCells = surface.topology.cellCount;
-  report.creaseCells = surface.sides.sharpCount();
+  report.creaseCells = surface.sheets.sharpCount();
   report.faceFlips = surface.topology.faceFlips;
-  report.cutEdges = surface.topology.cutEdges;
+  report.openEdges = surface.topology.openEdges;
   return report;
 }
 

@@ -20,13 +20,13 @@ struct StageEnds {
 /// that lets polygons intersect: refine/uniform_repair.h takes that out.
 struct UniformSurface {
   grid::Volume volume;
-  Topology topology;
-  VertexSides sides;
+  CellTopology topology;
+  VertexSheets sheets;
   Mesh mesh;
 
   [[nodiscard]] const grid::Affine& affine() const { return volume.affine; }
   [[nodiscard]] SurfaceView view() const {
-    return {volume.blocks, volume.scale, volume.affine, topology, sides, mesh};
+    return {volume.blocks, volume.scale, volume.affine, topology, sheets, mesh};
   }
 };
 

@@ -10,7 +10,7 @@ constexpr double kSameSide = 0.95;
 
 }  // namespace
 
-MeetingSides VertexSides::sides(const Mesh& mesh, VertexIndex vertex) const {
+MeetingSheets VertexSheets::sheets(const Mesh& mesh, VertexIndex vertex) const {
   switch (kinds_[vertex]) {
     case Kind::Unknown:
       return {};
@@ -19,20 +19,20 @@ MeetingSides VertexSides::sides(const Mesh& mesh, VertexIndex vertex) const {
     default:
       break;
   }
-  MeetingSides one;
+  MeetingSheets one;
   one.count = 1;
   one.normals[0] = mesh.normals[vertex];
   return one;
 }
 
-std::size_t VertexSides::sharpCount() const {
+std::size_t VertexSheets::sharpCount() const {
   return static_cast<std::size_t>(
       std::count_if(kinds_.begin(), kinds_.end(), [](Kind k) { return k >= Kind::Meeting; }));
 }
 
-QuadSides::QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& quad) {
+QuadSheets::QuadSheets(const Mesh& mesh, const VertexSheets& sheets, const Quad& quad) {
   for (int corner = 0; corner < 4; ++corner) {
-    const MeetingSides own = sides.sides(mesh, quad.vertices[corner]);
+    const MeetingSheets own = sheets.sheets(mesh, quad.vertices[corner]);
     if (own.count == 0) masks_[corner] = kAll;
     for (int i = 0; i < own.count; ++i) {
       const Vec3 normal(own.normals[i].x, own.normals[i].y, own.normals[i].z);
@@ -44,16 +44,16 @@ QuadSides::QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& qua
   }
 }
 
-bool QuadSides::isOneSide(const Mesh& mesh, const VertexSides& sides, const Quad& quad) {
+bool QuadSheets::isOneSheet(const Mesh& mesh, const VertexSheets& sheets, const Quad& quad) {
   const Normal& first = mesh.normals[quad.vertices[0]];
   return std::all_of(quad.vertices.begin(), quad.vertices.end(), [&](VertexIndex vertex) {
     const Normal& n = mesh.normals[vertex];
-    return !sides.isSharp(vertex) &&
+    return !sheets.isSharp(vertex) &&
            static_cast<double>(n.x * first.x + n.y * first.y + n.z * first.z) >= kSameSide;
   });
 }
 
-bool QuadSides::fits(bool secondDiagonal) const {
+bool QuadSheets::fits(bool secondDiagonal) const {
   const unsigned ends = secondDiagonal ? masks_[1] & masks_[3] : masks_[0] & masks_[2];
   const int a = secondDiagonal ? 0 : 1;
   return (ends & masks_[a]) != 0 && (ends & masks_[a + 2]) != 0;

@@ -13,7 +13,7 @@
 namespace tufa::uniform {
 
 /// The smooth sides of the surface that meet at one vertex on a crease (2) or corner (3).
-struct MeetingSides {
+struct MeetingSheets {
   std::uint8_t count = 0;
   std::array<Normal, 3> normals{};  ///< outward, world space
 };
@@ -22,7 +22,7 @@ struct MeetingSides {
 ///
 /// Almost every vertex lies on one, whose normal is the vertex's own; only vertices on creases and
 /// corners have an entry of their own.
-class VertexSides {
+class VertexSheets {
  public:
   /// A crease runs near, or through, the vertex.
   enum class Kind : std::uint8_t {
@@ -32,8 +32,8 @@ class VertexSides {
     Unknown,  ///< on several sides that could not be told apart
   };
 
-  explicit VertexSides(std::size_t vertices = 0)
-      : kinds_(vertices, Kind::Smooth), strays_(vertices, 0) {}
+  explicit VertexSheets(std::size_t vertices = 0)
+      : kinds_(vertices, Kind::Smooth), outOfCell_(vertices, 0) {}
 
   [[nodiscard]] Kind kind(VertexIndex vertex) const { return kinds_[vertex]; }
   [[nodiscard]] bool isSharp(VertexIndex vertex) const { return kinds_[vertex] >= Kind::Meeting; }
@@ -43,33 +43,34 @@ class VertexSides {
     std::copy(kinds.begin(), kinds.end(), kinds_.begin() + static_cast<std::ptrdiff_t>(first));
   }
   /// Whether the vertex may lie outside of its cell.
-  [[nodiscard]] bool isStray(VertexIndex vertex) const { return strays_[vertex] != 0; }
+  [[nodiscard]] bool isOutOfCell(VertexIndex vertex) const { return outOfCell_[vertex] != 0; }
   /// May be called from several threads.
-  void setStray(VertexIndex vertex) { strays_[vertex] = 1; }
-  void setMeeting(VertexIndex vertex, const MeetingSides& sides) {
+  void setOutOfCell(VertexIndex vertex) { outOfCell_[vertex] = 1; }
+  void setMeeting(VertexIndex vertex, const MeetingSheets& sheets) {
     kinds_[vertex] = Kind::Meeting;
-    meeting_[vertex] = sides;
+    meeting_[vertex] = sheets;
   }
   /// The sides of a vertex; count 0 if they are unknown.
-  [[nodiscard]] MeetingSides sides(const Mesh& mesh, VertexIndex vertex) const;
+  [[nodiscard]] MeetingSheets sheets(const Mesh& mesh, VertexIndex vertex) const;
   /// Number of vertices on creases and corners.
   [[nodiscard]] std::size_t sharpCount() const;
 
  private:
   std::vector<Kind> kinds_;
-  std::vector<std::uint8_t> strays_;  // bytes, as threads set their own
-  std::unordered_map<VertexIndex, MeetingSides> meeting_;
+  std::vector<std::uint8_t> outOfCell_;  // bytes, as threads set their own
+  std::unordered_map<VertexIndex, MeetingSheets> meeting_;
 };
 
 /// The sides around one quad: its corners' sides, equal ones merged.
-class QuadSides {
+class QuadSheets {
  public:
   static constexpr int kMost = 12;  ///< three for each corner
 
-  QuadSides(const Mesh& mesh, const VertexSides& sides, const Quad& quad);
+  QuadSheets(const Mesh& mesh, const VertexSheets& sheets, const Quad& quad);
 
   /// Whether all vertices of a quad surely lie on one side: a quick answer for most.
-  [[nodiscard]] static bool isOneSide(const Mesh& mesh, const VertexSides& sides, const Quad& quad);
+  [[nodiscard]] static bool isOneSheet(const Mesh& mesh, const VertexSheets& sheets,
+                                       const Quad& quad);
 
   /// Whether both triangles of the split at diagonal 0-2 (or 1-3) lie on one side each. A triangle
   /// that does not cuts off a crease or corner.

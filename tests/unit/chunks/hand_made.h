@@ -92,13 +92,13 @@ inline std::vector<Chunk> makeDrum() {
       ChunkSeam seam;
       seam.closed = true;
       seam.tiles = seamOf(8 + direction, kTileArcs[k]);
-      seam.line = seamOf(8, kLineArcs[k]);
+      seam.polyline = seamOf(8, kLineArcs[k]);
       const VertexIndex tip = maker.add(8 + 4 * direction, 4, 4);
       for (int arc = 0; arc < kArcs; ++arc) {
         const auto i = static_cast<std::size_t>(arc), next = static_cast<std::size_t>(arc + 1) % 12;
         maker.addTriangle(tip, seam.tiles[next], seam.tiles[i], level.interior);
       }
-      maker.addStrip(seam, seam.line, level.regular[face]);
+      maker.addStrip(seam, seam.polyline, level.regular[face]);
       if (k < 2) maker.addStrip(seam, seamOf(8, kLineArcs[k + 1]), level.transition[face]);
       level.seams[face].push_back(std::move(seam));
     }
@@ -167,7 +167,7 @@ inline std::vector<Chunk> makeSheet() {
       for (const bool alongX : {false, true}) {
         ChunkSeam& seam = alongX ? top : right;
         const std::size_t face = kTurned[(turn + (alongX ? 1 : 0)) % 4];
-        maker.addStrip(seam, seam.line, level.regular[face]);
+        maker.addStrip(seam, seam.polyline, level.regular[face]);
         if (k < 2) maker.addStrip(seam, lineOf(k + 1, alongX), level.transition[face]);
         level.seams[face].push_back(std::move(seam));
       }

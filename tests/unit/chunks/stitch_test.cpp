@@ -44,7 +44,7 @@ struct Strip {
       }
     };
     fill(1, freshTile, seam.tiles);
-    fill(2, freshLine, seam.line);
+    fill(2, freshLine, seam.polyline);
     if (!closed) seam.end = add(2, arcs, all);
   }
 };
@@ -56,8 +56,8 @@ bool haveSingleStretches(const ChunkSeam& seam) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t before = (i + count - 1) % count;
     const bool goesOn = (i > 0 || seam.closed) && seam.tiles[i] == seam.tiles[before] &&
-                        seam.line[i] == seam.line[before];
-    if (!goesOn && ++stretches[{seam.tiles[i], seam.line[i]}] > 1) return false;
+                        seam.polyline[i] == seam.polyline[before];
+    if (!goesOn && ++stretches[{seam.tiles[i], seam.polyline[i]}] > 1) return false;
   }
   return true;
 }
@@ -84,7 +84,7 @@ void expectWhole(const Strip& strip, const std::vector<StripTriangle>& triangles
       if (side[i - 1] != side[i]) ++outer[{side[i - 1], side[i]}];
     }
   };
-  std::vector<VertexIndex> line = strip.seam.line;
+  std::vector<VertexIndex> line = strip.seam.polyline;
   if (!strip.seam.closed) {
     line.insert(line.begin(), strip.seam.begin);
     line.push_back(strip.seam.end);
@@ -118,7 +118,7 @@ TEST(Stitch, UsesNoEdgeTwiceHoweverFewVerticesThereAre) {
       line[i] = random() % 2 == 0;
     }
     Strip strip(arcs, closed, tile, line);
-    if (closed && distinct(strip.seam.line) < 3) continue;
+    if (closed && distinct(strip.seam.polyline) < 3) continue;
     if (!haveSingleStretches(strip.seam)) continue;
     ++tried;
     // Shaken, so that all ways are taken.

@@ -77,15 +77,16 @@ void LevelCollapser::collapse(LevelMeshes& meshes, const Level& level, const ref
       next.transition = withStripsOf(meshes.transition, next.regular, region_.seams,
                                      level.nextLines, region_.chunks);
     }
-    LevelMender::Clean clean;
-    if (repair != nullptr) region_.mender.mend(next, level.alone, Movable::Clusters, clean);
+    LevelRepairer::Clean clean;
+    if (repair != nullptr)
+      region_.repairer.repairIntersections(next, level.alone, Movable::Clusters, clean);
     measure(next, level);
     std::vector<std::uint8_t> worse = findWorse(meshes, next, level);
     if (std::find(worse.begin(), worse.end(), 1) == worse.end()) {
       meshes = std::move(next);
       return;
     }
-    worse = topology::widen(next.regular.made.mesh, std::move(worse), 1 << attempt);
+    worse = topology::dilate(next.regular.made.mesh, std::move(worse), 1 << attempt);
     for (std::size_t i = 0; i < region_.cells.size(); ++i) {
       if (worse[next.regular.cut.vertexOf[i]] != 0) fixed[meshes.regular.cut.vertexOf[i]] = 1;
     }

@@ -22,20 +22,20 @@ class LevelCollapser {
  public:
   /// What all levels share; must outlive the collapser.
   struct Region {
-    const uniform::SurfaceView base;       ///< with the seams' vertices
-    const distance::BaseSurface& surface;  ///< of the base
-    const std::vector<Coord>& cells;       ///< of the base vertices but for the seams'
+    const uniform::SurfaceView base;            ///< with the seams' vertices
+    const distance::UniformReference& surface;  ///< of the base
+    const std::vector<Coord>& cells;            ///< of the base vertices but for the seams'
     const Seams& seams;
     const ChunkCells& chunks;
     const std::vector<std::uint8_t>& beyond;  ///< base quads that no chunk to be made reaches
-    const LevelMender& mender;
+    const LevelRepairer& repairer;
   };
   /// One level.
   struct Level {
     octree::CutRule rule;
-    double nextTolerance;        ///< of the transition mesh, voxels
-    const SeamLines& nextLines;  ///< of the transition mesh
-    bool alone;                  ///< there is no transition mesh
+    double nextTolerance;            ///< of the transition mesh, voxels
+    const SeamPolylines& nextLines;  ///< of the transition mesh
+    bool alone;                      ///< there is no transition mesh
   };
 
   LevelCollapser(const Region& region, base::Job& job) : region_(region), job_(job) {}

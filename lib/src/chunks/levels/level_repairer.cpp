@@ -13,22 +13,22 @@ namespace tufa::chunks {
 namespace {
 
 // How often the two meshes of a level are mended in turn.
-constexpr int kMostTurns = 3;
+constexpr int kMostFlips = 3;
 
 // Polygons of which each pair that meets has one: those of strips and of the pairs that another
 // mesh with the same clusters has.
-std::vector<intersect::PolygonIndex> stripSuspectsOf(
+std::vector<intersect::PolygonIndex> stripCandidatesOf(
     const SeamedCut& mesh, const std::vector<intersect::PolygonPair>& shared) {
   const auto firstStrip = static_cast<intersect::PolygonIndex>(mesh.firstStripPolygon());
   const auto count = firstStrip + static_cast<intersect::PolygonIndex>(mesh.strips.size());
-  std::vector<intersect::PolygonIndex> suspects;
+  std::vector<intersect::PolygonIndex> candidates;
   for (const auto& [a, b] : shared) {
-    if (a < firstStrip && b < firstStrip) suspects.push_back(a);
+    if (a < firstStrip && b < firstStrip) candidates.push_back(a);
   }
-  std::sort(suspects.begin(), suspects.end());
-  suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
-  for (intersect::PolygonIndex i = firstStrip; i < count; ++i) suspects.push_back(i);
-  return suspects;
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  for (intersect::PolygonIndex i = firstStrip; i < count; ++i) candidates.push_back(i);
+  return candidates;
 }
 
 // Digits of a polygon's corners in their order. Of two different polygons all are as good as never
@@ -57,7 +57,7 @@ void forPolygons(const Mesh& mesh, const Body& body) {
 }
 
 // Those that are not as they were when nothing met them.
-std::vector<intersect::PolygonIndex> findNew(const Mesh& mesh, const LevelMender::Clean& clean) {
+std::vector<intersect::PolygonIndex> findNew(const Mesh& mesh, const LevelRepairer::Clean& clean) {
   std::vector<intersect::PolygonIndex> found;
   forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
     if (!std::binary_search(clean.begin(), clean.end(), digitsOf(mesh, corners))) {
@@ -67,10 +67,10 @@ std::vector<intersect::PolygonIndex> findNew(const Mesh& mesh, const LevelMender
   return found;
 }
 
-LevelMender::Clean findClean(const Mesh& mesh, const std::vector<intersect::PolygonPair>& pairs) {
+LevelRepairer::Clean findClean(const Mesh& mesh, const std::vector<intersect::PolygonPair>& pairs) {
   std::vector<intersect::PolygonIndex> meeting = intersect::polygonsOf(pairs);
   std::sort(meeting.begin(), meeting.end());
-  LevelMender::Clean clean;
+  LevelRepairer::Clean clean;
   forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
     if (!std::binary_search(meeting.begin(), meeting.end(), polygon)) {
       clean.push_back(digitsOf(mesh, corners));
@@ -96,7 +96,7 @@ bool takeShared(const SeamedCut& from, SeamedCut& to) {
 
 }  // namespace
 
-bool LevelMender::isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const {
+bool LevelRepairer::isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const {
   const octree::ClusterRef& ref = mesh.cut.clusters[vertex];
   if (ref.level != 0) return false;
   const ChunkCells& chunks = region_.chunks;
@@ -104,9 +104,9 @@ bool LevelMender::isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable mov
          !chunks.own.contains(chunks.chunkOf(region_.cells[ref.cluster]));
 }
 
-std::vector<intersect::PolygonPair> LevelMender::mend(SeamedCut& mesh, Movable movable,
-                                                      std::vector<intersect::PolygonIndex> suspects,
-                                                      Clean* clean) const {
+std::vector<intersect::PolygonPair> LevelRepairer::repairIntersections(
+    SeamedCut& mesh, Movable movable, std::vector<intersect::PolygonIndex> candidates,
+    Clean* clean) const {
   std::vector<Position>& positions = mesh.made.mesh.positions;
   for (VertexIndex i = 0; i < positions.size(); ++i) {
     Position& p = positions[i];
@@ -114,7 +114,7 @@ std::vector<intersect::PolygonPair> LevelMender::mend(SeamedCut& mesh, Movable m
     if (region_.singlePrecision) p = base::toSingle(p);
   }
   // Also those of the base mesh: they may meet what was clean before.
-  if (clean != nullptr && !clean->empty()) suspects = findNew(mesh.made.mesh, *clean);
+  if (clean != nullptr && !clean->empty()) candidates = findNew(mesh.made.mesh, *clean);
   refine::Source source;
   source.singlePrecision = region_.singlePrecision;
   source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
@@ -124,38 +124,41 @@ std::vector<intersect::PolygonPair> LevelMender::mend(SeamedCut& mesh, Movable m
   };
   source.isFixed = [&](VertexIndex vertex) { return isFixed(mesh, vertex, movable); };
   source.voxelSize = region_.affine.voxelSize();
-  source.toTheFloor = false;
-  refine::MendReport report = refine::mend(mesh.made.mesh, suspects, source, job_);
+  source.lastResort = false;
+  refine::RepairReport report =
+      refine::repairIntersections(mesh.made.mesh, candidates, source, job_);
   if (clean != nullptr) *clean = findClean(mesh.made.mesh, report.left);
   for (Position& p : positions) p = region_.affine.fromWorld(p);
   return std::move(report.left);
 }
 
-void LevelMender::mendRegular(LevelMeshes& meshes, Movable movable, Clean& clean) const {
+void LevelRepairer::repairRegular(LevelMeshes& meshes, Movable movable, Clean& clean) const {
   const SeamedCut& mesh = meshes.regular;
-  meshes.pairs =
-      mend(meshes.regular, movable,
-           refine::suspectsOf(mesh.made, mesh.cut, region_.baseSuspects, mesh.altered), &clean);
+  meshes.pairs = repairIntersections(
+      meshes.regular, movable,
+      refine::candidatesOf(mesh.made, mesh.cut, region_.uniformCandidates, mesh.altered), &clean);
 }
 
-void LevelMender::mendInTurn(LevelMeshes& meshes, Movable movable, Clean& clean) const {
-  const auto stripSuspects = [&] { return stripSuspectsOf(meshes.transition, meshes.pairs); };
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+void LevelRepairer::repairInSequence(LevelMeshes& meshes, Movable movable, Clean& clean) const {
+  const auto stripCandidates = [&] { return stripCandidatesOf(meshes.transition, meshes.pairs); };
+  for (int turn = 0; turn < kMostFlips; ++turn) {
     if (!takeShared(meshes.regular, meshes.transition) && turn > 0) break;
-    meshes.transitionPairs = mend(meshes.transition, movable, stripSuspects(), nullptr);
+    meshes.transitionPairs =
+        repairIntersections(meshes.transition, movable, stripCandidates(), nullptr);
     if (!takeShared(meshes.transition, meshes.regular)) return;
-    mendRegular(meshes, movable, clean);
+    repairRegular(meshes, movable, clean);
   }
   if (takeShared(meshes.regular, meshes.transition)) {
     const intersect::Surface surface(meshes.transition.made.mesh, job_);
-    meshes.transitionPairs = intersect::findPairs(surface, stripSuspects(), job_);
+    meshes.transitionPairs = intersect::findPairs(surface, stripCandidates(), job_);
   }
 }
 
-void LevelMender::mend(LevelMeshes& meshes, bool alone, Movable movable, Clean& clean) const {
-  mendRegular(meshes, movable, clean);
+void LevelRepairer::repairIntersections(LevelMeshes& meshes, bool alone, Movable movable,
+                                        Clean& clean) const {
+  repairRegular(meshes, movable, clean);
   if (alone) return;
-  mendInTurn(meshes, movable, clean);
+  repairInSequence(meshes, movable, clean);
   meshes.mixedPairs =
       findMixedPairs(meshes.regular, meshes.transition, region_.seams, region_.seamPositions,
                      region_.affine, region_.singlePrecision, job_);

@@ -18,12 +18,12 @@ namespace tufa::chunks {
 enum class Movable : std::uint8_t { Clusters, All };
 
 /// Takes the self-intersections out of a region's levels.
-class LevelMender {
+class LevelRepairer {
  public:
   /// What all levels share; must outlive the mender.
   struct Region {
-    const std::vector<Coord>& cells;                 ///< of the base vertices
-    const std::vector<std::uint32_t>& baseSuspects;  ///< see intersect::findSuspects()
+    const std::vector<Coord>& cells;                      ///< of the base vertices
+    const std::vector<std::uint32_t>& uniformCandidates;  ///< see intersect::findSuspects()
     const Seams& seams;
     const std::vector<Position>& seamPositions;  ///< of the vertices on seams, in the world
     const ChunkCells& chunks;
@@ -35,18 +35,18 @@ class LevelMender {
   /// of their corners; sorted. Where all is as it was then, nothing is searched again.
   using Clean = std::vector<std::array<std::uint64_t, 2>>;
 
-  LevelMender(const Region& region, base::Job& job) : region_(region), job_(job) {}
+  LevelRepairer(const Region& region, base::Job& job) : region_(region), job_(job) {}
 
   /// Moves vertices and turns quads until no polygons meet, as they will be written, where that can
   /// be; says which pairs are left. The two meshes of the level, which share all but their strips,
   /// are mended in turn; or the regular one `alone`. Pairs of a strip of each are found only.
-  void mend(LevelMeshes& meshes, bool alone, Movable movable, Clean& clean) const;
+  void repairIntersections(LevelMeshes& meshes, bool alone, Movable movable, Clean& clean) const;
 
  private:
-  void mendInTurn(LevelMeshes& meshes, Movable movable, Clean& clean) const;
-  void mendRegular(LevelMeshes& meshes, Movable movable, Clean& clean) const;
-  [[nodiscard]] std::vector<intersect::PolygonPair> mend(
-      SeamedCut& mesh, Movable movable, std::vector<intersect::PolygonIndex> suspects,
+  void repairInSequence(LevelMeshes& meshes, Movable movable, Clean& clean) const;
+  void repairRegular(LevelMeshes& meshes, Movable movable, Clean& clean) const;
+  [[nodiscard]] std::vector<intersect::PolygonPair> repairIntersections(
+      SeamedCut& mesh, Movable movable, std::vector<intersect::PolygonIndex> candidates,
       Clean* clean) const;
   [[nodiscard]] bool isFixed(const SeamedCut& mesh, VertexIndex vertex, Movable movable) const;
 

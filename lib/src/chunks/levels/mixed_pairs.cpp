@@ -50,11 +50,11 @@ std::vector<intersect::PolygonPair> findMixedPairs(const SeamedCut& regular,
   addStrips(regular);
   const auto count = static_cast<intersect::PolygonIndex>(regular.strips.size());
   addStrips(transition);
-  std::vector<intersect::PolygonIndex> suspects;
-  for (auto i = count; i < strips.triangles.size(); ++i) suspects.push_back(i);
+  std::vector<intersect::PolygonIndex> candidates;
+  for (auto i = count; i < strips.triangles.size(); ++i) candidates.push_back(i);
   const intersect::Surface surface(strips, job);
   std::vector<intersect::PolygonPair> pairs = intersect::findPairs(
-      surface, suspects, job, [&](intersect::PolygonIndex a, intersect::PolygonIndex b) {
+      surface, candidates, job, [&](intersect::PolygonIndex a, intersect::PolygonIndex b) {
         return (a < count) != (b < count) && faces[a].number != faces[b].number &&
                faces[a].chunk == faces[b].chunk;
       });

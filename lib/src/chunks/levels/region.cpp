@@ -103,32 +103,32 @@ class RegionMaker {
             worldPositions(seams_, model.surface().volume.transform, options.singlePrecision)),
         seamBase_(model.view().withMesh(seams_.mesh)),
         surface_(seamBase_, forest_, job),
-        mender_({cells_, model.suspects(), seams_, seamPositions_, chunks, base_.affine,
-                 options.singlePrecision},
-                job),
+        repairer_({cells_, model.candidates(), seams_, seamPositions_, chunks, base_.affine,
+                   options.singlePrecision},
+                  job),
         forbidden_(forbidOthers(forest_, chunks)),
         beyond_(findBeyond()),
-        collapser_({seamBase_, surface_, cells_, seams_, chunks, beyond_, mender_}, job) {
-    const StripTrial trial(before_, seams_, cells_, chunks, base_.affine, job);
+        collapser_({seamBase_, surface_, cells_, seams_, chunks, beyond_, repairer_}, job) {
+    const StripValidation validation(before_, seams_, cells_, chunks, base_.affine, job);
     for (const double tolerance : options.tolerances) {
       const octree::CutRule rule = ruleFor(tolerance);
-      const auto allowed = [&](const Vec3& point) {
+      const auto budget = [&](const Vec3& point) {
         return std::min(kMostOff, kLineShare * rule.toleranceAt(point)) * base_.affine.voxelSize();
       };
-      LineTrial tried;
+      PolylineValidation tried;
       if (options.repair) {
         tried = [&](std::size_t begin, std::size_t end) {
-          return trial.ofFace(begin, end, kLineShare * tolerance > kNearLine);
+          return validation.ofFace(begin, end, kLineShare * tolerance > kNearLine);
         };
       }
-      lines_.push_back(simplifySeams(seams_, base_.affine, allowed, tried));
+      lines_.push_back(simplifySeams(seams_, base_.affine, budget, tried));
     }
   }
 
   [[nodiscard]] const std::vector<Coord>& cells() const { return cells_; }
   [[nodiscard]] const Seams& seams() const { return seams_; }
   [[nodiscard]] const std::vector<Position>& seamPositions() const { return seamPositions_; }
-  [[nodiscard]] const SeamLines& lines(std::size_t level) const { return lines_[level]; }
+  [[nodiscard]] const SeamPolylines& lines(std::size_t level) const { return lines_[level]; }
 
   LevelMeshes makeLevel(std::size_t level) {
     const octree::CutRule rule = ruleFor(options_.tolerances[level]);
@@ -145,7 +145,7 @@ class RegionMaker {
       transition->setIgnored(beyond_);
     }
     SideFlags direct, directNext;
-    LevelMender::Clean clean;
+    LevelRepairer::Clean clean;
     for (int round = 0;; ++round) {
       const octree::CellFlags merged = octree::mergeCells(forest_, cutRule, forbidden, job_);
       const octree::Cut cut = octree::makeCut(forest_, base_.topology, merged, job_);
@@ -157,13 +157,13 @@ class RegionMaker {
         if (splitFar(meshes.transition, *transition, forbidden)) continue;
       }
       if (options_.repair) {
-        mender_.mend(meshes, alone, Movable::Clusters, clean);
+        repairer_.repairIntersections(meshes, alone, Movable::Clusters, clean);
         if (splitPairs(meshes, forbidden) && round < kMostRounds) continue;
         bool straightened = straighten(meshes.regular, meshes.pairs, direct);
         straightened |= straighten(meshes.transition, meshes.transitionPairs, directNext);
         if (straightened) continue;
         if (!meshes.pairs.empty() || !meshes.transitionPairs.empty()) {
-          mender_.mend(meshes, alone, Movable::All, clean);
+          repairer_.repairIntersections(meshes, alone, Movable::All, clean);
         }
         bool split = splitFar(meshes.regular, regular, forbidden);
         if (!alone) split |= splitFar(meshes.transition, *transition, forbidden);
@@ -215,7 +215,7 @@ class RegionMaker {
     return rule;
   }
 
-  [[nodiscard]] SeamedCut mesh(const octree::Cut& cut, const SeamLines& lines,
+  [[nodiscard]] SeamedCut mesh(const octree::Cut& cut, const SeamPolylines& lines,
                                const SideFlags& direct) {
     return meshWithSeams(forest_, cut, seams_, lines, cells_, chunks_, base_.affine, direct, job_);
   }
@@ -284,9 +284,9 @@ class RegionMaker {
   Seams seams_;
   std::vector<Position> seamPositions_;  ///< in the world
   uniform::SurfaceView seamBase_;        ///< with the seams' vertices
-  distance::BaseSurface surface_;
-  LevelMender mender_;
-  std::vector<SeamLines> lines_;  ///< of each level
+  distance::UniformReference surface_;
+  LevelRepairer repairer_;
+  std::vector<SeamPolylines> lines_;  ///< of each level
   octree::CellFlags forbidden_;
   std::vector<std::uint8_t> beyond_;
   LevelCollapser collapser_;

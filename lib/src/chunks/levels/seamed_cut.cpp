@@ -52,7 +52,7 @@ class Joints {
 
 // Begins a mesh of `cut` with the vertices of the lines behind those of the clusters. Returns the
 // vertex of each seam vertex that is on a line.
-std::vector<VertexIndex> addLines(const Seams& seams, const SeamLines& lines, octree::Cut cut,
+std::vector<VertexIndex> addLines(const Seams& seams, const SeamPolylines& lines, octree::Cut cut,
                                   SeamedCut& result) {
   result.clusterCount = static_cast<VertexIndex>(cut.clusters.size());
   const std::size_t baseCount = cut.vertexOf.size();
@@ -79,7 +79,7 @@ bool isSet(const SideFlags& flags, const StripPlace& place) {
 
 // Adds the strips on both sides of all seams, where the chunk is to be made, but for those that are
 // kept; empty: none.
-void addStrips(const Seams& seams, const SeamLines& lines,
+void addStrips(const Seams& seams, const SeamPolylines& lines,
                const std::vector<VertexIndex>& seamVertices, const ChunkCells& chunks,
                const SideFlags& kept, SeamedCut& result) {
   struct Side {
@@ -194,7 +194,7 @@ void keepInChunks(const std::vector<Coord>& vertexCells, const ChunkCells& chunk
 }
 
 SeamedCut meshWithSeams(const octree::ClusterForest& forest, octree::Cut cut, const Seams& seams,
-                        const SeamLines& lines, const std::vector<Coord>& vertexCells,
+                        const SeamPolylines& lines, const std::vector<Coord>& vertexCells,
                         const ChunkCells& chunks, const grid::Affine& affine, SideFlags direct,
                         base::Job& job) {
   SeamedCut result;
@@ -224,7 +224,7 @@ std::vector<StripLeft> stripsLeft(const SeamedCut& before, const octree::Cut& no
 }
 
 SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh, const Seams& seams,
-                       const SeamLines& lines, const ChunkCells& chunks) {
+                       const SeamPolylines& lines, const ChunkCells& chunks) {
   SeamedCut result;
   result.direct = before.direct;
   octree::Cut cut = mesh.cut;

@@ -50,7 +50,7 @@ struct SeamedCut {
 /// strips along these in the chunks to be made, those of `direct` as their arcs run. `vertexCells`
 /// has the cell of each base vertex.
 [[nodiscard]] SeamedCut meshWithSeams(const octree::ClusterForest& forest, octree::Cut cut,
-                                      const Seams& seams, const SeamLines& lines,
+                                      const Seams& seams, const SeamPolylines& lines,
                                       const std::vector<Coord>& vertexCells,
                                       const ChunkCells& chunks, const grid::Affine& affine,
                                       SideFlags direct, base::Job& job);
@@ -70,7 +70,7 @@ struct StripLeft {
 /// `before`; where that does not close the surface, as may be along a closed curve, they are made
 /// anew.
 [[nodiscard]] SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh,
-                                     const Seams& seams, const SeamLines& lines,
+                                     const Seams& seams, const SeamPolylines& lines,
                                      const ChunkCells& chunks);
 
 /// Moves the vertices of clusters off the faces of their chunks.

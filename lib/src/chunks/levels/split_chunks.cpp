@@ -39,8 +39,8 @@ ChunkSplitter::ChunkSplitter(const std::vector<Coord>& vertexCells, const Seams&
   for (std::int32_t i = 0; i < chunks.count(); ++i) made_[i].chunk.index = chunks.chunkAt(i);
 }
 
-void ChunkSplitter::addLevel(const LevelMeshes& meshes, const SeamLines& lines,
-                             const SeamLines* next) {
+void ChunkSplitter::addLevel(const LevelMeshes& meshes, const SeamPolylines& lines,
+                             const SeamPolylines* next) {
   std::vector<std::vector<Piece>> regular(made_.size()), transition(made_.size());
   sortPieces(meshes.regular, regular);
   if (next != nullptr) sortPieces(meshes.transition, transition);
@@ -117,7 +117,7 @@ void ChunkSplitter::sortPieces(const SeamedCut& mesh,
 
 void ChunkSplitter::fillLevel(const LevelMeshes& meshes, std::int32_t chunk,
                               const std::vector<Piece>& regular,
-                              const std::vector<Piece>& transition, const SeamLines& lines,
+                              const std::vector<Piece>& transition, const SeamPolylines& lines,
                               ChunkLevel& level) {
   addPieces(meshes.regular, regular, level, false);
   addSeams(meshes.regular, chunk, lines, level);
@@ -156,7 +156,7 @@ void ChunkSplitter::addPieces(const SeamedCut& mesh, const std::vector<Piece>& p
   }
 }
 
-void ChunkSplitter::addSeams(const SeamedCut& mesh, std::int32_t chunk, const SeamLines& lines,
+void ChunkSplitter::addSeams(const SeamedCut& mesh, std::int32_t chunk, const SeamPolylines& lines,
                              ChunkLevel& level) {
   for (const SeamCurve& curve : seams_.curves) {
     const bool above = chunks_.numberOf(curve.chunk) == chunk;
@@ -167,14 +167,14 @@ void ChunkSplitter::addSeams(const SeamedCut& mesh, std::int32_t chunk, const Se
     for (const SeamIndex arc : curve.arcs) {
       const VertexIndex base = above ? seams_.arcs[arc].above : seams_.arcs[arc].below;
       seam.tiles.push_back(numberOf(mesh, mesh.cut.vertexOf[base], level));
-      seam.line.push_back(numberOfSeam(lines[arc], level));
+      seam.polyline.push_back(numberOfSeam(lines[arc], level));
     }
     if (curve.begin != kNoSeam) seam.begin = numberOfSeam(curve.begin, level);
     if (curve.end != kNoSeam) seam.end = numberOfSeam(curve.end, level);
     seam.closed = curve.closed;
     if (above) {
       std::reverse(seam.tiles.begin(), seam.tiles.end());
-      std::reverse(seam.line.begin(), seam.line.end());
+      std::reverse(seam.polyline.begin(), seam.polyline.end());
       std::swap(seam.begin, seam.end);
     }
     level.seams[2 * curve.axis + (above ? 0 : 1)].push_back(std::move(seam));

@@ -40,7 +40,7 @@ class ChunkSplitter {
                 const grid::Affine& affine, bool singlePrecision);
 
   /// Levels come finest first. `next` are the lines of the next level, null for the last.
-  void addLevel(const LevelMeshes& meshes, const SeamLines& lines, const SeamLines* next);
+  void addLevel(const LevelMeshes& meshes, const SeamPolylines& lines, const SeamPolylines* next);
   /// Chunks that the surface passes, by their indices.
   [[nodiscard]] std::vector<MadeChunk> takeChunks();
 
@@ -54,12 +54,13 @@ class ChunkSplitter {
 
   void sortPieces(const SeamedCut& mesh, std::vector<std::vector<Piece>>& pieces) const;
   void fillLevel(const LevelMeshes& meshes, std::int32_t chunk, const std::vector<Piece>& regular,
-                 const std::vector<Piece>& transition, const SeamLines& lines, ChunkLevel& level);
+                 const std::vector<Piece>& transition, const SeamPolylines& lines,
+                 ChunkLevel& level);
   void countPairs(const LevelMeshes& meshes, const std::vector<std::vector<Piece>>& regular,
                   const std::vector<std::vector<Piece>>& transition);
   void addPieces(const SeamedCut& mesh, const std::vector<Piece>& pieces, ChunkLevel& level,
                  bool transition);
-  void addSeams(const SeamedCut& mesh, std::int32_t chunk, const SeamLines& lines,
+  void addSeams(const SeamedCut& mesh, std::int32_t chunk, const SeamPolylines& lines,
                 ChunkLevel& level);
   [[nodiscard]] VertexIndex numberOf(const SeamedCut& mesh, VertexIndex vertex, ChunkLevel& level);
   [[nodiscard]] VertexIndex numberOfSeam(SeamIndex seam, ChunkLevel& level);

@@ -52,10 +52,10 @@ class Stitcher {
   std::vector<StripTriangle> direct() {
     const std::size_t count = seam_.tiles.size();
     std::set<std::pair<VertexIndex, VertexIndex>> across;
-    for (std::size_t i = 0; i < count; ++i) across.emplace(seam_.tiles[i], seam_.line[i]);
+    for (std::size_t i = 0; i < count; ++i) across.emplace(seam_.tiles[i], seam_.polyline[i]);
     for (std::size_t i = 0; i + (seam_.closed ? 0 : 1) < count; ++i) {
       const std::size_t j = (i + 1) % count;
-      const VertexIndex p = seam_.line[i], q = seam_.line[j];
+      const VertexIndex p = seam_.polyline[i], q = seam_.polyline[j];
       const VertexIndex a = seam_.tiles[i], b = seam_.tiles[j];
       if (p == q) {
         add(p, a, b, i);
@@ -80,11 +80,11 @@ class Stitcher {
   // The best of all ways. Empty if it uses an edge across twice.
   std::vector<StripTriangle> best() {
     for (std::size_t i = 0; i < seam_.tiles.size(); ++i) {
-      paired_.emplace_back(seam_.tiles[i], seam_.line[i]);
+      paired_.emplace_back(seam_.tiles[i], seam_.polyline[i]);
     }
     std::sort(paired_.begin(), paired_.end());
     tiles_ = chainOf(seam_.tiles, seam_.closed);
-    line_ = chainOf(seam_.line, seam_.closed);
+    line_ = chainOf(seam_.polyline, seam_.closed);
     if (seam_.closed) startNearest();
     lineCount_ = line_.size();
     if (seam_.closed) {
@@ -107,9 +107,10 @@ class Stitcher {
   }
 
   void addEnds() {
-    if (seam_.begin != ChunkSeam::kNone) add(seam_.begin, seam_.tiles[0], seam_.line[0], 0);
+    if (seam_.begin != ChunkSeam::kNone) add(seam_.begin, seam_.tiles[0], seam_.polyline[0], 0);
     const std::size_t last = seam_.tiles.size() - 1;
-    if (seam_.end != ChunkSeam::kNone) add(seam_.line[last], seam_.tiles[last], seam_.end, last);
+    if (seam_.end != ChunkSeam::kNone)
+      add(seam_.polyline[last], seam_.tiles[last], seam_.end, last);
   }
 
   // What a triangle costs but for its edges; its squared size makes folds comparable to them.
@@ -129,7 +130,7 @@ class Stitcher {
     std::size_t best = 0;
     double least = std::numeric_limits<double>::max();
     for (std::size_t i = 0; i < seam_.tiles.size(); ++i) {
-      const double squared = (at(seam_.tiles[i]) - at(seam_.line[i])).squaredLength();
+      const double squared = (at(seam_.tiles[i]) - at(seam_.polyline[i])).squaredLength();
       if (squared >= least) continue;
       least = squared;
       best = i;
@@ -140,7 +141,7 @@ class Stitcher {
       std::rotate(chain.begin(), found, chain.end());
     };
     turn(tiles_, seam_.tiles[best]);
-    turn(line_, seam_.line[best]);
+    turn(line_, seam_.polyline[best]);
   }
 
   // Cuts off a vertex of the chunk beside a fold that stands back behind its neighbours, the one

@@ -46,9 +46,9 @@ class Extract {
 
 }  // namespace
 
-StripTrial::StripTrial(const Mesh& before, const Seams& seams,
-                       const std::vector<Coord>& vertexCells, const ChunkCells& chunks,
-                       const grid::Affine& affine, base::Job& job)
+StripValidation::StripValidation(const Mesh& before, const Seams& seams,
+                                 const std::vector<Coord>& vertexCells, const ChunkCells& chunks,
+                                 const grid::Affine& affine, base::Job& job)
     : quads_(before.quads), seams_(seams), job_(job), positions_(before.positions) {
   for (const SeamVertex& vertex : seams.vertices) {
     positions_.push_back(
@@ -70,8 +70,8 @@ StripTrial::StripTrial(const Mesh& before, const Seams& seams,
   std::sort(quadsAt_.begin(), quadsAt_.end());
 }
 
-FaceTrial StripTrial::ofFace(std::size_t begin, std::size_t end, bool far) const {
-  return [this, begin, end, far, seen = std::array<Seen, 2>()](const SeamLines& lines) mutable {
+FaceValidation StripValidation::ofFace(std::size_t begin, std::size_t end, bool far) const {
+  return [this, begin, end, far, seen = std::array<Seen, 2>()](const SeamPolylines& lines) mutable {
     LineFaults faults;
     for (const bool above : {false, true}) {
       lookAtSide(begin, end, above, lines, seen[above ? 1 : 0], faults);
@@ -88,8 +88,8 @@ FaceTrial StripTrial::ofFace(std::size_t begin, std::size_t end, bool far) const
   };
 }
 
-void StripTrial::lookAtSide(std::size_t begin, std::size_t end, bool above, const SeamLines& lines,
-                            Seen& seen, LineFaults& faults) const {
+void StripValidation::lookAtSide(std::size_t begin, std::size_t end, bool above,
+                                 const SeamPolylines& lines, Seen& seen, LineFaults& faults) const {
   // Seam vertices are numbered behind those of the base mesh.
   const auto baseCount = static_cast<VertexIndex>(positions_.size() - seams_.vertices.size());
   const auto note = [&](const std::array<VertexIndex, 3>& triangle, std::vector<SeamIndex>& found) {
@@ -121,13 +121,13 @@ void StripTrial::lookAtSide(std::size_t begin, std::size_t end, bool above, cons
   for (const std::uint32_t quad : quads) extract.quads.push_back(quads_[quad].vertices);
   Mesh mesh = extract.mesh(positions_);
   // Triangles that were there in the trial before meet what they met then, and new ones.
-  std::vector<intersect::PolygonIndex> suspects;
+  std::vector<intersect::PolygonIndex> candidates;
   const auto first = static_cast<intersect::PolygonIndex>(mesh.quads.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (std::binary_search(seen.triangles.begin(), seen.triangles.end(), extract.triangles[i])) {
       continue;
     }
-    suspects.push_back(first + static_cast<intersect::PolygonIndex>(i));
+    candidates.push_back(first + static_cast<intersect::PolygonIndex>(i));
   }
   seen.triangles = extract.triangles;
   std::sort(seen.triangles.begin(), seen.triangles.end());
@@ -137,7 +137,8 @@ void StripTrial::lookAtSide(std::size_t begin, std::size_t end, bool above, cons
     };
     return isGone(pair.first) || isGone(pair.second);
   });
-  for (const auto& [a, b] : intersect::findPairs(intersect::Surface(mesh, job_), suspects, job_)) {
+  for (const auto& [a, b] :
+       intersect::findPairs(intersect::Surface(mesh, job_), candidates, job_)) {
     const StripCorners& later = extract.triangles[b - first];
     seen.met.emplace_back(a < first ? later : extract.triangles[a - first], later);
   }

@@ -17,17 +17,17 @@ namespace tufa::chunks {
 /// vertices, as it was before the repair. Lines that are sound with these can be had without
 /// intersections, whatever else the chunks beside them are like, as their cells can be split down
 /// to such strips. Depends on what is near the face alone.
-class StripTrial {
+class StripValidation {
  public:
   /// `before` is the base mesh before its repair; it and the seams must outlive the trial.
   /// `vertexCells` has the cell of each of its vertices.
-  StripTrial(const Mesh& before, const Seams& seams, const std::vector<Coord>& vertexCells,
-             const ChunkCells& chunks, const grid::Affine& affine, base::Job& job);
+  StripValidation(const Mesh& before, const Seams& seams, const std::vector<Coord>& vertexCells,
+                  const ChunkCells& chunks, const grid::Affine& affine, base::Job& job);
 
   /// A trial of the curves `begin` to `end`, which are those of one face. Where lines may be `far`
   /// from the base mesh's own curves they meet polygons that larger cells will not have: then
   /// triangles that meet others count as folded ones do.
-  [[nodiscard]] FaceTrial ofFace(std::size_t begin, std::size_t end, bool far) const;
+  [[nodiscard]] FaceValidation ofFace(std::size_t begin, std::size_t end, bool far) const;
 
  private:
   using StripCorners = std::array<VertexIndex, 3>;
@@ -37,7 +37,7 @@ class StripTrial {
     std::vector<std::pair<StripCorners, StripCorners>> met;  ///< of pairs; a polygon that is not of
                                                              ///< a strip is like the other one
   };
-  void lookAtSide(std::size_t begin, std::size_t end, bool above, const SeamLines& lines,
+  void lookAtSide(std::size_t begin, std::size_t end, bool above, const SeamPolylines& lines,
                   Seen& seen, LineFaults& faults) const;
 
   const std::vector<Quad>& quads_;

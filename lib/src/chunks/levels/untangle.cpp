@@ -58,7 +58,7 @@ std::vector<FaceSegment> segmentsOf(const Seams& seams, const std::vector<SeamCu
 
 }  // namespace
 
-void untangle(const std::vector<Vec3>& havens, Seams& seams) {
+void untangle(const std::vector<Vec3>& fallbacks, Seams& seams) {
   const std::vector<SeamCurve>& curves = seams.curves;
   forFaces(curves, [&](std::size_t begin, std::size_t end) {
     for (bool any = true; any;) {
@@ -74,8 +74,8 @@ void untangle(const std::vector<Vec3>& havens, Seams& seams) {
         // A point on a chunk edge lies on several faces, and not every chunk sees all of them.
         if (vertex >= seams.arcs.size()) return;
         Vec3& offset = seams.vertices[vertex].offset;
-        any |= offset != havens[vertex];
-        offset = havens[vertex];
+        any |= offset != fallbacks[vertex];
+        offset = fallbacks[vertex];
       };
       for (const std::size_t vertex : back) move(vertex);
       forCrossings(segments, [&](std::size_t i, std::size_t j) {

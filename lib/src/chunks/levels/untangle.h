@@ -11,6 +11,6 @@ namespace tufa::chunks {
 /// vertex to the next, to their `havens`, offsets from their cells, until they do so nowhere or
 /// none of these vertices can be moved. What becomes of a curve depends on what lies on its face
 /// alone.
-void untangle(const std::vector<Vec3>& havens, Seams& seams);
+void untangle(const std::vector<Vec3>& fallbacks, Seams& seams);
 
 }  // namespace tufa::chunks

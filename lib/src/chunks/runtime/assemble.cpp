@@ -93,7 +93,7 @@ void addStrip(const ChunkSeam& seam, LevelVertices& tiles, const ChunkSeam& coar
   ChunkSeam both;
   both.closed = seam.closed;
   for (const VertexIndex tile : seam.tiles) both.tiles.push_back(tiles[tile]);
-  for (const VertexIndex vertex : coarse.line) both.line.push_back(line[vertex]);
+  for (const VertexIndex vertex : coarse.polyline) both.polyline.push_back(line[vertex]);
   if (seam.begin != ChunkSeam::kNone) both.begin = tiles[seam.begin];
   if (seam.end != ChunkSeam::kNone) both.end = tiles[seam.end];
   const Mesh& mesh = weld.mesh();
@@ -113,7 +113,7 @@ void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, st
   const auto& seams = own.seams[face];
   const auto& lines = other.seams[face];
   const auto fits = [](const ChunkSeam& a, const ChunkSeam& b) {
-    return a.tiles.size() == b.line.size() && a.closed == b.closed;
+    return a.tiles.size() == b.polyline.size() && a.closed == b.closed;
   };
   if ((seams.empty() && !(own.regular[face].empty() && own.transition[face].empty())) ||
       !std::equal(seams.begin(), seams.end(), lines.begin(), lines.end(), fits)) {

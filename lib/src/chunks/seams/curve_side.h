@@ -13,19 +13,19 @@ namespace tufa::chunks {
 /// give the numbers that the side has for them.
 template <class TileOf, class VertexOf>
 [[nodiscard]] ChunkSeam sideOf(const SeamCurve& curve, bool above, const Seams& seams,
-                               const SeamLines& lines, const TileOf& tileOf,
+                               const SeamPolylines& lines, const TileOf& tileOf,
                                const VertexOf& vertexOf) {
   ChunkSeam side;
   for (const SeamIndex arc : curve.arcs) {
     side.tiles.push_back(tileOf(above ? seams.arcs[arc].above : seams.arcs[arc].below));
-    side.line.push_back(vertexOf(lines[arc]));
+    side.polyline.push_back(vertexOf(lines[arc]));
   }
   if (curve.begin != kNoSeam) side.begin = vertexOf(curve.begin);
   if (curve.end != kNoSeam) side.end = vertexOf(curve.end);
   side.closed = curve.closed;
   if (above) {
     std::reverse(side.tiles.begin(), side.tiles.end());
-    std::reverse(side.line.begin(), side.line.end());
+    std::reverse(side.polyline.begin(), side.polyline.end());
     std::swap(side.begin, side.end);
   }
   return side;

@@ -15,7 +15,7 @@ struct FaceSegment {
 };
 
 /// Whether two segments meet elsewhere than in a common end.
-[[nodiscard]] inline bool meetElsewhere(const FaceSegment& s, const FaceSegment& t) {
+[[nodiscard]] inline bool intersectElsewhere(const FaceSegment& s, const FaceSegment& t) {
   if (s.a == t.a || s.a == t.b || s.b == t.a || s.b == t.b) return false;
   const auto side = [](const auto& a, const auto& b, const auto& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -39,7 +39,7 @@ void forCrossings(std::vector<FaceSegment>& segments, const Body& body) {
     for (std::size_t j = i + 1; j < segments.size(); ++j) {
       const FaceSegment& t = segments[j];
       if (std::min(t.a[0], t.b[0]) > right) break;
-      if (meetElsewhere(s, t)) body(i, j);
+      if (intersectElsewhere(s, t)) body(i, j);
     }
   }
 }

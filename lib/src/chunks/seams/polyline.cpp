@@ -27,14 +27,14 @@ constexpr double kClearShare = 1.0 / 3;
 class Line {
  public:
   Line(const Seams& seams, const SeamCurve& curve, const grid::Affine& affine,
-       const std::function<double(const Vec3&)>& allowed)
+       const std::function<double(const Vec3&)>& budget)
       : seams_(seams), curve_(curve) {
     const auto add = [&](SeamIndex index) {
       const SeamVertex& vertex = seams.vertices[index];
       // Counted from the chunk's corner: the same digits whatever is around.
       const Vec3 at = Vec3(vertex.cell - seams.vertices[curve.arcs[0]].cell) + vertex.offset;
       points_.push_back(affine.axis(0) * at[0] + affine.axis(1) * at[1] + affine.axis(2) * at[2]);
-      allowed_.push_back(allowed(Vec3(vertex.cell) + vertex.offset));
+      budget_.push_back(budget(Vec3(vertex.cell) + vertex.offset));
       indices_.push_back(index);
     };
     if (curve.begin != kNoSeam) add(curve.begin);
@@ -79,7 +79,7 @@ class Line {
   }
 
   // Names the vertex that stands for each arc.
-  void assign(SeamLines& lines) const {
+  void assign(SeamPolylines& lines) const {
     const std::size_t count = points_.size();
     std::vector<std::size_t> nodes;
     for (std::size_t i = firstArc_; i < firstArc_ + curve_.arcs.size(); ++i) {
@@ -111,8 +111,8 @@ class Line {
   void keepClear() {
     for (std::size_t i = 0; i < curve_.arcs.size(); ++i) {
       const double clearance = static_cast<double>(seams_.arcs[curve_.arcs[i]].clearance);
-      double& allowed = allowed_[firstArc_ + i];
-      allowed = std::min(allowed, kClearShare * clearance);
+      double& budget = budget_[firstArc_ + i];
+      budget = std::min(budget, kClearShare * clearance);
     }
   }
 
@@ -126,7 +126,7 @@ class Line {
       const std::size_t node = firstArc_ + i;
       const auto& flatness = seams_.arcs[curve_.arcs[i]].flatness;
       for (std::size_t k = flatness.size(); k-- > 0;) {
-        if (static_cast<double>(flatness[k]) > allowed_[node]) {
+        if (static_cast<double>(flatness[k]) > budget_[node]) {
           limits_[node] = static_cast<double>(std::size_t{1} << k);
         }
       }
@@ -231,9 +231,9 @@ class Line {
       const Vec3 off = points_[i % count] - a;
       const double along = squared > 0 ? std::clamp(off.dot(way) / squared, 0.0, 1.0) : 0;
       const double distance = (off - way * along).length();
-      const double allowed = allowed_[i % count];
-      const double ratio = allowed > 0 ? distance / allowed
-                                       : (distance > 0 ? std::numeric_limits<double>::max() : 0);
+      const double budget = budget_[i % count];
+      const double ratio =
+          budget > 0 ? distance / budget : (distance > 0 ? std::numeric_limits<double>::max() : 0);
       if (ratio > best.second) best = {i, ratio};
     }
     return best;
@@ -260,7 +260,7 @@ class Line {
   const Seams& seams_;
   const SeamCurve& curve_;
   std::vector<Vec3> points_;        // world lengths, from the curve's first arc
-  std::vector<double> allowed_;     // world units
+  std::vector<double> budget_;      // world units
   std::vector<double> limits_;      // of the length of segments, in arcs
   std::vector<SeamIndex> indices_;  // of the nodes
   std::size_t firstArc_ = 0;        // node of the first arc
@@ -275,8 +275,8 @@ class Face {
       : seams_(seams), lines_(lines), begin_(begin), end_(end) {}
 
   // Until nothing is at fault either.
-  void makeSound(const LineTrial& trial, SeamLines& result) {
-    const FaceTrial onFace = trial ? trial(begin_, end_) : nullptr;
+  void makeSound(const PolylineValidation& validation, SeamPolylines& result) {
+    const FaceValidation onFace = validation ? validation(begin_, end_) : nullptr;
     for (bool any = true; any;) {
       uncross();
       for (std::size_t line = begin_; line < end_; ++line) lines_[line].assign(result);
@@ -372,15 +372,16 @@ std::vector<std::uint8_t> quadrantsOf(const Seams& seams, const SeamCurve& curve
   return quadrants;
 }
 
-SeamLines simplifySeams(const Seams& seams, const grid::Affine& affine,
-                        const std::function<double(const Vec3&)>& allowed, const LineTrial& trial) {
-  SeamLines result(seams.vertices.size());
+SeamPolylines simplifySeams(const Seams& seams, const grid::Affine& affine,
+                            const std::function<double(const Vec3&)>& budget,
+                            const PolylineValidation& validation) {
+  SeamPolylines result(seams.vertices.size());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<SeamIndex>(i);
   std::vector<Line> lines;
   lines.reserve(seams.curves.size());
-  for (const SeamCurve& curve : seams.curves) lines.emplace_back(seams, curve, affine, allowed);
+  for (const SeamCurve& curve : seams.curves) lines.emplace_back(seams, curve, affine, budget);
   forFaces(seams.curves, [&](std::size_t begin, std::size_t end) {
-    Face(seams, lines, begin, end).makeSound(trial, result);
+    Face(seams, lines, begin, end).makeSound(validation, result);
   });
   return result;
 }

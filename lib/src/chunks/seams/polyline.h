@@ -11,7 +11,7 @@
 namespace tufa::chunks {
 
 /// For each seam vertex the one that stands for it: what one level makes of the seams.
-using SeamLines = std::vector<SeamIndex>;
+using SeamPolylines = std::vector<SeamIndex>;
 
 /// For each arc of a closed curve the quadrant of the least square of the octree that holds all of
 /// them; empty if they are in one cell. A cluster's cell lies in one quadrant.
@@ -23,9 +23,9 @@ struct LineFaults {
   std::vector<SeamIndex> folded;   ///< of folded triangles
 };
 /// Finds the faults of lines of one face; asked again with other lines.
-using FaceTrial = std::function<LineFaults(const SeamLines& lines)>;
+using FaceValidation = std::function<LineFaults(const SeamPolylines& lines)>;
 /// Begins a trial of the curves `begin` to `end`, which are those of one face.
-using LineTrial = std::function<FaceTrial(std::size_t begin, std::size_t end)>;
+using PolylineValidation = std::function<FaceValidation(std::size_t begin, std::size_t end)>;
 
 /// Simplifies the curves of all seams, each to a polyline on its face through some of its arcs'
 /// vertices. No vertex that is left out is further from it than `allowed` says, in world units.
@@ -41,9 +41,9 @@ using LineTrial = std::function<FaceTrial(std::size_t begin, std::size_t end)>;
 ///
 /// Polylines are made finer at vertices that `trial` finds faults at, see StripTrial, until there
 /// are none or nothing can be made finer.
-[[nodiscard]] SeamLines simplifySeams(
+[[nodiscard]] SeamPolylines simplifySeams(
     const Seams& seams, const grid::Affine& affine,
-    const std::function<double(const Vec3& latticePoint)>& allowed,
-    const LineTrial& trial = nullptr);
+    const std::function<double(const Vec3& latticePoint)>& budget,
+    const PolylineValidation& validation = nullptr);
 
 }  // namespace tufa::chunks

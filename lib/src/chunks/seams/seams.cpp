@@ -55,7 +55,7 @@ class SeamFinder {
     linkArcs(crossings);
     insertCorners();
     traceCurves();
-    untangle(havensOf(crossings), seams_);
+    untangle(fallbacksOf(crossings), seams_);
     measureFlatness(base_, before_, affine_, seams_);
     measureClearance(affine_, seams_);
     makeMesh(job);
@@ -188,17 +188,17 @@ class SeamFinder {
 
   // Where the vertex of each arc can go if curves cross: to the middle of its stretch, that of a
   // corner to the crossing between two stretches.
-  [[nodiscard]] std::vector<Vec3> havensOf(const std::vector<SeamCrossing>& crossings) const {
-    std::vector<Vec3> havens(seams_.arcs.size());
-    for (SeamIndex i = 0; i < havens.size(); ++i) {
+  [[nodiscard]] std::vector<Vec3> fallbacksOf(const std::vector<SeamCrossing>& crossings) const {
+    std::vector<Vec3> fallbacks(seams_.arcs.size());
+    for (SeamIndex i = 0; i < fallbacks.size(); ++i) {
       if (i < quadsOf_.size()) {
-        havens[i] = middleOf(i, crossings);
+        fallbacks[i] = middleOf(i, crossings);
         continue;
       }
       const auto quad = std::lower_bound(quads_.begin(), quads_.end(), seams_.arcs[i].quad);
-      havens[i] = placeFrom(seams_.vertices[i].cell, crossings[quad - quads_.begin()]);
+      fallbacks[i] = placeFrom(seams_.vertices[i].cell, crossings[quad - quads_.begin()]);
     }
-    return havens;
+    return fallbacks;
   }
 
   [[nodiscard]] Normal meanNormal(const SeamCrossing& a, const SeamCrossing& b) const {

@@ -11,15 +11,15 @@ namespace {
 
 // Edges are collapsed with this share of the freedom first: what would cost more waits. Then with
 // so many times more, up to all of it. Meshes of so few triangles go in smaller steps.
-constexpr double kFirstFreedom = 0.4, kMoreFreedom = 2.5;
+constexpr double kFirstBudget = 0.4, kMoreBudget = 2.5;
 constexpr std::size_t kFewTriangles = 30000;
-constexpr double kFirstFreedomOfFew = 0.3, kMoreFreedomOfFew = 1.5;
+constexpr double kFirstBudgetOfFew = 0.3, kMoreBudgetOfFew = 1.5;
 // Freedom for a number of triangles grows by this factor at a time, by the larger one where that
 // gave less than this share of the triangles, up to so much.
-constexpr double kLooser = 1.25;
-constexpr double kMuchLooser = 2;
+constexpr double kWiderBudget = 1.25;
+constexpr double kMuchWiderBudget = 2;
 constexpr double kLittle = 0.01;
-constexpr double kLoosest = 1e9;
+constexpr double kWidestBudget = 1e9;
 
 // Most vertices of a region: what is kept of them should fit a core's cache.
 constexpr std::size_t kRegion = 4096;
@@ -41,30 +41,30 @@ class Collapse {
     }
     if (bounds.onlyRepeat) return;
     if (bounds.before == nullptr && bounds.triangles == 0)
-      state_.looseness = few ? kFirstFreedomOfFew : kFirstFreedom;
+      state_.budgetScale = few ? kFirstBudgetOfFew : kFirstBudget;
     for (bool anew = bounds.before == nullptr;; anew = true) {
       const std::size_t start = state_.mesh.triangleCount();
       // After a repeat, where something is not as in the result before.
       const bool tooFar =
-          collapseAt(anew ? std::vector<std::uint8_t>() : state_.mesh.widened(state_.changed));
+          collapseAt(anew ? std::vector<std::uint8_t>() : state_.mesh.dilated(state_.changed));
       const std::size_t left = state_.mesh.triangleCount();
       if (bounds.triangles == 0) {
-        if (state_.looseness >= 1) return;
-        state_.looseness =
-            std::min(1.0, state_.looseness * (few ? kMoreFreedomOfFew : kMoreFreedom));
+        if (state_.budgetScale >= 1) return;
+        state_.budgetScale =
+            std::min(1.0, state_.budgetScale * (few ? kMoreBudgetOfFew : kMoreBudget));
         continue;
       }
       if (left <= bounds.triangles) return;
       if (anew && !tooFar) return;  // more freedom is of no use
       const bool little = static_cast<double>(start - left) < kLittle * static_cast<double>(start);
-      state_.looseness *= anew && little ? kMuchLooser : kLooser;
-      if (state_.looseness > kLoosest) return;
+      state_.budgetScale *= anew && little ? kMuchWiderBudget : kWiderBudget;
+      if (state_.budgetScale > kWidestBudget) return;
     }
   }
 
   [[nodiscard]] Collapsed result() {
     Collapsed out;
-    out.looseness = state_.looseness;
+    out.budgetScale = state_.budgetScale;
     const std::vector<std::uint8_t> turned = turnThin();
     out.sampleTriangles = state_.samples.triangles();
     out.steps = std::move(steps_);
@@ -120,13 +120,13 @@ class Collapse {
   std::vector<std::uint8_t> turnThin() {
     if (state_.bounds.turning.empty())
       return std::vector<std::uint8_t>(state_.mesh.cornerCount() / 3, 0);
-    std::vector<double> allowed(state_.mesh.vertexCount(), std::numeric_limits<double>::infinity());
-    for (std::uint32_t i = 0; i < allowed.size(); ++i) {
-      double& own = allowed[state_.mesh.rootOf(i)];
-      own = std::min(own, state_.looseness * static_cast<double>(state_.bounds.turning[i]));
+    std::vector<double> budget(state_.mesh.vertexCount(), std::numeric_limits<double>::infinity());
+    for (std::uint32_t i = 0; i < budget.size(); ++i) {
+      double& own = budget[state_.mesh.rootOf(i)];
+      own = std::min(own, state_.budgetScale * static_cast<double>(state_.bounds.turning[i]));
       if (state_.mesh.isRoot(i) && state_.mesh.isOnBoundary(i)) own = 0;
     }
-    return turnNeedles(state_.mesh, state_.bounds, allowed, state_.samples);
+    return flipSlivers(state_.mesh, state_.bounds, budget, state_.samples);
   }
 
   // Whether the quad of two triangles is half of four that are a closed surface. Two quads would
@@ -146,13 +146,13 @@ class Collapse {
   // Collapses again what was collapsed before, phase by phase. What is around that which is not may
   // then be collapsed in another way.
   void repeat(const Collapsed& before) {
-    state_.looseness = before.looseness;
+    state_.budgetScale = before.budgetScale;
     const std::size_t known = before.sampleTriangles.size();
     attachFrom(known);
     // What was inside its region is so again.
     const Regions whole = oneRegion(state_.mesh);
     const std::span<const Step> steps(before.steps);
-    const std::span<const std::uint8_t> undone(state_.bounds.undone);
+    const std::span<const std::uint8_t> rolledBack(state_.bounds.rolledBack);
     std::size_t first = 0;
     for (const std::vector<std::size_t>& phase : before.phases) {
       std::vector<Collapser> collapsers(phase.size(), Collapser(state_, whole));
@@ -160,7 +160,8 @@ class Collapse {
         for (std::size_t i = begin; i < end; ++i) {
           const std::size_t from = i == 0 ? first : phase[i - 1], count = phase[i] - from;
           collapsers[i].repeat(steps.subspan(from, count),
-                               undone.empty() ? undone : undone.subspan(from, count), job_);
+                               rolledBack.empty() ? rolledBack : rolledBack.subspan(from, count),
+                               job_);
         }
       });
       first = phase.back();
@@ -193,7 +194,7 @@ class Collapse {
   }
   void attach(std::size_t first, const std::vector<std::uint32_t>& places) {
     for (std::size_t i = 0; i < places.size(); ++i) {
-      job_.lookAtTimes(i);
+      job_.pollCancelled(i);
       state_.samples.attach(static_cast<std::uint32_t>(first + i), places[i]);
     }
   }
@@ -214,7 +215,7 @@ class Collapse {
         [&](Collapser& collapser, std::size_t region) {
           const std::vector<VertexIndex>& own = regions.vertices[region];
           for (std::size_t i = 0; i < own.size(); ++i) {
-            job_.lookAtTimes(i);
+            job_.pollCancelled(i);
             if (isMarked(own[i])) collapser.proposeAround(own[i], marks.empty());
           }
         },

@@ -33,7 +33,7 @@ struct Collapsed {
   std::vector<VertexIndex> vertexOf;   ///< for each vertex of the input
   std::vector<std::uint32_t> members;  ///< number of input vertices of each vertex
   std::vector<VertexIndex> turned;     ///< corners of triangles at an edge that was turned
-  double looseness = 1;                ///< what `allowed` was multiplied by to get so far
+  double budgetScale = 1;              ///< what `allowed` was multiplied by to get so far
   std::vector<std::uint32_t> sampleTriangles;  ///< for a next collapse
   std::vector<Step> steps;                     ///< in order, for a next collapse
   /// Steps that may be made at the same time: of each phase, one after another, the ends of its
@@ -47,7 +47,7 @@ struct Bounds {
   std::vector<Sample> samples;
   /// For each vertex, how far the surface may move there, world length; 0: the vertex stays as it
   /// is.
-  std::vector<float> allowed;
+  std::vector<float> budget;
   /// The distance to the surface from a point of the mesh with a normal; what is less than `enough`
   /// may be more than it is. Asked where samples of several sides are near.
   std::function<double(const Vec3& point, const Vec3& normal, double enough)> distance;
@@ -57,11 +57,11 @@ struct Bounds {
   /// A result for the same mesh, more freedom, and the first of the samples, or null: what it
   /// collapsed is collapsed again where that is still allowed.
   const Collapsed* before = nullptr;
-  std::vector<std::uint8_t> undone;  ///< of its steps, those not to be made again; empty: none
-  std::vector<std::uint8_t> firm;    ///< vertices that no new steps are made with; empty: none
-  bool onlyRepeat = false;           ///< make no new steps
-  std::vector<float> turning;        ///< as `allowed`, where edges are turned; empty: none are
-  Rim rim;                           ///< which vertices may be joined
+  std::vector<std::uint8_t> rolledBack;  ///< of its steps, those not to be made again; empty: none
+  std::vector<std::uint8_t> locked;      ///< vertices that no new steps are made with; empty: none
+  bool onlyRepeat = false;               ///< make no new steps
+  std::vector<float> turning;            ///< as `allowed`, where edges are turned; empty: none are
+  Rim rim;                               ///< which vertices may be joined
   /// Whether a vertex may lie at a point; else the middle of the edge is taken. Null: anywhere.
   std::function<bool(VertexIndex vertex, const Vec3& point)> mayLie;
 };

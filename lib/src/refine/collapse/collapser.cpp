@@ -29,14 +29,14 @@ CollapseState::CollapseState(const Mesh& mesh_, const std::vector<base::Quadric>
       bounds(bounds_),
       mesh(mesh_),
       planes(planes_),
-      allowed(bounds_.allowed),
+      budget(bounds_.budget),
       rim(bounds_.rim),
       joined(mesh_.positions.size(), 0),
       changed(mesh_.positions.size(), 0),
       versions(mesh_.positions.size(), 0),
       samples(mesh.cornerCount() / 3, bounds_.samples.size()) {
   for (std::uint32_t i = 0; i < mesh.vertexCount(); ++i) {
-    if (mesh.isOnBoundary(i)) allowed[i] = 0;
+    if (mesh.isOnBoundary(i)) budget[i] = 0;
   }
 }
 
@@ -49,16 +49,16 @@ void Collapser::proposeAround(VertexIndex vertex, bool behind) {
 
 void Collapser::propose(VertexIndex a, VertexIndex b) {
   if (state_.mesh.isBefore(b, a)) std::swap(a, b);
-  const double allowed = allowedAt(a, b);
-  if (!(allowed > 0) || isFirm(a) || isFirm(b)) return;
+  const double budget = budgetAt(a, b);
+  if (!(budget > 0) || isLocked(a) || isLocked(b)) return;
   if (regions_.inner[a] == 0 || regions_.inner[b] == 0) {
     postponed_.emplace_back(a, b);
     return;
   }
   const Edge edge = solve(a, b);
   // Without a number to come to, more freedom follows.
-  const bool mayWait = state_.looseness < 1 && state_.bounds.triangles == 0;
-  const double most = mayWait ? kHopeful * allowed : allowed;
+  const bool mayWait = state_.budgetScale < 1 && state_.bounds.triangles == 0;
+  const double most = mayWait ? kHopeful * budget : budget;
   if (edge.error > most * most * edge.sum.count) {
     tooFar_ = true;
     return;
@@ -73,7 +73,7 @@ void Collapser::run(std::size_t most, base::Job& job) {
   const std::size_t before = steps_.size();
   EdgeQueue::Entry best{};
   for (std::size_t i = 0; steps_.size() - before < most && queue_.pop(best); ++i) {
-    if (i % kBetweenLooks == 0) job.look(0, 1);
+    if (i % kBetweenLooks == 0) job.checkCancelled(0, 1);
     if (best.versionA != state_.versions[best.a] || best.versionB != state_.versions[best.b]) {
       continue;
     }
@@ -85,13 +85,13 @@ void Collapser::run(std::size_t most, base::Job& job) {
   }
 }
 
-void Collapser::repeat(std::span<const Step> steps, std::span<const std::uint8_t> undone,
+void Collapser::repeat(std::span<const Step> steps, std::span<const std::uint8_t> rolledBack,
                        base::Job& job) {
   steps_.reserve(steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    job.lookAtTimes(i);
-    const bool isUndone = !undone.empty() && undone[i] != 0;
-    if (!isUndone && repeatStep(steps[i])) continue;
+    job.pollCancelled(i);
+    const bool isRolledBack = !rolledBack.empty() && rolledBack[i] != 0;
+    if (!isRolledBack && repeatStep(steps[i])) continue;
     state_.changed[steps[i].keep] = 1;
     state_.changed[steps[i].drop] = 1;
   }
@@ -100,8 +100,8 @@ void Collapser::repeat(std::span<const Step> steps, std::span<const std::uint8_t
 bool Collapser::repeatStep(const Step& step) {
   const std::vector<std::uint8_t>& changed = state_.changed;
   if (changed[step.keep] != 0 || changed[step.drop] != 0) return false;
-  if (static_cast<double>(step.reach) > allowedAt(step.keep, step.drop)) return false;
-  if (state_.allowed[step.keep] <= 0 || state_.allowed[step.drop] <= 0) return false;
+  if (static_cast<double>(step.reach) > budgetAt(step.keep, step.drop)) return false;
+  if (state_.budget[step.keep] <= 0 || state_.budget[step.drop] <= 0) return false;
   bool same = true, sampled = false;
   for (const VertexIndex own : {step.keep, step.drop}) {
     state_.mesh.forTriangles(own, [&](std::uint32_t t, VertexIndex x, VertexIndex) {
@@ -121,12 +121,12 @@ bool Collapser::repeatStep(const Step& step) {
   return true;
 }
 
-double Collapser::allowedAt(VertexIndex a, VertexIndex b) const {
-  return state_.looseness * static_cast<double>(std::min(state_.allowed[a], state_.allowed[b]));
+double Collapser::budgetAt(VertexIndex a, VertexIndex b) const {
+  return state_.budgetScale * static_cast<double>(std::min(state_.budget[a], state_.budget[b]));
 }
 
-bool Collapser::isFirm(VertexIndex vertex) const {
-  return !state_.bounds.firm.empty() && state_.bounds.firm[vertex] != 0;
+bool Collapser::isLocked(VertexIndex vertex) const {
+  return !state_.bounds.locked.empty() && state_.bounds.locked[vertex] != 0;
 }
 
 // The planes of both, seen from `point`.
@@ -164,14 +164,14 @@ bool Collapser::canCollapse(const Edge& edge, double& reach) {
 // Whether all samples of the triangles around the edge are near the ring; notes which triangle of
 // it each is nearest to, and where they are of several sides.
 bool Collapser::samplesStayNear(const Edge& edge, double& reach) {
-  const double allowed = allowedAt(edge.a, edge.b), enough = allowed * allowed;
+  const double budget = budgetAt(edge.a, edge.b), enough = budget * budget;
   // What failed once lies at the front and mostly fails again.
   for (const std::uint32_t t : ring_.star()) {
     const std::uint32_t i = state_.samples.front(t);
     if (i != kNone && !ring_.isNear(Vec3(state_.bounds.samples[i].point), enough)) return false;
   }
   attached_.clear();
-  sides_.assign(ring_.shapes().size(), Sides::None);
+  sheets_.assign(ring_.shapes().size(), Sides::None);
   nearestSample_ = kNone;
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   std::size_t next = 0;
@@ -191,8 +191,8 @@ bool Collapser::samplesStayNear(const Edge& edge, double& reach) {
       attached_.emplace_back(i, ring_.triangles()[triangle]);
       const Normal& n = state_.bounds.samples[i].normal;
       const bool own = Vec3(n.x, n.y, n.z).dot(ring_.shapes()[triangle].normal()) > kOneSide;
-      Sides& sides = sides_[triangle];
-      sides = own && sides != Sides::Several ? Sides::One : Sides::Several;
+      Sides& sheets = sheets_[triangle];
+      sheets = own && sheets != Sides::Several ? Sides::One : Sides::Several;
       const double apart = (at - edge.point).squaredLength();
       if (apart >= nearest) continue;
       nearest = apart;
@@ -206,28 +206,28 @@ bool Collapser::samplesStayNear(const Edge& edge, double& reach) {
 // The way back, from the ring to the surface. Where all samples are of one side, the planes of
 // samples tell; beside a crease, the surface is asked.
 bool Collapser::ringStaysNear(const Edge& edge, double& reach) const {
-  const double allowed = allowedAt(edge.a, edge.b);
-  const bool smooth = std::none_of(sides_.begin(), sides_.end(),
-                                   [](Sides sides) { return sides == Sides::Several; });
+  const double budget = budgetAt(edge.a, edge.b);
+  const bool smooth = std::none_of(sheets_.begin(), sheets_.end(),
+                                   [](Sides sheets) { return sheets == Sides::Several; });
   if (smooth) {
     if (nearestSample_ == kNone) return true;
     const Sample& sample = state_.bounds.samples[nearestSample_];
     const double height = std::abs(Vec3(sample.normal.x, sample.normal.y, sample.normal.z)
                                        .dot(edge.point - Vec3(sample.point)));
     reach = std::max(reach, height);
-    return height <= allowed;
+    return height <= budget;
   }
   const auto isNear = [&](const Vec3& point, const Vec3& normal) {
-    const double distance = state_.bounds.distance(point, normal, allowed);
+    const double distance = state_.bounds.distance(point, normal, budget);
     reach = std::max(reach, distance);
-    return distance <= allowed;
+    return distance <= budget;
   };
   Vec3 sum(0.0);
   for (const FlatTriangle& triangle : ring_.shapes()) sum += triangle.normal();
   sum.normalize();
   if (!isNear(edge.point, sum)) return false;
-  for (std::size_t i = 0; i < sides_.size(); ++i) {
-    if (sides_[i] == Sides::One) continue;
+  for (std::size_t i = 0; i < sheets_.size(); ++i) {
+    if (sheets_[i] == Sides::One) continue;
     const FlatTriangle& triangle = ring_.shapes()[i];
     const Vec3& p = triangle.corner(0);
     const Vec3& x = triangle.corner(1);
@@ -243,7 +243,7 @@ bool Collapser::ringStaysNear(const Edge& edge, double& reach) const {
 void Collapser::join(const Edge& edge, double reach, bool moved) {
   steps_.push_back({edge.a, edge.b, edge.point, static_cast<float>(reach)});
   state_.planes[edge.a] = edge.sum.translatedTo(edge.offset);
-  state_.allowed[edge.a] = std::min(state_.allowed[edge.a], state_.allowed[edge.b]);
+  state_.budget[edge.a] = std::min(state_.budget[edge.a], state_.budget[edge.b]);
   state_.mesh.collapse(edge.a, edge.b, edge.point);
   state_.rim.join(edge.a, edge.b);
   if (moved) {

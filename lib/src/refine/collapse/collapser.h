@@ -22,13 +22,13 @@ struct CollapseState {
   const Bounds& bounds;
   EdgeMesh mesh;
   std::vector<base::Quadric> planes;
-  std::vector<float> allowed;
+  std::vector<float> budget;
   Rim rim;
   std::vector<std::uint8_t> joined;     ///< vertices that others went into
   std::vector<std::uint8_t> changed;    ///< vertices that are not as in the result before
   std::vector<std::uint32_t> versions;  ///< how often a vertex has changed
   SampleLists samples;
-  double looseness = 1;  ///< what `allowed` is multiplied by
+  double budgetScale = 1;  ///< what `allowed` is multiplied by
 };
 
 /// Two neighbours.
@@ -49,7 +49,8 @@ class Collapser {
   /// Collapses again what was collapsed before, in the same order, except where a new sample or
   /// less freedom forbids it, or the mesh around is no longer as it was then. `undone`: which are
   /// not to be made again; empty: none.
-  void repeat(std::span<const Step> steps, std::span<const std::uint8_t> undone, base::Job& job);
+  void repeat(std::span<const Step> steps, std::span<const std::uint8_t> rolledBack,
+              base::Job& job);
 
   [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
   [[nodiscard]] const std::vector<EdgeEnds>& postponed() const { return postponed_; }
@@ -67,8 +68,8 @@ class Collapser {
   // What the samples nearest to a triangle of the ring say of the surface there.
   enum class Sides : std::uint8_t { None, One, Several };
 
-  [[nodiscard]] double allowedAt(VertexIndex a, VertexIndex b) const;
-  [[nodiscard]] bool isFirm(VertexIndex vertex) const;
+  [[nodiscard]] double budgetAt(VertexIndex a, VertexIndex b) const;
+  [[nodiscard]] bool isLocked(VertexIndex vertex) const;
   [[nodiscard]] base::Quadric joined(VertexIndex a, VertexIndex b, const Vec3& point) const;
   [[nodiscard]] Edge solve(VertexIndex a, VertexIndex b) const;
   [[nodiscard]] bool canCollapse(const Edge& edge, double& reach);
@@ -88,7 +89,7 @@ class Collapser {
   LinkCheck link_;
   Ring ring_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> attached_;
-  std::vector<Sides> sides_;
+  std::vector<Sides> sheets_;
   std::uint32_t nearestSample_ = kNone;
 };
 

@@ -63,7 +63,7 @@ void EdgeMesh::collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& o
   std::sort(out.begin(), out.end(), [&](VertexIndex a, VertexIndex b) { return isBefore(a, b); });
 }
 
-std::vector<std::uint8_t> EdgeMesh::widened(const std::vector<std::uint8_t>& marks) const {
+std::vector<std::uint8_t> EdgeMesh::dilated(const std::vector<std::uint8_t>& marks) const {
   std::vector<std::uint8_t> wider = marks;
   for (std::size_t t = 0; t < corners_.size(); t += 3) {
     if (!isAlive(t)) continue;

@@ -50,7 +50,7 @@ class EdgeMesh {
   void collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const;
 
   /// The marks of vertices, and of all that share a triangle with a marked one.
-  [[nodiscard]] std::vector<std::uint8_t> widened(const std::vector<std::uint8_t>& marks) const;
+  [[nodiscard]] std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks) const;
 
   /// Lets `drop` go into its neighbour `keep`, and that to `point`. Does not count: collapses of
   /// edges without a common neighbour may be made at the same time.

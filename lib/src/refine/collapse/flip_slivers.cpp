@@ -23,11 +23,11 @@ constexpr int kSweeps = 3;
 
 class Turner {
  public:
-  Turner(EdgeMesh& mesh, const Bounds& bounds, const std::vector<double>& allowed,
+  Turner(EdgeMesh& mesh, const Bounds& bounds, const std::vector<double>& budget,
          SampleLists samples)
       : mesh_(mesh),
         bounds_(bounds),
-        allowed_(allowed),
+        budget_(budget),
         samples_(std::move(samples)),
         turned_(mesh.cornerCount() / 3, 0) {}
 
@@ -70,7 +70,7 @@ class Turner {
     mesh_.forTriangles(pair.a, [&](std::uint32_t other, VertexIndex x, VertexIndex y) {
       if (y == pair.b) pair.u = other, pair.d = x;
     });
-    if (pair.u == kNone || !mayTurn(pair) || !looksBetter(pair) || !staysNear(pair)) return false;
+    if (pair.u == kNone || !mayFlip(pair) || !looksBetter(pair) || !staysNear(pair)) return false;
     mesh_.turn(pair.t, pair.u, pair.a, pair.b, pair.c, pair.d);
     moveSamples(pair);
     turned_[pair.t / 3] = turned_[pair.u / 3] = 1;
@@ -79,8 +79,8 @@ class Turner {
 
   // The vertices are apart, the new edge is not there yet, and no vertex is left with two
   // triangles.
-  [[nodiscard]] bool mayTurn(const Pair& pair) const {
-    if (pair.c == pair.d || !(allowedAt(pair) > 0)) return false;
+  [[nodiscard]] bool mayFlip(const Pair& pair) const {
+    if (pair.c == pair.d || !(budgetAt(pair) > 0)) return false;
     bool joined = false;
     mesh_.forTriangles(pair.c, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
       joined |= x == pair.d || y == pair.d;
@@ -88,8 +88,8 @@ class Turner {
     return !joined && mesh_.degree(pair.a) > 3 && mesh_.degree(pair.b) > 3;
   }
 
-  [[nodiscard]] double allowedAt(const Pair& pair) const {
-    return std::min({allowed_[pair.a], allowed_[pair.b], allowed_[pair.c], allowed_[pair.d]});
+  [[nodiscard]] double budgetAt(const Pair& pair) const {
+    return std::min({budget_[pair.a], budget_[pair.b], budget_[pair.c], budget_[pair.d]});
   }
 
   [[nodiscard]] bool looksBetter(const Pair& pair) const {
@@ -114,15 +114,15 @@ class Turner {
   }
 
   [[nodiscard]] bool staysNear(const Pair& pair) const {
-    const double allowed = allowedAt(pair);
+    const double budget = budgetAt(pair);
     const std::array<FlatTriangle, 2> now = shapesOf(pair);
     for (const std::uint32_t t : {pair.t, pair.u}) {
       for (std::uint32_t i = samples_.front(t); i != kNone; i = samples_.after(i)) {
-        if (nearest(now, i).second > allowed * allowed) return false;
+        if (nearest(now, i).second > budget * budget) return false;
       }
     }
     const Vec3 facing = now[0].normal() + now[1].normal();
-    return bounds_.distance((at(pair.c) + at(pair.d)) * 0.5, facing, allowed) <= allowed;
+    return bounds_.distance((at(pair.c) + at(pair.d)) * 0.5, facing, budget) <= budget;
   }
 
   [[nodiscard]] std::array<FlatTriangle, 2> shapesOf(const Pair& pair) const {
@@ -153,16 +153,16 @@ class Turner {
 
   EdgeMesh& mesh_;
   const Bounds& bounds_;
-  const std::vector<double>& allowed_;
+  const std::vector<double>& budget_;
   SampleLists samples_;
   std::vector<std::uint8_t> turned_;
 };
 
 }  // namespace
 
-std::vector<std::uint8_t> turnNeedles(EdgeMesh& mesh, const Bounds& bounds,
-                                      const std::vector<double>& allowed, SampleLists samples) {
-  Turner turner(mesh, bounds, allowed, std::move(samples));
+std::vector<std::uint8_t> flipSlivers(EdgeMesh& mesh, const Bounds& bounds,
+                                      const std::vector<double>& budget, SampleLists samples) {
+  Turner turner(mesh, bounds, budget, std::move(samples));
   for (int i = 0; i < kSweeps && turner.sweep(); ++i) {
   }
   return std::move(turner).turned();

@@ -15,8 +15,8 @@ namespace tufa::refine {
 ///
 /// `allowed` tells for each vertex how far the surface may move there, 0: not at all. Returns a
 /// mark for each triangle, 1 if it was turned.
-[[nodiscard]] std::vector<std::uint8_t> turnNeedles(EdgeMesh& mesh, const Bounds& bounds,
-                                                    const std::vector<double>& allowed,
+[[nodiscard]] std::vector<std::uint8_t> flipSlivers(EdgeMesh& mesh, const Bounds& bounds,
+                                                    const std::vector<double>& budget,
                                                     SampleLists samples);
 
 }  // namespace tufa::refine

@@ -76,7 +76,7 @@ Regions makeRegions(const EdgeMesh& mesh, std::size_t most, Parting parting, bas
     }
   });
   for (std::size_t t = 0; t < mesh.cornerCount(); t += 3) {
-    job.lookAtTimes(t);
+    job.pollCancelled(t);
     if (!mesh.isAlive(t)) continue;
     const std::array<VertexIndex, 3> v = {mesh.corner(t), mesh.corner(t + 1), mesh.corner(t + 2)};
     if (regions.of[v[0]] == regions.of[v[1]] && regions.of[v[0]] == regions.of[v[2]]) continue;

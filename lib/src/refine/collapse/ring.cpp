@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastTurn = 0.5;
 // A triangle no rounder than this has no direction to speak of: what counts then is the least
 // cosine between its normal and that of the surface.
-constexpr double kNeedle = 0.05;
+constexpr double kSliver = 0.05;
 constexpr double kLeastFacing = 0.3;
 // Least cosine between the normals of two triangles at an edge.
 constexpr double kFold = -0.3;
@@ -65,7 +65,7 @@ bool Ring::collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b, const Vec
       const Vec3 is = (px - point).cross(py - point);
       after = std::min(after, roundnessOf(is.length(), point, px, py));
       upright &= isWithin(was, is, kLeastTurn) ||
-                 ((round < kNeedle || !isWithin(facing, was, kLeastFacing)) &&
+                 ((round < kSliver || !isWithin(facing, was, kLeastFacing)) &&
                   isWithin(facing, is, kLeastFacing));
     });
   };

@@ -28,14 +28,14 @@ void sortUnique(std::vector<T>& items) {
 }  // namespace
 
 Cluster::Cluster(Patch patch, const std::vector<intersect::PolygonPair>& pairs,
-                 const Havens& havens)
-    : patch_(std::move(patch)), havens_(havens) {
+                 const FallbackPositions& fallbacks)
+    : patch_(std::move(patch)), fallbacks_(fallbacks) {
   for (const intersect::PolygonPair& pair : pairs) {
     pairs_.push_back({patch_.find(pair.a), patch_.find(pair.b)});
   }
 }
 
-Changes Cluster::mend(bool toTheFloor) {
+Changes Cluster::repairIntersections(bool lastResort) {
   const std::size_t most = kMostChanges * (pairs_.size() + 1);
   std::vector<Pair> stuck;
   for (std::size_t i = 0; i < most; ++i) {
@@ -52,7 +52,7 @@ Changes Cluster::mend(bool toTheFloor) {
     Pair pair = *next;
     if (placeOf(pair[1]) < placeOf(pair[0])) std::swap(pair[0], pair[1]);
     const Pair named = *next;
-    if (improve(pair) || (toTheFloor && goToFloor(pair))) continue;
+    if (improve(pair) || (lastResort && takeLastResort(pair))) continue;
     stuck.push_back(named);
   }
   return changes();
@@ -69,7 +69,7 @@ std::vector<Cluster::Edit> Cluster::editsFor(const Pair& pair) const {
   std::vector<Edit> edits;
   std::vector<Local> vertices;
   for (const Local polygon : pair) {
-    addTurn(polygon, edits);
+    addFlip(polygon, edits);
     addFan(polygon, edits);
     const intersect::Corners corners = patch_.corners(polygon);
     vertices.insert(vertices.end(), corners.begin(), corners.end());
@@ -99,7 +99,7 @@ bool Cluster::isEdge(Local a, Local b, Local apart) const {
   });
 }
 
-void Cluster::addTurn(Local polygon, std::vector<Edit>& edits) const {
+void Cluster::addFlip(Local polygon, std::vector<Edit>& edits) const {
   const intersect::Corners v = patch_.corners(polygon);
   if (v.size() != 4 || std::none_of(v.begin(), v.end(), [&](Local i) { return canMove(i); }) ||
       isEdge(v[1], v[3], polygon))
@@ -108,18 +108,18 @@ void Cluster::addTurn(Local polygon, std::vector<Edit>& edits) const {
   const Vec3 across = (Vec3(patch_.point(v[2])) - p0).cross(Vec3(patch_.point(v[3])) - p1);
   const double length = across.length();
   Edit edit;
-  edit.harm = length > 0 ? std::abs(across.dot(p1 - p0)) / length / havens_.voxelSize : 0;
+  edit.harm = length > 0 ? std::abs(across.dot(p1 - p0)) / length / fallbacks_.voxelSize : 0;
   edit.turns = {polygon};
   edits.push_back(std::move(edit));
 }
 
 bool Cluster::canMove(Local vertex) const {
-  return !patch_.isNew(vertex) && havens_.massPoints.count(patch_.vertexOf(vertex)) != 0;
+  return !patch_.isNew(vertex) && fallbacks_.massPoints.count(patch_.vertexOf(vertex)) != 0;
 }
 
 bool Cluster::canFan(Local polygon) const {
   return patch_.corners(polygon).size() == 4 &&
-         havens_.crossings.count(patch_.polygonOf(polygon)) != 0;
+         fallbacks_.crossings.count(patch_.polygonOf(polygon)) != 0;
 }
 
 void Cluster::addFan(Local polygon, std::vector<Edit>& edits) const {
@@ -135,8 +135,8 @@ void Cluster::addFan(Local polygon, std::vector<Edit>& edits) const {
 // 1997).
 void Cluster::addMoves(Local vertex, std::vector<Edit>& edits) const {
   if (patch_.isNew(vertex)) return;
-  const auto haven = havens_.massPoints.find(patch_.vertexOf(vertex));
-  if (haven == havens_.massPoints.end()) return;
+  const auto fallback = fallbacks_.massPoints.find(patch_.vertexOf(vertex));
+  if (fallback == fallbacks_.massPoints.end()) return;
   const Vec3 from = Vec3(patch_.point(vertex));
   std::vector<Local> neighbours;
   std::vector<Vec3> normals;  // of the length of the area, twice
@@ -165,15 +165,15 @@ void Cluster::addMoves(Local vertex, std::vector<Edit>& edits) const {
     }
     Edit edit;
     const double off = area > 0 ? std::sqrt(squares / area) : 0;
-    edit.harm = (off + kSlideHarm * way.length()) / havens_.voxelSize;
+    edit.harm = (off + kSlideHarm * way.length()) / fallbacks_.voxelSize;
     const Vec3 to = share == 1 ? target : from + way;
     const Position exact(to[0], to[1], to[2]);
-    const Position position = havens_.singlePrecision ? base::toSingle(exact) : exact;
+    const Position position = fallbacks_.singlePrecision ? base::toSingle(exact) : exact;
     if (position == patch_.point(vertex)) return;
     edit.moves = {{vertex, position}};
     edits.push_back(std::move(edit));
   };
-  for (const double share : kToMassPoint) propose(Vec3(haven->second), share);
+  for (const double share : kToMassPoint) propose(Vec3(fallback->second), share);
   for (const Local neighbour : neighbours) {
     for (const double share : kToNeighbour) propose(Vec3(patch_.point(neighbour)), share);
   }
@@ -185,13 +185,14 @@ Cluster::Edit Cluster::retreat(const Pair& pair) const {
   for (const Local polygon : pair) {
     for (const Local vertex : patch_.corners(polygon)) {
       if (patch_.isNew(vertex)) continue;
-      const auto haven = havens_.massPoints.find(patch_.vertexOf(vertex));
-      if (haven == havens_.massPoints.end() || haven->second == patch_.point(vertex)) continue;
-      const std::pair<Local, Position> move{vertex, haven->second};
+      const auto fallback = fallbacks_.massPoints.find(patch_.vertexOf(vertex));
+      if (fallback == fallbacks_.massPoints.end() || fallback->second == patch_.point(vertex))
+        continue;
+      const std::pair<Local, Position> move{vertex, fallback->second};
       if (std::find(edit.moves.begin(), edit.moves.end(), move) != edit.moves.end()) continue;
       edit.moves.push_back(move);
-      const Vec3 way = Vec3(haven->second) - Vec3(patch_.point(vertex));
-      edit.harm += way.length() / havens_.voxelSize;
+      const Vec3 way = Vec3(fallback->second) - Vec3(patch_.point(vertex));
+      edit.harm += way.length() / fallbacks_.voxelSize;
     }
   }
   return edit;
@@ -203,7 +204,7 @@ bool Cluster::improve(const Pair& pair) {
                      [&](const Edit& edit) { return attempt(edit, pair); });
 }
 
-bool Cluster::goToFloor(const Pair& pair) {
+bool Cluster::takeLastResort(const Pair& pair) {
   Edit edit = retreat(pair);
   if (edit.moves.empty()) {
     for (const Local polygon : pair) {
@@ -255,7 +256,7 @@ void Cluster::apply(const Edit& edit) {
   for (const Local quad : edit.fans) {
     const intersect::Corners v = patch_.corners(quad);
     undoFans_.emplace_back(quad, Quad(v[0], v[1], v[2], v[3]));
-    patch_.fan(quad, havens_.crossings.at(patch_.polygonOf(quad)));
+    patch_.fan(quad, fallbacks_.crossings.at(patch_.polygonOf(quad)));
   }
 }
 
@@ -306,7 +307,7 @@ void Cluster::accept(const Edit& edit, const std::vector<Local>& touched,
   for (const auto& [vertex, to] : edit.moves) moved_.push_back(vertex);
   turned_.insert(turned_.end(), edit.turns.begin(), edit.turns.end());
   for (const Local quad : edit.fans) {
-    fans_.emplace_back(quad, havens_.crossings.at(patch_.polygonOf(quad)));
+    fans_.emplace_back(quad, fallbacks_.crossings.at(patch_.polygonOf(quad)));
   }
   touched_.insert(touched_.end(), touched.begin(), touched.end());
 }

@@ -11,7 +11,7 @@
 namespace tufa::refine {
 
 /// Where what may move can go, for the polygons of all pairs. Vertices without a mass point stay.
-struct Havens {
+struct FallbackPositions {
   std::unordered_map<VertexIndex, Position> massPoints;
   std::unordered_map<intersect::PolygonIndex, Position> crossings;
   double voxelSize = 1;
@@ -31,11 +31,12 @@ struct Changes {
 /// there were. Harm is how far the surface moves off itself, in voxels.
 class Cluster {
  public:
-  Cluster(Patch patch, const std::vector<intersect::PolygonPair>& pairs, const Havens& havens);
+  Cluster(Patch patch, const std::vector<intersect::PolygonPair>& pairs,
+          const FallbackPositions& fallbacks);
 
   /// If `toTheFloor`, polygons of a pair that no such change helps go back to their mass points,
   /// and are then fanned, whatever that does to others.
-  Changes mend(bool toTheFloor);
+  Changes repairIntersections(bool lastResort);
 
  private:
   using Local = Patch::Local;
@@ -50,7 +51,7 @@ class Cluster {
 
   [[nodiscard]] Vec3 placeOf(Local polygon) const;
   [[nodiscard]] std::vector<Edit> editsFor(const Pair& pair) const;
-  void addTurn(Local polygon, std::vector<Edit>& edits) const;
+  void addFlip(Local polygon, std::vector<Edit>& edits) const;
   void addFan(Local polygon, std::vector<Edit>& edits) const;
   void addMoves(Local vertex, std::vector<Edit>& edits) const;
   [[nodiscard]] Edit retreat(const Pair& pair) const;
@@ -59,7 +60,7 @@ class Cluster {
   [[nodiscard]] bool canFan(Local polygon) const;
 
   bool improve(const Pair& pair);
-  bool goToFloor(const Pair& pair);
+  bool takeLastResort(const Pair& pair);
   // Applies an edit and counts; takes it back unless it leaves fewer pairs.
   bool attempt(const Edit& edit, const Pair& pair);
   void apply(const Edit& edit);
@@ -70,7 +71,7 @@ class Cluster {
   [[nodiscard]] Changes changes() const;
 
   Patch patch_;
-  const Havens& havens_;
+  const FallbackPositions& fallbacks_;
   std::vector<Pair> pairs_;
   std::vector<std::pair<Local, Position>> undoMoves_;
   std::vector<std::pair<Local, Quad>> undoFans_;

@@ -40,7 +40,7 @@ class Patch {
   /// Whether two polygons, or the triangles of one, meet elsewhere than in what they share.
   [[nodiscard]] bool meet(Local a, Local b) const {
     return boxes_[a].meets(boxes_[b]) &&
-           intersect::meetElsewhere(points_, corners(a), corners(b), a == b);
+           intersect::intersectElsewhere(points_, corners(a), corners(b), a == b);
   }
   /// Whether the corners of a triangle of the polygon lie on a line.
   [[nodiscard]] bool isFlat(Local polygon) const;

@@ -31,28 +31,28 @@ void sortUnique(std::vector<T>& items) {
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
-class Mender {
+class Repairer {
  public:
-  Mender(Mesh& mesh, const Source& source, base::Job& job)
+  Repairer(Mesh& mesh, const Source& source, base::Job& job)
       : surface_(mesh, job),
         source_(source),
         job_(job),
         ownVertices_(static_cast<VertexIndex>(mesh.positions.size())) {
-    havens_.voxelSize = source.voxelSize;
-    havens_.singlePrecision = source.singlePrecision;
+    fallbacks_.voxelSize = source.voxelSize;
+    fallbacks_.singlePrecision = source.singlePrecision;
   }
 
-  MendReport run(const std::vector<intersect::PolygonIndex>& suspects) {
-    pairs_ = intersect::findPairs(surface_, suspects, job_);
+  RepairReport run(const std::vector<intersect::PolygonIndex>& candidates) {
+    pairs_ = intersect::findPairs(surface_, candidates, job_);
     report_.pairsFound = pairs_.size();
     for (int round = 0; round < kCrowdedRounds && pairs_.size() > surface_.size() / kCrowded;
          ++round) {
-      readHavens();
+      readFallbacks();
       report_.changed = retreatAll();
       lookAgain(report_.changed);
     }
-    mendInRounds(false);
-    if (source_.toTheFloor) mendInRounds(true);
+    repairInRounds(false);
+    if (source_.lastResort) repairInRounds(true);
     surface_.finish();
     sortUnique(report_.changed);
     report_.left = std::move(pairs_);
@@ -60,25 +60,25 @@ class Mender {
   }
 
  private:
-  void mendInRounds(bool toTheFloor) {
+  void repairInRounds(bool lastResort) {
     stuck_.clear();
     for (int round = 0; round < kMostRounds && stuck_.size() < pairs_.size(); ++round) {
-      readHavens();
-      lookAgain(mendClusters(toTheFloor));
+      readFallbacks();
+      lookAgain(repairClusters(lastResort));
     }
   }
 
   // Mass points and crossings for the polygons of all pairs, as far as they are not known yet.
-  void readHavens() {
+  void readFallbacks() {
     std::vector<intersect::PolygonIndex> quads;
     std::vector<VertexIndex> vertices;
     for (const intersect::PolygonPair& pair : pairs_) {
       for (const intersect::PolygonIndex polygon : {pair.a, pair.b}) {
-        if (surface_.isQuad(polygon) && havens_.crossings.count(polygon) == 0) {
+        if (surface_.isQuad(polygon) && fallbacks_.crossings.count(polygon) == 0) {
           quads.push_back(polygon);
         }
         for (const VertexIndex vertex : surface_.corners(polygon)) {
-          if (vertex >= ownVertices_ || havens_.massPoints.count(vertex) != 0) continue;
+          if (vertex >= ownVertices_ || fallbacks_.massPoints.count(vertex) != 0) continue;
           if (!source_.isFixed || !source_.isFixed(vertex)) vertices.push_back(vertex);
         }
       }
@@ -88,13 +88,13 @@ class Mender {
     if (!vertices.empty()) {
       const std::vector<Position> points = source_.massPoints(vertices);
       for (std::size_t i = 0; i < vertices.size(); ++i) {
-        havens_.massPoints.emplace(vertices[i], rounded(points[i]));
+        fallbacks_.massPoints.emplace(vertices[i], rounded(points[i]));
       }
     }
     if (quads.empty() || !source_.crossings) return;
     const std::vector<Position> points = source_.crossings(quads);
     for (std::size_t i = 0; i < quads.size(); ++i) {
-      havens_.crossings.emplace(quads[i], rounded(points[i]));
+      fallbacks_.crossings.emplace(quads[i], rounded(points[i]));
     }
   }
 
@@ -103,7 +103,7 @@ class Mender {
   }
 
   std::vector<intersect::PolygonIndex> retreatAll() {
-    for (const auto& [vertex, to] : havens_.massPoints) {
+    for (const auto& [vertex, to] : fallbacks_.massPoints) {
       if (surface_.mesh().positions[vertex] == to) continue;
       surface_.move(vertex, to);
       ++report_.movedVertices;
@@ -114,15 +114,15 @@ class Mender {
     return all;
   }
 
-  std::vector<intersect::PolygonIndex> mendClusters(bool toTheFloor) {
+  std::vector<intersect::PolygonIndex> repairClusters(bool lastResort) {
     const std::vector<std::vector<intersect::PolygonPair>> clusters = findClusters();
     const std::vector<std::vector<intersect::PolygonIndex>> polygons =
         findPolygons(clusters.size());
     std::vector<Changes> changes(clusters.size());
     job_.forRanges(clusters.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        Cluster cluster(Patch(surface_, polygons[i]), clusters[i], havens_);
-        changes[i] = cluster.mend(toTheFloor);
+        Cluster cluster(Patch(surface_, polygons[i]), clusters[i], fallbacks_);
+        changes[i] = cluster.repairIntersections(lastResort);
       }
     });
     std::vector<intersect::PolygonIndex> changed;
@@ -144,9 +144,9 @@ class Mender {
     box.add(surface_.box(pair.b));
     for (const intersect::PolygonIndex polygon : {pair.a, pair.b}) {
       for (const VertexIndex vertex : surface_.corners(polygon)) {
-        const auto haven = havens_.massPoints.find(vertex);
-        if (haven == havens_.massPoints.end()) continue;
-        box.add(Vec3(haven->second.x, haven->second.y, haven->second.z));
+        const auto fallback = fallbacks_.massPoints.find(vertex);
+        if (fallback == fallbacks_.massPoints.end()) continue;
+        box.add(Vec3(fallback->second.x, fallback->second.y, fallback->second.z));
       }
     }
     const Vec3 size = box.upper - box.lower;
@@ -248,7 +248,7 @@ class Mender {
     for (const intersect::PolygonIndex polygon : changes.polygons) surface_.update(polygon);
     changed.insert(changed.end(), changes.polygons.begin(), changes.polygons.end());
     report_.movedVertices += changes.moves.size();
-    report_.turnedQuads += changes.turns.size();
+    report_.flippedDiagonals += changes.turns.size();
     report_.fannedQuads += changes.fans.size();
   }
 
@@ -272,17 +272,17 @@ class Mender {
   base::Job& job_;
   VertexIndex ownVertices_;  // those behind are centres of fans
   std::vector<intersect::PolygonPair> pairs_;
-  Havens havens_;
+  FallbackPositions fallbacks_;
   std::set<intersect::PolygonPair> stuck_;  // pairs that the present phase cannot help
   std::vector<Box> sights_;                 // of the clusters
-  MendReport report_;
+  RepairReport report_;
 };
 
 }  // namespace
 
-MendReport mend(Mesh& mesh, const std::vector<intersect::PolygonIndex>& suspects,
-                const Source& source, base::Job& job) {
-  return Mender(mesh, source, job).run(suspects);
+RepairReport repairIntersections(Mesh& mesh, const std::vector<intersect::PolygonIndex>& candidates,
+                                 const Source& source, base::Job& job) {
+  return Repairer(mesh, source, job).run(candidates);
 }
 
 }  // namespace tufa::refine

@@ -23,14 +23,14 @@ struct Source {
   bool singlePrecision = false;  ///< positions are, and must stay, representable as floats
   /// Go down to mass points and fans even where that helps no pair at once. Else such pairs are
   /// left over, for their cells to be split.
-  bool toTheFloor = true;
+  bool lastResort = true;
 };
 
 /// What was done.
-struct MendReport {
+struct RepairReport {
   std::size_t pairsFound = 0;  ///< pairs of polygons that met
   std::size_t movedVertices = 0;
-  std::size_t turnedQuads = 0;                   ///< split along their other diagonal
+  std::size_t flippedDiagonals = 0;              ///< split along their other diagonal
   std::size_t fannedQuads = 0;                   ///< replaced by four triangles around a new vertex
   std::vector<intersect::PolygonIndex> changed;  ///< polygons that are not as they were, sorted
   std::vector<intersect::PolygonPair> left;      ///< pairs that still meet
@@ -44,7 +44,7 @@ struct MendReport {
 /// `suspects`, sorted, must hold a polygon of every pair there is. The indices in the report are
 /// those of the given mesh, with fan triangles behind its own; they hold only if no quad was
 /// fanned. The result does not depend on the number of threads.
-MendReport mend(Mesh& mesh, const std::vector<intersect::PolygonIndex>& suspects,
-                const Source& source, base::Job& job);
+RepairReport repairIntersections(Mesh& mesh, const std::vector<intersect::PolygonIndex>& candidates,
+                                 const Source& source, base::Job& job);
 
 }  // namespace tufa::refine
