@@ -61,7 +61,7 @@ Spread meshToShape(const Mesh& mesh, Shape shape, double voxel) {
 
 Spread creaseToMesh(const Mesh& mesh, Shape shape, const openvdb::FloatGrid& grid, double voxel) {
   base::Job job(0, {});
-  const checks::Frame frame(grid);
+  const grid::VoxelFrame frame(grid);
   const checks::TriangleSoup soup(mesh, frame, job);
   std::vector<double> distances;
   std::uint32_t hint = base::Bvh::kNone;

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "support/mesh_oracle.h"
+#include "support/print.h"
 #include "support/uniform_mesh.h"
 
 namespace tufa {
@@ -223,7 +224,7 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
   EXPECT_EQ(near.index.origin, Position(0, 0, 0));
   // A million voxels away, where floats hold no place to a thousandth of a voxel.
   grid->setTransform(grid->transform().copy());
-  grid->transform().postTranslate(Vec3(4e4, 0, 0));
+  grid->transform().postTranslate(openvdb::Vec3d(4e4, 0, 0));
   const Made far = makeChunks(*grid, options);
   EXPECT_NEAR(far.index.origin.x, 4e4, 10);
   std::mt19937 random(3);

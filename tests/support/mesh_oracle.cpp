@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "grid/openvdb_templates.h"
+#include "base/vec3.h"
 
 namespace tufa::test {
 namespace {
@@ -101,10 +101,7 @@ void countVertices(const std::vector<Face>& faces, std::size_t count, MeshTopolo
   }
 }
 
-Vec3 at(const Mesh& mesh, VertexIndex v) {
-  const Position& p = mesh.positions[v];
-  return {p.x, p.y, p.z};
-}
+Vec3 at(const Mesh& mesh, VertexIndex v) { return mesh.positions[v]; }
 
 template <class T>
 bool equalArrays(const std::vector<T>& a, const std::vector<T>& b) {

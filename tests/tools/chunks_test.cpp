@@ -101,9 +101,9 @@ TEST_F(ChunksCommand, MakesChunksAloneAsTheyAreTogether) {
   for (std::size_t i = 0; i < index.chunks.size(); i += 9) {
     std::string only;
     for (std::size_t n = i; n < std::min(i + 9, index.chunks.size()); ++n) {
-      const openvdb::Coord& at = index.chunks[n].index;
-      only += " " + std::to_string(at.x()) + "," + std::to_string(at.y()) + "," +
-              std::to_string(at.z());
+      const Coord& at = index.chunks[n].index;
+      only +=
+          " " + std::to_string(at[0]) + "," + std::to_string(at[1]) + "," + std::to_string(at[2]);
     }
     makeChunks("--quiet --only" + only);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tufa/coord.h>
+#include <tufa/openvdb_fwd.h>
 
 #include <array>
 #include <cstddef>
@@ -13,7 +14,6 @@
 #include "grid/block_places.h"
 #include "grid/field.h"
 #include "grid/isovalue.h"
-#include "tufa/openvdb_fwd.h"
 
 namespace tufa::grid {
 

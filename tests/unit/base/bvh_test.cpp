@@ -85,12 +85,11 @@ TEST(CheckBvh, EqualBoxesDoNoHarm) {
 }
 
 TEST(CheckTriangleSoup, DistanceIsRightOverFacesEdgesAndCorners) {
-  const openvdb::FloatGrid grid;  // voxels of size 1 at the origin
   base::Job job(0, {});
   Mesh mesh;
   mesh.positions = {Position(0, 0, 0), Position(4, 0, 0), Position(0, 4, 0)};
   mesh.triangles = {Triangle(0, 1, 2)};
-  const checks::TriangleSoup soup(mesh, checks::Frame(grid), job);
+  const checks::TriangleSoup soup(mesh, grid::VoxelFrame(), job);
   const auto distance = [&](double x, double y, double z) {
     std::uint32_t hint = Bvh::kNone;
     return soup.distance(Vec3(x, y, z), hint);
@@ -104,7 +103,7 @@ TEST(CheckTriangleSoup, DistanceIsRightOverFacesEdgesAndCorners) {
 
   // No area: the edges are left.
   mesh.triangles = {Triangle(0, 1, 1)};
-  const checks::TriangleSoup flat(mesh, checks::Frame(grid), job);
+  const checks::TriangleSoup flat(mesh, grid::VoxelFrame(), job);
   std::uint32_t hint = Bvh::kNone;
   EXPECT_DOUBLE_EQ(flat.distance(Vec3(2, 3, 0), hint), 3);
 }

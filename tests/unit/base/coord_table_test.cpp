@@ -9,7 +9,6 @@
 namespace tufa::base {
 namespace {
 
-
 TEST(CoordTable, KeepsTheFirstNumberOfEachCoordinate) {
   // Few values, so that many coordinates come again, and steps of 8, as origins of blocks have.
   std::mt19937 random(1);

@@ -10,7 +10,6 @@
 namespace tufa::base {
 namespace {
 
-
 // The least distance of many points of the triangle.
 double sampled(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {
   constexpr int kSteps = 200;

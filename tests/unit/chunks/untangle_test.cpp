@@ -7,7 +7,6 @@
 namespace tufa::chunks {
 namespace {
 
-
 // A curve along y on a face across x, through the middles of cells, its vertices at these heights.
 void addCurve(Seams& seams, std::vector<Vec3>& havens, const std::vector<double>& heights,
               double haven) {

@@ -70,5 +70,16 @@ TEST(Limits, CellsAreAnyPowerOfTwo) {
   EXPECT_TRUE(test::sameBytes(contour(*ballAround(Coord(0)), options), mesh));
 }
 
+TEST(Limits, ToleranceGridsAreFloatGrids) {
+  ContourOptions options;
+  const auto doubles = openvdb::DoubleGrid::create(1);
+  doubles->setName("detail");
+  options.toleranceGrid = doubles;
+  for (const char* part : {"\"detail\"", "double", "float grid"}) {
+    expectError(ErrorCode::UnsupportedGrid, part,
+                [&] { (void)contour(*ballAround(Coord(0)), options); });
+  }
+}
+
 }  // namespace
 }  // namespace tufa

@@ -8,10 +8,11 @@
 #include <random>
 #include <string>
 
+#include "grid/vdb_coord.h"
 #include "support/fields.h"
 #include "support/lattice.h"
 
-namespace tufa::blocks {
+namespace tufa::grid {
 namespace {
 
 using openvdb::Coord;
@@ -26,10 +27,10 @@ class BlocksOf : public testing::Test {};
 using GridTypes = testing::Types<FloatGrid, DoubleGrid>;
 TYPED_TEST_SUITE(BlocksOf, GridTypes);
 
-template <class GridT>
-auto blocksOf(const GridT& grid, const IsoChoice& iso, NonFinite nonFinite = NonFinite::Refuse) {
+Blocks blocksOf(const openvdb::GridBase& grid, const IsoChoice& iso,
+                NonFinite nonFinite = NonFinite::Refuse) {
   base::Job job(2, {});
-  return Blocks<typename GridT::TreeType>(grid.tree(), iso, nonFinite, job);
+  return Blocks(treeOf(grid, job), iso, nonFinite, job);
 }
 
 // Compares the side of every sample of every block with the tree's.
@@ -37,15 +38,16 @@ template <class GridT>
 void expectSides(const GridT& grid, const IsoChoice& iso, NonFinite nonFinite = NonFinite::Refuse) {
   const auto blocks = blocksOf(grid, iso, nonFinite);
   ASSERT_GT(blocks.count(), 0U);
+  const auto accessor = blocks.accessor();
   for (std::size_t i = 0; i < blocks.count(); ++i) {
     const auto block = static_cast<BlockRef>(i);
     for (int cell = 0; cell < kBlockCells; ++cell) {
-      const Coord at = blocks.origin(block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
+      const Coord at = toVdb(blocks.origin(block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7));
       const auto value = grid.tree().getValue(at);
       const bool inside =
           std::isfinite(value) && (iso.insideIsBelow ? value < iso.isovalue : value > iso.isovalue);
       ASSERT_EQ(blocks.inside(block).get(cell), inside) << at << " " << value;
-      ASSERT_EQ(((blocks.active(block, cell >> 6) >> (cell & 63)) & 1) != 0,
+      ASSERT_EQ(((blocks.active(block, cell >> 6, *accessor) >> (cell & 63)) & 1) != 0,
                 grid.tree().isValueOn(at));
     }
   }
@@ -244,4 +246,4 @@ TEST(Blocks, OfAnEmptyTreeAreNone) {
 }
 
 }  // namespace
-}  // namespace tufa::blocks
+}  // namespace tufa::grid

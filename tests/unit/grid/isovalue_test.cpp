@@ -7,7 +7,7 @@
 
 #include "support/fields.h"
 
-namespace tufa::blocks {
+namespace tufa::grid {
 namespace {
 
 using openvdb::Coord;
@@ -78,4 +78,4 @@ TEST(Isovalue, SamplesOnItOrNotFiniteAreOutside) {
 }
 
 }  // namespace
-}  // namespace tufa::blocks
+}  // namespace tufa::grid

@@ -30,9 +30,9 @@ int orientationOf(const Integers& a, const Integers& b, const Integers& c, const
 
 TEST(Exact, ASeerAboveSeesCounterClockwise) {
   const Position a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
-  EXPECT_EQ(refine::orientation(a, b, c, {0.2, 0.2, 1}), 1);
-  EXPECT_EQ(refine::orientation(a, b, c, {0.2, 0.2, -1}), -1);
-  EXPECT_EQ(refine::orientation(a, b, c, {7, -3, 0}), 0);
+  EXPECT_EQ(intersect::orientation(a, b, c, {0.2, 0.2, 1}), 1);
+  EXPECT_EQ(intersect::orientation(a, b, c, {0.2, 0.2, -1}), -1);
+  EXPECT_EQ(intersect::orientation(a, b, c, {7, -3, 0}), 0);
 }
 
 TEST(Exact, OrientationAgreesWithWholeNumbers) {
@@ -44,7 +44,7 @@ TEST(Exact, OrientationAgreesWithWholeNumbers) {
     };
     for (int i = 0; i < 20000; ++i) {
       const Integers a = point(), b = point(), c = point(), d = point();
-      ASSERT_EQ(refine::orientation(a.position(), b.position(), c.position(), d.position()),
+      ASSERT_EQ(intersect::orientation(a.position(), b.position(), c.position(), d.position()),
                 orientationOf(a, b, c, d));
     }
   }
@@ -65,7 +65,8 @@ TEST(Exact, OrientationOfNearlyFlatPointsAgreesWithWholeNumbers) {
                      3 * b.z - 2 * a.z + step(random)};
     const int expected = orientationOf(a, b, c, d);
     flat += expected == 0 ? 1 : 0;
-    ASSERT_EQ(refine::orientation(a.position(), b.position(), c.position(), d.position()), expected);
+    ASSERT_EQ(intersect::orientation(a.position(), b.position(), c.position(), d.position()),
+              expected);
   }
   EXPECT_GT(flat, 100);
 }
@@ -73,17 +74,17 @@ TEST(Exact, OrientationOfNearlyFlatPointsAgreesWithWholeNumbers) {
 TEST(Exact, NeighbouringNumbersAreToldApart) {
   const double above = std::nextafter(0.5, 1.0);
   const Position a(0.1, 0.1, 0.5), b(12.3, 0.1, 0.5), c(0.1, 45.6, 0.5);
-  EXPECT_EQ(refine::orientation(a, b, c, {78.9, 0.3, above}), 1);
-  EXPECT_EQ(refine::orientation(a, b, c, {78.9, 0.3, 0.5}), 0);
-  EXPECT_EQ(refine::orientationAcross(2, {0, 0, 0}, {1, 1, 0}, {0.5, above, 0}), 1);
-  EXPECT_EQ(refine::orientationAcross(2, {0, 0, 0}, {1, 1, 0}, {above, above, 9}), 0);
+  EXPECT_EQ(intersect::orientation(a, b, c, {78.9, 0.3, above}), 1);
+  EXPECT_EQ(intersect::orientation(a, b, c, {78.9, 0.3, 0.5}), 0);
+  EXPECT_EQ(intersect::orientationAcross(2, {0, 0, 0}, {1, 1, 0}, {0.5, above, 0}), 1);
+  EXPECT_EQ(intersect::orientationAcross(2, {0, 0, 0}, {1, 1, 0}, {above, above, 9}), 0);
 }
 
 TEST(Exact, EachAxisIsSeenTheSameWay) {
   const Position a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), up(0, 0, 1);
-  EXPECT_EQ(refine::orientationAcross(2, a, b, c), 1);
-  EXPECT_EQ(refine::orientationAcross(0, a, c, up), 1);
-  EXPECT_EQ(refine::orientationAcross(1, a, up, b), 1);
+  EXPECT_EQ(intersect::orientationAcross(2, a, b, c), 1);
+  EXPECT_EQ(intersect::orientationAcross(0, a, c, up), 1);
+  EXPECT_EQ(intersect::orientationAcross(1, a, up, b), 1);
 }
 
 }  // namespace

@@ -35,10 +35,10 @@ TEST(TrianglePair, AgreesWithCgalOnSmallLattices) {
           b.vertices[2] == b.vertices[0]) {
         b = {3, 4, 5};
       }
-      const bool meet = refine::meetElsewhere(p, a, b);
+      const bool meet = intersect::meetElsewhere(p, a, b);
       met += meet ? 1 : 0;
       ASSERT_EQ(meet, expected(p, a, b)) << "lattice of " << size << ", pair " << i;
-      ASSERT_EQ(meet, refine::meetElsewhere(p, b, a));
+      ASSERT_EQ(meet, intersect::meetElsewhere(p, b, a));
     }
     EXPECT_GT(met, 1000);
   }
@@ -57,7 +57,7 @@ TEST(TrianglePair, AgreesWithCgalOnFlatTriangles) {
                               : Position(u, v, u));
     }
     for (const Triangle& b : {Triangle(3, 4, 5), Triangle(3, 4, 0), Triangle(1, 0, 3)}) {
-      ASSERT_EQ(refine::meetElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
+      ASSERT_EQ(intersect::meetElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
     }
   }
 }
@@ -71,7 +71,7 @@ TEST(TrianglePair, AgreesWithCgalOnRandomPoints) {
       p.emplace_back(coordinate(random), coordinate(random), coordinate(random));
     }
     for (const Triangle& b : {Triangle(3, 4, 5), Triangle(3, 4, 0), Triangle(1, 0, 3)}) {
-      ASSERT_EQ(refine::meetElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
+      ASSERT_EQ(intersect::meetElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
     }
   }
 }
@@ -96,7 +96,7 @@ TEST(TrianglePair, WhatIsPartedAlongAnEdgeDoesNotMeet) {
     for (const Triangle& a : own) {
       for (const Triangle& b : other) meet |= expected(p, a, b);
     }
-    const bool apart = refine::arePartedAlong(p[0], p[1], {p.data() + 2, 2}, {p.data() + 4, 2});
+    const bool apart = intersect::arePartedAlong(p[0], p[1], {p.data() + 2, 2}, {p.data() + 4, 2});
     ASSERT_FALSE(apart && meet) << i;
     parted += apart ? 1 : 0;
     met += meet ? 1 : 0;
@@ -107,16 +107,16 @@ TEST(TrianglePair, WhatIsPartedAlongAnEdgeDoesNotMeet) {
 
 TEST(TrianglePair, NothingIsPartedAlongAPoint) {
   const std::vector<Position> p = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, -1, 0}, {1, 0, 0}};
-  EXPECT_FALSE(refine::arePartedAlong(p[0], p[1], {&p[2], 1}, {&p[3], 1}));
-  EXPECT_TRUE(refine::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[3], 1}));
-  EXPECT_FALSE(refine::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[2], 1}));
-  EXPECT_FALSE(refine::arePartedAlong(p[0], p[4], {&p[4], 1}, {&p[3], 1}));
+  EXPECT_FALSE(intersect::arePartedAlong(p[0], p[1], {&p[2], 1}, {&p[3], 1}));
+  EXPECT_TRUE(intersect::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[3], 1}));
+  EXPECT_FALSE(intersect::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[2], 1}));
+  EXPECT_FALSE(intersect::arePartedAlong(p[0], p[4], {&p[4], 1}, {&p[3], 1}));
 }
 
 TEST(TrianglePair, FlatMeansOnALine) {
   const std::vector<Position> p = {{0, 0, 0}, {1, 2, 3}, {2, 4, 6}, {0, 0, 1e-300}};
-  EXPECT_TRUE(refine::isFlat(p, {0, 1, 2}));
-  EXPECT_FALSE(refine::isFlat(p, {0, 1, 3}));
+  EXPECT_TRUE(intersect::isFlat(p, {0, 1, 2}));
+  EXPECT_FALSE(intersect::isFlat(p, {0, 1, 3}));
 }
 
 }  // namespace

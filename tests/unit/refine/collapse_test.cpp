@@ -7,17 +7,18 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/quadric.h"
 #include "refine/collapse/edge_queue.h"
+#include "refine/collapse/least_point.h"
 #include "support/mesh_oracle.h"
 #include "support/uniform_mesh.h"
 
-namespace tufa::simplify {
+namespace tufa::refine {
 namespace {
-
 
 struct Problem {
   Mesh mesh;
-  std::vector<PlaneSum> planes;
+  std::vector<base::Quadric> planes;
   Bounds bounds;
 };
 
@@ -34,7 +35,7 @@ Problem problemOf(Shape shape, double voxelSize, double allowed) {
   }
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Normal& n = mesh.normals[i];
-    problem.planes.emplace_back().addPlane(Vec3(0.0), Vec3(n.x, n.y, n.z));
+    problem.planes.emplace_back().addPlane(Vec3(0.0), Vec3(n));
     problem.bounds.samples.push_back({mesh.positions[i], n, polygonOf[i]});
   }
   problem.bounds.allowed.assign(mesh.positions.size(), static_cast<float>(allowed * voxelSize));
@@ -47,23 +48,19 @@ Collapsed solve(const Problem& problem, int threads = 1) {
   return collapse(problem.mesh, problem.planes, problem.bounds, job);
 }
 
-TEST(PlaneSum, HasItsLeastErrorWhereThePlanesMeet) {
-  PlaneSum sum;
+TEST(LeastPoint, IsWhereThePlanesMeet) {
+  base::Quadric sum;
   const Vec3 corner(0.3, -0.2, 0.1);
   for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(0, 0.6, 0.8), Vec3(0, -0.8, 0.6)}) {
     sum.addPlane(corner, normal);
   }
-  EXPECT_NEAR((sum.least() - corner).length(), 0, 2e-3);
-  EXPECT_NEAR(sum.at(corner), 0, 1e-12);
-  const Vec3 away(0.5, 0.5, -1);
-  EXPECT_NEAR(sum.at(corner + away), away.squaredLength(), 1e-12);
-  EXPECT_NEAR(sum.seenFrom(away).at(corner - away), 0, 1e-12);
+  EXPECT_NEAR((leastPoint(sum) - corner).length(), 0, 2e-3);
 }
 
-TEST(PlaneSum, LeavesFreeDirectionsAlone) {
-  PlaneSum sum;
+TEST(LeastPoint, LeavesFreeDirectionsAlone) {
+  base::Quadric sum;
   sum.addPlane(Vec3(0, 0, 2), Vec3(0, 0, 1));
-  const Vec3 least = sum.least();
+  const Vec3 least = leastPoint(sum);
   EXPECT_EQ(least[0], 0);
   EXPECT_EQ(least[1], 0);
   EXPECT_NEAR(least[2], 2, 1e-2);
@@ -276,4 +273,4 @@ TEST(Collapse, TurnsNoEdgeWhereTheSurfaceIsTooFar) {
 }
 
 }  // namespace
-}  // namespace tufa::simplify
+}  // namespace tufa::refine

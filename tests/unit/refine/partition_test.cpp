@@ -9,7 +9,7 @@
 #include "refine/collapse/edge_mesh.h"
 #include "support/uniform_mesh.h"
 
-namespace tufa::simplify {
+namespace tufa::refine {
 namespace {
 
 constexpr std::size_t kMost = 1000;
@@ -79,4 +79,4 @@ TEST(Regions, AreOneWhereThereIsLittle) {
 }
 
 }  // namespace
-}  // namespace tufa::simplify
+}  // namespace tufa::refine

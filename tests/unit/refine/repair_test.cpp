@@ -11,30 +11,27 @@
 #include <string>
 #include <vector>
 
-#include "grid/affine.h"
 #include "base/job.h"
 #include "base/single_precision.h"
-#include "grid/blocks.h"
-#include "uniform/cell_topology.h"
-#include "uniform/snap_to_creases.h"
-#include "refine/lone_samples.h"
+#include "grid/volume.h"
 #include "intersect/candidates.h"
+#include "refine/lone_samples.h"
 #include "support/fields.h"
-#include "uniform/place_vertices.h"
+#include "uniform/uniform_surface.h"
 
 namespace tufa {
 namespace {
 
-std::vector<refine::PolygonIndex> allPolygons(const Mesh& mesh) {
-  std::vector<refine::PolygonIndex> all(mesh.quads.size() + mesh.triangles.size());
-  std::iota(all.begin(), all.end(), refine::PolygonIndex{0});
+std::vector<intersect::PolygonIndex> allPolygons(const Mesh& mesh) {
+  std::vector<intersect::PolygonIndex> all(mesh.quads.size() + mesh.triangles.size());
+  std::iota(all.begin(), all.end(), intersect::PolygonIndex{0});
   return all;
 }
 
-std::vector<refine::PolygonPair> allPairs(Mesh mesh) {
+std::vector<intersect::PolygonPair> allPairs(Mesh mesh) {
   base::Job job(0, {});
-  const refine::Surface surface(mesh, job);
-  return refine::findPairs(surface, allPolygons(mesh), job);
+  const intersect::Surface surface(mesh, job);
+  return intersect::findPairs(surface, allPolygons(mesh), job);
 }
 
 openvdb::FloatGrid::Ptr makeGrid(Shape shape, double voxelSize, std::uint32_t seed = 1) {
@@ -79,7 +76,7 @@ refine::Source sourceOf(const Mesh& good) {
 
 TEST(Mend, FindsThePairsThatCheckFinds) {
   const Mesh mesh = contourOf(Shape::Bracket, 0.03, false);
-  const std::vector<refine::PolygonPair> pairs = allPairs(mesh);
+  const std::vector<intersect::PolygonPair> pairs = allPairs(mesh);
   ASSERT_FALSE(pairs.empty());
   // As triangles, so that the numbers can be compared.
   Mesh split;
@@ -126,7 +123,7 @@ TEST(Mend, ReportsWhatItCannotMendWithoutTheFloor) {
   base::Job job(0, {});
   const refine::MendReport report = refine::mend(mesh, allPolygons(mesh), source, job);
   ASSERT_EQ(report.left.size(), 1U);
-  EXPECT_EQ(report.left[0], (refine::PolygonPair{0, 1}));
+  EXPECT_EQ(report.left[0], (intersect::PolygonPair{0, 1}));
 }
 
 TEST(Mend, FansAQuadWhereNothingElseHelps) {
@@ -139,9 +136,9 @@ TEST(Mend, FansAQuadWhereNothingElseHelps) {
   mesh.quads = {{0, 1, 2, 3}, {4, 5, 6, 7}};
   const Mesh before = mesh;
   refine::Source source = sourceOf(before);
-  source.crossings = [](const std::vector<refine::PolygonIndex>& quads) {
+  source.crossings = [](const std::vector<intersect::PolygonIndex>& quads) {
     std::vector<Position> points;
-    for (const refine::PolygonIndex quad : quads) points.emplace_back(2, 2, quad == 0 ? 2 : 0);
+    for (const intersect::PolygonIndex quad : quads) points.emplace_back(2, 2, quad == 0 ? 2 : 0);
     return points;
   };
   base::Job job(0, {});
@@ -219,7 +216,7 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   Mesh mesh = good;
   const refine::Source source = sourceOf(good);
   base::Job job(0, {});
-  EXPECT_EQ(uniform::unfoldLonePieces(mesh, source, job), 0U);
+  EXPECT_EQ(refine::unfoldLonePieces(mesh, source, job), 0U);
   // One of them mirrored at a plane through it.
   std::size_t mirrored = 0;
   for (Position& p : mesh.positions) {
@@ -229,7 +226,7 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   }
   ASSERT_EQ(mirrored, 8U);
   EXPECT_FALSE(check(mesh).outward);
-  EXPECT_EQ(uniform::unfoldLonePieces(mesh, source, job), 8U);
+  EXPECT_EQ(refine::unfoldLonePieces(mesh, source, job), 8U);
   EXPECT_EQ(mesh.positions, good.positions);
 }
 
@@ -264,28 +261,16 @@ TEST(Suspects, HaveAPartInEveryPair) {
   for (const Shape shape : {Shape::Noise, Shape::Gyroid, Shape::Bracket, Shape::Terrain}) {
     const auto grid = makeGrid(shape, 0.03);
     base::Job job(0, {});
-    const grid::IsoChoice iso = grid::chooseIsovalue(*grid, {}, Inside::Auto);
-    const grid::Blocks blocks(grid->tree(), iso, NonFinite::Refuse, job);
-    const grid::FieldScale scale = grid::readFieldScale(*grid, iso);
-    const uniform::Topology topology =
-        uniform::buildTopology(blocks, scale, Ambiguity::Separate, false, job);
-    Mesh mesh;
-    const grid::Affine affine(grid->transform());
-    uniform::VertexSides sides =
-        uniform::placeVertices(blocks, scale, topology, affine, true, mesh, job);
-    const uniform::SurfaceView quads{blocks, topology, scale, affine, sides};
-    uniform::connectQuads(quads, mesh, job);
-    if (scale.distance) {
-      uniform::promoteToCreases(mesh, sides, affine.voxelSize(), job);
-      uniform::splitAtCreases(quads, mesh, job);
-    }
-    const std::vector<std::uint32_t> suspects =
-        intersect::findSuspects(quads, mesh, 1e-3 * affine.leastHeight(), job);
-    const refine::Surface surface(mesh, job);
-    const auto all = refine::findPairs(surface, allPolygons(mesh), job);
+    const ContourOptions options;
+    uniform::UniformSurface uniform =
+        uniform::makeUniformSurface(grid::openVolume(*grid, options, job), options, {}, job);
+    const std::vector<std::uint32_t> suspects = intersect::findSuspects(
+        uniform.view(), uniform.mesh, 1e-3 * uniform.affine().leastHeight(), job);
+    const intersect::Surface surface(uniform.mesh, job);
+    const auto all = intersect::findPairs(surface, allPolygons(uniform.mesh), job);
     EXPECT_FALSE(all.empty());
-    EXPECT_EQ(refine::findPairs(surface, suspects, job), all);
-    EXPECT_LT(suspects.size(), mesh.quads.size());
+    EXPECT_EQ(intersect::findPairs(surface, suspects, job), all);
+    EXPECT_LT(suspects.size(), uniform.mesh.quads.size());
   }
 }
 

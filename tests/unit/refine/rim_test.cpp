@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tufa::simplify {
+namespace tufa::refine {
 namespace {
 
 TEST(Rim, LetsAnyVerticesJoinWithoutCurves) {
@@ -55,4 +55,4 @@ TEST(Rim, PassesOnWhatAVertexStandsFor) {
 }
 
 }  // namespace
-}  // namespace tufa::simplify
+}  // namespace tufa::refine

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tufa::mend {
+namespace tufa::topology {
 namespace {
 
 // Adds a tetrahedron that faces outward, or inward.
@@ -92,4 +92,4 @@ TEST(Misplaced, AreFoundWhereRaysPassThroughVertices) {
 }
 
 }  // namespace
-}  // namespace tufa::mend
+}  // namespace tufa::topology

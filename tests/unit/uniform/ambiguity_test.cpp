@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace tufa::components {
+namespace tufa::uniform {
 namespace {
 
 using Values = std::array<double, 4>;
@@ -76,4 +76,4 @@ TEST(Ambiguity, CornersOnTheIsovalueDoNotUpsetTheDeciders) {
 }
 
 }  // namespace
-}  // namespace tufa::components
+}  // namespace tufa::uniform

@@ -6,7 +6,7 @@
 
 #include "unit/uniform/cell_oracle.h"
 
-namespace tufa::components {
+namespace tufa::uniform {
 namespace {
 
 using test::Arcs;
@@ -180,4 +180,4 @@ TEST(CaseTable, CutEdgesLeaveTheChainsBetweenThem) {
 }
 
 }  // namespace
-}  // namespace tufa::components
+}  // namespace tufa::uniform

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "grid/affine.h"
-#include "uniform/quads.h"
 #include "support/fields.h"
 #include "support/lattice.h"
 #include "support/mesh_oracle.h"
 #include "support/uniform_mesh.h"
+#include "uniform/quads.h"
 #include "unit/uniform/cell_oracle.h"
 
-namespace tufa::components {
+namespace tufa::uniform {
 namespace {
 
 using openvdb::Coord;
@@ -177,18 +177,16 @@ struct Stages {
 
   Stages(const FloatGrid& grid, grid::FieldScale fieldScale, Ambiguity rule, bool cap)
       : scale(fieldScale),
-        blocks(grid.tree(), {0, true}, NonFinite::Refuse, job),
+        blocks(grid::treeOf(grid, job), {0, true}, NonFinite::Refuse, job),
         topology(buildTopology(blocks, scale, rule, cap, job)) {}
 
   // The faces, with all vertices at one place.
   Mesh faces(const FloatGrid& grid) {
     Mesh mesh;
     mesh.positions.assign(topology.vertexCount, Position(0, 0, 0));
-    const grid::Affine affine(grid.transform());
-    const uniform::VertexSides sides(topology.vertexCount);
-    uniform::connectQuads(
-        uniform::SurfaceView{blocks, topology, scale, affine, sides}, mesh,
-        job);
+    const grid::Affine affine(grid::transformOf(grid));
+    const VertexSides sides(topology.vertexCount);
+    connectQuads({blocks, scale, affine, topology, sides, mesh}, mesh, job);
     return mesh;
   }
 };
@@ -253,4 +251,4 @@ TEST(Topology, RandomCutsLeaveAManifoldWithBoundary) {
 }
 
 }  // namespace
-}  // namespace tufa::components
+}  // namespace tufa::uniform

@@ -7,18 +7,19 @@
 #include <memory>
 
 #include "support/block_field.h"
+#include "support/print.h"
 
-namespace tufa::creases {
+namespace tufa::uniform {
 namespace {
 
 using test::BlockField;
 using test::distanceAroundBlock;
 
-Vec3 toVec3d(const uniform::Vector& v) { return {v[0], v[1], v[2]}; }
+Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 /// Calls body(cell's middle, placement) for the surface cells of the block.
 template <class Body>
-void forCells(const BlockField<>& field, const Body& body) {
+void forCells(const BlockField& field, const Body& body) {
   const auto creaseCell = std::make_unique<CreaseCell>(field.samples(), field.scale());
   creaseCell->reset();
   for (int cell = 0; cell < 512; ++cell) {
@@ -41,37 +42,31 @@ TEST(CreaseCell, OnAPlaneIsOnOneSide) {
   forCells(distanceAroundBlock(plane), [&](const Vec3& middle, const CreasePlacement& placement) {
     ++cells;
     ASSERT_EQ(placement.planes, 1);
-    EXPECT_NEAR(plane(middle + toVec3d(placement.point)), 0, 1e-4);
-    EXPECT_LT((toVec3d(placement.normal) - normal).length(), 1e-4);
+    EXPECT_NEAR(plane(middle + toVec3(placement.point)), 0, 1e-4);
+    EXPECT_LT((toVec3(placement.normal) - normal).length(), 1e-4);
   });
   EXPECT_GT(cells, 64);
 }
 
 TEST(CreaseCell, FindsTheCreasesAndTheCornerOfABox) {
   const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
-  const Vec3 corner = box.center + box.turn * box.half;
   int corners = 0, creases = 0, sides = 0;
   forCells(distanceAroundBlock(box), [&](const Vec3& middle, const CreasePlacement& placement) {
     if (placement.planes == 0) return;
-    const Vec3 point = middle + toVec3d(placement.point);
+    const Vec3 point = middle + toVec3(placement.point);
     EXPECT_LT(std::abs(box(point)), 0.03) << middle;
     if (placement.planes == 1) {
       ++sides;
       return;
     }
     // On a crease two of the box's coordinates are at their end, at the corner all three.
-    Vec3 off = box.turn.transpose() * (point - corner);
-    off = Vec3(std::abs(off[0]), std::abs(off[1]), std::abs(off[2]));
+    const Vec3 off = box.fromCorner(point);
     int ends = 0;
-    for (int axis = 0; axis < 3; ++axis) ends += off[axis] < 0.15 ? 1 : 0;
+    for (int axis = 0; axis < 3; ++axis) ends += std::abs(off[axis]) < 0.15 ? 1 : 0;
     EXPECT_GE(ends, placement.planes) << middle << " " << off;
     (placement.planes == 3 ? corners : creases)++;
     for (int i = 0; i < placement.planes; ++i) {
-      double nearest = 0;
-      for (int side = 0; side < 3; ++side) {
-        nearest = std::max(nearest, toVec3d(placement.sides[i]).dot(box.turn.col(side)));
-      }
-      EXPECT_GT(nearest, 0.98) << middle;
+      EXPECT_GT(box.cosineToAxis(toVec3(placement.sides[i])), 0.98) << middle;
     }
   });
   EXPECT_LE(corners, 1);
@@ -92,4 +87,4 @@ TEST(CreaseCell, FindsNoCreaseOnASphere) {
 }
 
 }  // namespace
-}  // namespace tufa::creases
+}  // namespace tufa::uniform

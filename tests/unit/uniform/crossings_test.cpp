@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "support/block_field.h"
+#include "support/print.h"
 
-namespace tufa::crossings {
+namespace tufa::uniform {
 namespace {
 
 using grid::BlockSamples;
-using openvdb::Coord;
 using test::BlockField;
 using test::distanceAroundBlock;
 
@@ -34,7 +34,7 @@ struct Found {
 };
 
 template <int axis>
-void addCrossings(const BlockField<>& field, std::vector<Found>& found) {
+void addCrossings(const BlockField& field, std::vector<Found>& found) {
   const CrossingFinder finder(field.samples(), field.scale());
   const auto& samples = field.samples();
   for (int cell = 0; cell < 512; ++cell) {
@@ -46,7 +46,7 @@ void addCrossings(const BlockField<>& field, std::vector<Found>& found) {
   }
 }
 
-std::vector<Found> crossingsOf(const BlockField<>& field) {
+std::vector<Found> crossingsOf(const BlockField& field) {
   std::vector<Found> found;
   addCrossings<0>(field, found);
   addCrossings<1>(field, found);
@@ -71,9 +71,9 @@ double rootOn(const Found& edge, const Function& distance) {
 }
 
 TEST(Crossings, OfAPlaneAreExact) {
-  for (const Vec3& direction :
-       {Vec3(1, 2, 3), Vec3(-3, 1, 0.2), Vec3(0, 0, 1), Vec3(1, -1, 1)}) {
-    const test::PlaneDistance plane{direction.unitOrX(), direction.unitOrX().dot(Vec3(4.2, 3.7, 3.9))};
+  for (const Vec3& direction : {Vec3(1, 2, 3), Vec3(-3, 1, 0.2), Vec3(0, 0, 1), Vec3(1, -1, 1)}) {
+    const test::PlaneDistance plane{direction.unitOrX(),
+                                    direction.unitOrX().dot(Vec3(4.2, 3.7, 3.9))};
     const auto field = distanceAroundBlock(plane);
     const auto found = crossingsOf(field);
     EXPECT_GE(found.size(), 64U);
@@ -111,11 +111,7 @@ TEST(Crossings, BesideCreasesComeFromOneSide) {
     sum += error;
     linearSum += std::abs(f.linear - truth);
     creases += f.crossing.crease ? 1 : 0;
-    double nearest = 0;
-    for (int side = 0; side < 3; ++side) {
-      nearest = std::max(nearest, f.normal().dot(box.turn.col(side)));
-    }
-    offSide += nearest < 0.99 ? 1 : 0;
+    offSide += box.cosineToAxis(f.normal()) < 0.99 ? 1 : 0;
   }
   EXPECT_GT(creases, 20);
   EXPECT_LT(worst, 0.2);
@@ -124,7 +120,7 @@ TEST(Crossings, BesideCreasesComeFromOneSide) {
 }
 
 template <int axis>
-void expectBatchesAgree(const BlockField<>& field) {
+void expectBatchesAgree(const BlockField& field) {
   const CrossingFinder finder(field.samples(), field.scale());
   std::vector<Found> found;
   addCrossings<axis>(field, found);
@@ -155,18 +151,19 @@ TEST(Crossings, InBatchesAreThoseFoundOneByOne) {
 
 TEST(Crossings, OfADensityAreNeverCreases) {
   const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
-  const openvdb::CoordBBox around(Coord(-8), Coord(16));
-  auto grid = test::sampled<openvdb::FloatGrid>(
-      around, 0, [&](const Coord& at) { return std::clamp(-box(at.asVec3d()), -3.0, 3.0); });
+  auto grid =
+      test::sampled<openvdb::FloatGrid>(test::boxAroundBlock(), 0, [&](const openvdb::Coord& at) {
+        return std::clamp(-box(Vec3(grid::fromVdb(at))), -3.0, 3.0);
+      });
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  const BlockField<> field(grid, {.isovalue = 0, .insideIsBelow = false});
+  const BlockField field(grid, {.isovalue = 0, .insideIsBelow = false});
   const auto found = crossingsOf(field);
   ASSERT_GT(found.size(), 64U);
   for (const Found& f : found) {
     EXPECT_FALSE(f.crossing.crease);
     EXPECT_NEAR(static_cast<double>(f.crossing.along), std::clamp(f.linear, 1e-3, 1 - 1e-3), 1e-5);
     // Outward is where the density falls.
-    EXPECT_GT(f.normal().dot(Vec3(f.point()) - box.center), 0);
+    EXPECT_GT(f.normal().dot(f.point() - box.center), 0);
   }
 }
 
@@ -176,23 +173,22 @@ TEST(Crossings, OnASampleStayOffTheEndOfTheirEdge) {
   const auto found = crossingsOf(field);
   ASSERT_EQ(found.size(), 64U);
   for (const Found& f : found) {
-    EXPECT_EQ(f.start.z(), 2);  // the sample on the isovalue is outside
+    EXPECT_EQ(f.start[2], 2);  // the sample on the isovalue is outside
     EXPECT_FLOAT_EQ(f.crossing.along, 1 - 1e-3F);
   }
 }
 
 TEST(Crossings, WithoutGradientLookAlongTheirEdge) {
   // Both samples beside the one inside are equal, so central differences vanish.
-  auto grid =
-      test::sampled<openvdb::FloatGrid>(openvdb::CoordBBox(Coord(-8), Coord(16)), 1,
-                                        [](const Coord& at) { return at.z() % 2 == 0 ? 1 : -1; });
-  const BlockField<> field(grid);
+  auto grid = test::sampled<openvdb::FloatGrid>(
+      test::boxAroundBlock(), 1, [](const openvdb::Coord& at) { return at.z() % 2 == 0 ? 1 : -1; });
+  const BlockField field(grid);
   for (const Found& f : crossingsOf(field)) {
-    const bool rising = static_cast<int>(f.start.z()) % 2 != 0;
+    const bool rising = static_cast<int>(f.start[2]) % 2 != 0;
     EXPECT_EQ(f.normal(), Vec3(0, 0, rising ? 1 : -1));
     EXPECT_EQ(f.crossing.along, 0.5F);
   }
 }
 
 }  // namespace
-}  // namespace tufa::crossings
+}  // namespace tufa::uniform

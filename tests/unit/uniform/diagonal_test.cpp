@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tufa::polygons {
+namespace tufa::uniform {
 namespace {
 
 using Kind = uniform::VertexSides::Kind;
@@ -84,4 +84,4 @@ TEST(SplitChooser, FollowsACreaseBeforeAllElse) {
 }
 
 }  // namespace
-}  // namespace tufa::polygons
+}  // namespace tufa::uniform

@@ -7,17 +7,18 @@
 #include <memory>
 
 #include "support/block_field.h"
+#include "support/print.h"
 
-namespace tufa::creases {
+namespace tufa::uniform {
 namespace {
 
 using test::distanceAroundBlock;
 
-Vec3 toVec3d(const uniform::Vector& v) { return {v[0], v[1], v[2]}; }
+Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 /// Calls body(cube's middle, plane or null) for the cubes around the block.
 template <class Body>
-void forPlanes(const test::BlockField<>& field, const Body& body) {
+void forPlanes(const test::BlockField& field, const Body& body) {
   const auto planes = std::make_unique<PatchPlanes>(field.samples(), field.scale());
   for (int x = -1; x <= 8; ++x) {
     for (int y = -1; y <= 8; ++y) {
@@ -41,8 +42,8 @@ TEST(PatchPlanes, OfAPlaneAreThatPlaneWhereverTheBandReaches) {
     ASSERT_EQ(patch != nullptr, farthest < 3) << middle;
     if (patch == nullptr) return;
     ++found;
-    EXPECT_LT((toVec3d(patch->normal) - normal).length(), 1e-5);
-    EXPECT_LT((toVec3d(patch->foot) - (middle - normal * plane(middle))).length(), 1e-4);
+    EXPECT_LT((toVec3(patch->normal) - normal).length(), 1e-5);
+    EXPECT_LT((toVec3(patch->foot) - (middle - normal * plane(middle))).length(), 1e-4);
     EXPECT_LT(patch->residual, 1e-5);
   });
   EXPECT_GT(found, 200);
@@ -60,16 +61,12 @@ TEST(PatchPlanes, NearACreaseAreOfOneSideOrNone) {
       return;
     }
     ++planes;
-    double nearest = 0;
-    for (int side = 0; side < 3; ++side) {
-      nearest = std::max(nearest, toVec3d(patch->normal).dot(box.turn.col(side)));
-    }
-    EXPECT_GT(nearest, 0.985) << middle;
-    EXPECT_LT(std::abs(box(toVec3d(patch->foot))), 0.1) << middle;
+    EXPECT_GT(box.cosineToAxis(toVec3(patch->normal)), 0.985) << middle;
+    EXPECT_LT(std::abs(box(toVec3(patch->foot))), 0.1) << middle;
   });
   EXPECT_GE(planes, 15);
   EXPECT_GT(none, 5);
 }
 
 }  // namespace
-}  // namespace tufa::creases
+}  // namespace tufa::uniform

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uniform/cell_topology.h"
+#include "base/index_box.h"
 #include "support/block_field.h"
 #include "support/mesh_oracle.h"
+#include "support/print.h"
+#include "uniform/cell_topology.h"
 
-namespace tufa::vertices {
+namespace tufa::uniform {
 namespace {
 
 using test::BlockField;
@@ -19,16 +21,15 @@ using test::distanceAroundBlock;
 struct Placed {
   Mesh mesh;
   uniform::VertexSides sides;
-  std::vector<openvdb::Coord> cells;
+  std::vector<Coord> cells;
 };
 
-template <class GridT>
-Placed place(BlockField<GridT>& field, int threads = 1) {
+Placed place(BlockField& field, int threads = 1) {
   Placed placed;
   base::Job job(threads, {});
   const auto topology =
       uniform::buildTopology(field.blocks(), field.scale(), Ambiguity::Separate, false, job);
-  const grid::Affine affine(field.grid().transform());
+  const grid::Affine affine(grid::transformOf(field.grid()));
   job.run([&] {
     placed.sides =
         placeVertices(field.blocks(), field.scale(), topology, affine, true, placed.mesh, job);
@@ -37,7 +38,7 @@ Placed place(BlockField<GridT>& field, int threads = 1) {
     const auto corners = field.blocks().cornerWords(block.neighbours);
     for (int cell = 0; cell < grid::kBlockCells; ++cell) {
       if (!block.cells.get(cell)) continue;
-      const openvdb::Coord at =
+      const Coord at =
           field.blocks().origin(block.block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
       const int count =
           topology.componentsAt(block, cell, uniform::cornerMask(corners, cell)).count();
@@ -47,20 +48,14 @@ Placed place(BlockField<GridT>& field, int threads = 1) {
   return placed;
 }
 
-Vec3 pointOf(const Mesh& mesh, std::size_t v) {
-  const Position& p = mesh.positions[v];
-  return {p.x, p.y, p.z};
-}
-Vec3 normalOf(const Mesh& mesh, std::size_t v) {
-  const Normal& n = mesh.normals[v];
-  return {n.x, n.y, n.z};
-}
+Vec3 pointOf(const Mesh& mesh, std::size_t v) { return mesh.positions[v]; }
+Vec3 normalOf(const Mesh& mesh, std::size_t v) { return Vec3(mesh.normals[v]); }
 
 /// Farthest that a vertex is from the middle of its cell, along an axis.
 double farthestFromCell(const Placed& placed) {
   double farthest = 0;
   for (std::size_t v = 0; v < placed.cells.size(); ++v) {
-    const Vec3 off = pointOf(placed.mesh, v) - placed.cells[v].asVec3d() - Vec3(0.5);
+    const Vec3 off = pointOf(placed.mesh, v) - Vec3(placed.cells[v]) - Vec3(0.5);
     farthest = std::max({farthest, std::abs(off[0]), std::abs(off[1]), std::abs(off[2])});
   }
   return farthest;
@@ -71,18 +66,17 @@ TEST(PlaceVertices, OnAPlanePutsThemAllOnIt) {
   // Between lattice points: crossings keep a thousandth away from samples.
   const test::PlaneDistance plane{normal, normal.dot(Vec3(4)) + 0.5 / Vec3(1, 3, -2).length()};
   // A density with a border around, so that nothing but the QEF places vertices.
-  const openvdb::CoordBBox box(openvdb::Coord(-8), openvdb::Coord(16));
   auto grid = test::sampled<openvdb::FloatGrid>(
-      box, -30, [&](const openvdb::Coord& at) { return -plane(at.asVec3d()); });
+      test::boxAroundBlock(), -30,
+      [&](const openvdb::Coord& at) { return -plane(Vec3(grid::fromVdb(at))); });
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  BlockField<> field(grid, {.isovalue = 0, .insideIsBelow = false});
+  BlockField field(grid, {.isovalue = 0, .insideIsBelow = false});
   const Placed placed = place(field);
   ASSERT_EQ(placed.cells.size(), placed.mesh.positions.size());
   int within = 0;
   for (std::size_t v = 0; v < placed.cells.size(); ++v) {
-    const openvdb::Coord& cell = placed.cells[v];
-    const bool inner = openvdb::CoordBBox(openvdb::Coord(-7), openvdb::Coord(14)).isInside(cell);
-    if (!inner) continue;  // its gradient knows the border
+    const base::IndexBox inner{Coord(-7), Coord(14)};
+    if (!inner.contains(placed.cells[v])) continue;  // its gradient knows the border
     ++within;
     EXPECT_NEAR(plane(pointOf(placed.mesh, v)), 0, 2e-5);
     EXPECT_LT((normalOf(placed.mesh, v) - normal).length(), 1e-4);
@@ -92,7 +86,7 @@ TEST(PlaceVertices, OnAPlanePutsThemAllOnIt) {
 
 TEST(PlaceVertices, OnNoiseKeepsEachInItsCell) {
   for (const unsigned seed : {1U, 2U}) {
-    BlockField<> field(
+    BlockField field(
         test::noise<openvdb::FloatGrid>({.size = 20, .seed = seed, .first = openvdb::Coord(-3)}));
     const Placed placed = place(field);
     ASSERT_EQ(placed.cells.size(), placed.mesh.positions.size());
@@ -104,7 +98,7 @@ TEST(PlaceVertices, OnNoiseKeepsEachInItsCell) {
 }
 
 TEST(PlaceVertices, GivesTheSameForAnyThreads) {
-  BlockField<> field(
+  BlockField field(
       test::noise<openvdb::FloatGrid>({.size = 24, .seed = 3, .first = openvdb::Coord(-3)}));
   EXPECT_TRUE(test::sameBytes(place(field, 1).mesh, place(field, 2).mesh));
 }
@@ -154,4 +148,4 @@ TEST(FaceNormals, OfDegenerateFacesAreZeroAndFinite) {
 }
 
 }  // namespace
-}  // namespace tufa::vertices
+}  // namespace tufa::uniform

@@ -10,7 +10,10 @@
 #include <random>
 #include <vector>
 
-namespace tufa::qef {
+#include "grid/vdb_coord.h"
+#include "support/print.h"
+
+namespace tufa::uniform {
 namespace {
 
 using openvdb::Mat3d;
@@ -23,7 +26,7 @@ struct Plane {
 Vector toVector(const Vec3& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
-Vec3 toVec3d(const Vector& v) { return {v[0], v[1], v[2]}; }
+Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 Qef sumOf(const std::vector<Plane>& planes) {
   Qef sum;
@@ -83,14 +86,14 @@ std::optional<Vec3> oracle(const std::vector<Plane>& planes) {
     residual += plane.normal * plane.normal.dot(plane.point - c);
   }
   Mat3d vectors;
-  Vec3 values;
+  openvdb::Vec3d values;
   openvdb::math::diagonalizeSymmetricMatrix(a, vectors, values);
   const double largest = std::max({values[0], values[1], values[2]});
   Vec3 x = c;
   for (int i = 0; i < 3; ++i) {
     const double share = values[i] / largest;
     if (share > 0.007 && share < 0.013) return {};
-    const Vec3 v = vectors.col(i);
+    const Vec3 v = grid::fromVdb(vectors.col(i));
     if (share > 0.01) x += v * (v.dot(residual) / values[i]);
   }
   return x;
@@ -104,7 +107,7 @@ constexpr float kFar = 1e6F;
 
 TEST(Qef, OfOnePlaneIsTheFootOfItsPoint) {
   const Plane plane{{0.1, -0.2, 0.3}, Vec3(1, 2, -2) / 3};
-  EXPECT_LT((toVec3d(solve(sumOf({plane}), 0.5F)) - plane.point).length(), 1e-6);
+  EXPECT_LT((toVec3(solve(sumOf({plane}), 0.5F)) - plane.point).length(), 1e-6);
 }
 
 TEST(Qef, OfParallelPlanesIsOnTheirMeanBelowTheMassPoint) {
@@ -112,7 +115,7 @@ TEST(Qef, OfParallelPlanesIsOnTheirMeanBelowTheMassPoint) {
   for (int n = 0; n < 200; ++n) {
     const Vec3 normal = random.direction();
     const auto planes = random.about(normal, 0, random.count(2, 9));
-    const Vec3 x = toVec3d(solve(sumOf(planes), kFar));
+    const Vec3 x = toVec3(solve(sumOf(planes), kFar));
     EXPECT_LT((x - massPoint(planes)).length(), 2e-6);
   }
 }
@@ -131,7 +134,7 @@ TEST(Qef, OfTwoSidesIsThePointOfTheirCreaseNearestToTheMassPoint) {
     }
     const Vec3 direction = along.unitOrX();
     const Vec3 truth = start + direction * direction.dot(massPoint(planes) - start);
-    EXPECT_LT((toVec3d(solve(sumOf(planes), kFar)) - truth).length(), 2e-5);
+    EXPECT_LT((toVec3(solve(sumOf(planes), kFar)) - truth).length(), 2e-5);
   }
 }
 
@@ -148,7 +151,7 @@ TEST(Qef, OfThreeSidesIsTheirCorner) {
     }
     if (std::abs(planes[0].normal.dot(planes[2].normal.cross(planes[4].normal))) < 0.4) continue;
     ++corners;
-    EXPECT_LT((toVec3d(solve(sumOf(planes), 0.5F)) - corner).length(), 2e-5);
+    EXPECT_LT((toVec3(solve(sumOf(planes), 0.5F)) - corner).length(), 2e-5);
   }
   EXPECT_GT(corners, 50);
 }
@@ -163,7 +166,7 @@ TEST(Qef, AgreesWithAnotherSolverOnAnyPlanes) {
     if (!truth) continue;
     ++compared;
     const double size = 1 + truth->length();
-    ASSERT_LT((toVec3d(solve(sumOf(planes), kFar)) - *truth).length(), 1e-3 * size) << n;
+    ASSERT_LT((toVec3(solve(sumOf(planes), kFar)) - *truth).length(), 1e-3 * size) << n;
   }
   EXPECT_GT(compared, 2000);
 }
@@ -178,7 +181,7 @@ TEST(Qef, ClosedFormOfOneDirectionAgreesWithTheSolver) {
     const auto truth = oracle(planes);
     if (!truth) continue;
     ++compared;
-    ASSERT_LT((toVec3d(solve(sumOf(planes), kFar)) - *truth).length(), 5e-3) << n;
+    ASSERT_LT((toVec3(solve(sumOf(planes), kFar)) - *truth).length(), 5e-3) << n;
   }
   EXPECT_GT(compared, 2000);
 }
@@ -194,9 +197,9 @@ TEST(Qef, DirectionsBelowAHundredthOfTheLargestEigenvalueAreFree) {
       planes.push_back({Vec3(0.2, 0.1, 0) + normal.cross(Vec3(0, 0.1, 0)), normal});
     }
     const Vec3 mass = massPoint(planes);
-    const Vec3 x = toVec3d(solve(sumOf(planes), kFar));
-    EXPECT_NEAR(x.x(), degrees < 5.7 ? mass.x() : 0.2, 1e-4) << degrees;
-    EXPECT_NEAR(x.y(), mass.y(), 1e-5) << degrees;
+    const Vec3 x = toVec3(solve(sumOf(planes), kFar));
+    EXPECT_NEAR(x[0], degrees < 5.7 ? mass[0] : 0.2, 1e-4) << degrees;
+    EXPECT_NEAR(x[1], mass[1], 1e-5) << degrees;
   }
 }
 
@@ -206,7 +209,7 @@ TEST(Qef, BoundedSolutionIsTheBestOfTheCube) {
   int bounded = 0;
   for (int n = 0; n < 400; ++n) {
     const auto planes = random.about(random.direction(), 2, random.count(3, 8));
-    const Vec3 x = toVec3d(solve(sumOf(planes), kHalf));
+    const Vec3 x = toVec3(solve(sumOf(planes), kHalf));
     ASSERT_TRUE(isInCube(x, kHalf)) << x;
     const auto truth = oracle(planes);
     if (!truth || isInCube(*truth, kHalf)) continue;
@@ -221,7 +224,8 @@ TEST(Qef, BoundedSolutionIsTheBestOfTheCube) {
       for (int j = 0; j <= kSteps; ++j) {
         for (int k = 0; k <= kSteps; ++k) {
           const Vec3 p = Vec3(i, j, k) / kSteps - Vec3(0.5);
-          ASSERT_LT(error, errorAt(planes, p) + pull * (p - c).squaredLength() + 1e-5) << n << " " << p;
+          ASSERT_LT(error, errorAt(planes, p) + pull * (p - c).squaredLength() + 1e-5)
+              << n << " " << p;
         }
       }
     }
@@ -234,7 +238,7 @@ TEST(Qef, BoundedSolutionIsNotTheClampedOne) {
   const std::vector<Plane> planes = {{{0.4, 0.4, 0}, Vec3(1, 0, 1).unitOrX()},
                                      {{0.4, -0.4, 0.3}, Vec3(1, 0, -1).unitOrX()},
                                      {{-0.4, 0.4, -0.3}, Vec3(0, 1, 0)}};
-  const Vec3 x = toVec3d(solve(sumOf(planes), 0.5F));
+  const Vec3 x = toVec3(solve(sumOf(planes), 0.5F));
   const auto free = oracle(planes);
   ASSERT_TRUE(free);
   Vec3 clamped;
@@ -279,4 +283,4 @@ TEST(Qef, SumsDoNotDependOnTheOrigin) {
 }
 
 }  // namespace
-}  // namespace tufa::qef
+}  // namespace tufa::uniform

@@ -8,7 +8,7 @@
 
 #include "uniform/vertex_sheets.h"
 
-namespace tufa::creases {
+namespace tufa::uniform {
 namespace {
 
 using Kind = VertexSides::Kind;
@@ -154,4 +154,4 @@ TEST(PromoteToCreases, LeavesSmoothVertices) {
 }
 
 }  // namespace
-}  // namespace tufa::creases
+}  // namespace tufa::uniform
