@@ -267,7 +267,7 @@ double Certifier::distanceBelow(const Vec3& point, const Vec3& outward,
   for (const VertexIndex vertex : base_.mesh.quads[source].vertices) {
     if (least <= enough) break;
     const Normal& n = base_.mesh.normals[vertex];
-    least = std::min(least, distanceToBase(point, Vec3(n.x, n.y, n.z), enough));
+    least = std::min(least, distanceToBase(point, Vec3(n), enough));
   }
   return least;
 }
@@ -335,7 +335,7 @@ Vec3 Certifier::facing(const VertexIndex* vertices, int count) const {
   Vec3 sum(0.0);
   for (int i = 0; i < count; ++i) {
     const Normal& n = made_->mesh.normals[vertices[i]];
-    sum += Vec3(n.x, n.y, n.z);
+    sum += Vec3(n);
   }
   sum.normalize();
   return sum;

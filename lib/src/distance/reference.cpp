@@ -112,7 +112,7 @@ void UniformReference::searchCell(std::uint32_t block, int cell, const Vec3& poi
     if (squared >= near.squared) continue;
     const Normal& n = base_.mesh.normals[vertex];
     const bool sharp = base_.sheets.isSharp(static_cast<VertexIndex>(vertex));
-    if (!sharp && Vec3(n.x, n.y, n.z).dot(facing) < kFacing) continue;
+    if (!sharp && Vec3(n).dot(facing) < kFacing) continue;
     near = {block, cell, squared};
   }
 }

@@ -11,11 +11,12 @@
 
 #include "base/bvh.h"
 #include "base/job.h"
+#include "base/polygons.h"
 
 namespace tufa::intersect {
 
-/// Names a polygon of a mesh: its quads come first, then its triangles.
-using PolygonIndex = std::uint32_t;
+using base::Corners;
+using base::PolygonIndex;
 
 /// Two polygons that meet elsewhere than in what they share, the lesser index first; equal ones are
 /// a quad that is folded onto itself.
@@ -23,9 +24,6 @@ struct PolygonPair {
   PolygonIndex a, b;
   friend auto operator<=>(const PolygonPair&, const PolygonPair&) = default;
 };
-
-/// The vertices of a polygon in order: three, four, or none.
-using Corners = std::span<const VertexIndex>;
 
 /// The triangles of a polygon, a quad split from its first vertex to its third. Returns how many.
 inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {

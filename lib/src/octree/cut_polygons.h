@@ -3,6 +3,7 @@
 #include <tufa/mesh.h>
 
 #include "base/job.h"
+#include "base/polygons.h"
 #include "grid/affine.h"
 #include "octree/cluster_forest.h"
 #include "octree/cut.h"
@@ -14,6 +15,11 @@ struct CutMesh {
   Mesh mesh;
   std::vector<std::uint32_t> quadSources;      ///< base quad of each quad
   std::vector<std::uint32_t> triangleSources;  ///< base quad of each triangle
+
+  [[nodiscard]] std::uint32_t sourceOf(base::PolygonIndex polygon) const {
+    return polygon < quadSources.size() ? quadSources[polygon]
+                                        : triangleSources[polygon - quadSources.size()];
+  }
 };
 
 /// The mesh of a cut: of every base quad the distinct vertices of the cut in their order; four make

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/polygons.h"
 #include "refine/split_cells.h"
 #include "topology/misplaced.h"
 
@@ -38,14 +39,12 @@ std::vector<VertexIndex> baseVerticesOf(const octree::Cut& cut) {
 std::int64_t eulerCharacteristic(const Mesh& mesh) {
   std::vector<std::pair<VertexIndex, VertexIndex>> edges;
   edges.reserve(3 * mesh.triangles.size() + 4 * mesh.quads.size());
-  const auto add = [&](const auto& vertices) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const VertexIndex a = vertices[i], b = vertices[(i + 1) % vertices.size()];
+  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const VertexIndex a = v[i], b = v[(i + 1) % v.size()];
       edges.emplace_back(std::min(a, b), std::max(a, b));
     }
-  };
-  for (const Triangle& triangle : mesh.triangles) add(triangle.vertices);
-  for (const Quad& quad : mesh.quads) add(quad.vertices);
+  });
   std::sort(edges.begin(), edges.end());
   const auto distinct = std::unique(edges.begin(), edges.end()) - edges.begin();
   return static_cast<std::int64_t>(mesh.positions.size()) - distinct +

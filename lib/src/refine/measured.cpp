@@ -1,5 +1,7 @@
 #include "refine/measured.h"
 
+#include "base/polygons.h"
+
 #include <algorithm>
 
 namespace tufa::refine {
@@ -11,15 +13,11 @@ std::vector<intersect::PolygonIndex> withMarks(const Mesh& mesh,
                                                const std::vector<std::uint8_t>& marks) {
   if (marks.empty()) return polygons;
   std::vector<intersect::PolygonIndex> some;
-  const auto look = [&](const auto& v, intersect::PolygonIndex polygon) {
+  for (const intersect::PolygonIndex polygon : polygons) {
+    const base::Corners v = base::cornersOf(mesh, polygon);
     if (std::any_of(v.begin(), v.end(), [&](VertexIndex i) { return marks[i] != 0; })) {
       some.push_back(polygon);
     }
-  };
-  for (const intersect::PolygonIndex polygon : polygons) {
-    polygon < mesh.quads.size()
-        ? look(mesh.quads[polygon].vertices, polygon)
-        : look(mesh.triangles[polygon - mesh.quads.size()].vertices, polygon);
   }
   return some;
 }
@@ -49,19 +47,13 @@ std::vector<intersect::PolygonIndex> candidatesOf(
   for (std::size_t i = 0; i < other.size(); ++i) other[i] = cut.clusters[i].level != 0 ? 1 : 0;
   for (const VertexIndex vertex : altered) other[vertex] = 1;
   std::vector<intersect::PolygonIndex> candidates;
-  const auto look = [&](const auto& v, std::uint32_t source, std::size_t polygon) {
+  base::forPolygons(made.mesh, [&](base::PolygonIndex polygon, base::Corners v) {
     if (std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return other[k] != 0; }) ||
-        std::binary_search(uniformCandidates.begin(), uniformCandidates.end(), source)) {
-      candidates.push_back(static_cast<intersect::PolygonIndex>(polygon));
+        std::binary_search(uniformCandidates.begin(), uniformCandidates.end(),
+                           made.sourceOf(polygon))) {
+      candidates.push_back(polygon);
     }
-  };
-  const std::size_t quads = made.mesh.quads.size();
-  for (std::size_t i = 0; i < quads; ++i) {
-    look(made.mesh.quads[i].vertices, made.quadSources[i], i);
-  }
-  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
-    look(made.mesh.triangles[i].vertices, made.triangleSources[i], quads + i);
-  }
+  });
   return candidates;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/huge_pages.h"
+#include "base/polygons.h"
 #include "refine/collapse/collapse.h"
 #include "topology/dilate.h"
 #include "topology/misplaced.h"
@@ -75,17 +76,10 @@ class Samples {
       : base_(base), mesh_(mesh) {
     const Mesh& own = mesh.made.mesh;
     polygonOf_.assign(own.positions.size(), octree::kNone);
-    std::uint32_t polygon = 0;
-    const auto take = [&](const auto& v, std::uint32_t source) {
+    base::forPolygons(own, [&](base::PolygonIndex polygon, base::Corners v) {
       for (const VertexIndex vertex : v) polygonOf_[vertex] = polygon;
-      addMiddle(source, polygon++);
-    };
-    for (std::size_t i = 0; i < own.quads.size(); ++i) {
-      take(own.quads[i].vertices, mesh.made.quadSources[i]);
-    }
-    for (std::size_t i = 0; i < own.triangles.size(); ++i) {
-      take(own.triangles[i].vertices, mesh.made.triangleSources[i]);
-    }
+      addMiddle(mesh.made.sourceOf(polygon), polygon);
+    });
     addNearest(job);
   }
 
@@ -288,15 +282,10 @@ void compose(const Measured& from, const Collapsed& collapsed, bool keepAltered,
   if (keepAltered) {
     for (const VertexIndex vertex : from.altered) mesh.altered.push_back(vertexOf[vertex]);
   }
-  const std::size_t quadsBefore = from.made.mesh.quads.size();
-  const auto sourceOf = [&](std::uint32_t polygon) {
-    return polygon < quadsBefore ? from.made.quadSources[polygon]
-                                 : from.made.triangleSources[polygon - quadsBefore];
-  };
   const std::size_t quads = collapsed.mesh.quads.size();
   for (std::size_t i = 0; i < collapsed.sources.size(); ++i) {
     (i < quads ? mesh.made.quadSources : mesh.made.triangleSources)
-        .push_back(sourceOf(collapsed.sources[i]));
+        .push_back(from.made.sourceOf(collapsed.sources[i]));
   }
   mesh.made.mesh = collapsed.mesh;
 }

@@ -8,6 +8,7 @@
 
 #include "base/bvh.h"
 #include "base/flat_triangle.h"
+#include "base/polygons.h"
 #include "intersect/exact.h"
 
 namespace tufa::topology {
@@ -133,14 +134,12 @@ std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
     while (parents[i] != i) i = parents[i] = parents[parents[i]];
     return i;
   };
-  const auto join = [&](const auto& v) {
+  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
     for (const VertexIndex other : v) {
       const VertexIndex a = rootOf(v[0]), b = rootOf(other);
       parents[std::max(a, b)] = std::min(a, b);
     }
-  };
-  for (const Quad& quad : mesh.quads) join(quad.vertices);
-  for (const Triangle& triangle : mesh.triangles) join(triangle.vertices);
+  });
   for (VertexIndex i = 0; i < parents.size(); ++i) parents[i] = rootOf(i);
   return parents;
 }

@@ -273,7 +273,7 @@ class CreaseSnapper {
     Vec3 sum(0);
     for (int i = 0; i < move.sheets.count; ++i) {
       const Normal& n = move.sheets.normals[i];
-      sum += Vec3(n.x, n.y, n.z);
+      sum += Vec3(n);
     }
     mesh_.normals[move.vertex] = toNormal(sum.unitOrX());
     sheets_.setMeeting(move.vertex, move.sheets);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/polygons.h"
 #include "chunks/levels/seam_rim.h"
 #include "topology/dilate.h"
 
@@ -47,12 +48,9 @@ refine::Goal LevelCollapser::goalFor(const SeamedCut& mesh,
 
   std::size_t count = 0;
   const auto isOwn = [&](VertexIndex vertex) { return own[vertex] != 0; };
-  for (const Quad& quad : mesh.made.mesh.quads) {
-    if (std::any_of(quad.vertices.begin(), quad.vertices.end(), isOwn)) count += 2;
-  }
-  for (const Triangle& triangle : mesh.made.mesh.triangles) {
-    if (std::any_of(triangle.vertices.begin(), triangle.vertices.end(), isOwn)) ++count;
-  }
+  base::forPolygons(mesh.made.mesh, [&](base::PolygonIndex, base::Corners v) {
+    if (std::any_of(v.begin(), v.end(), isOwn)) count += v.size() - 2;
+  });
   goal.giveUp = mesh.made.mesh.triangleCount() -
                 static_cast<std::size_t>(kLeastSaved * static_cast<double>(count));
   return goal;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "base/polygons.h"
 #include "base/single_precision.h"
 #include "chunks/levels/mixed_pairs.h"
 #include "refine/measured.h"
@@ -48,18 +49,10 @@ std::array<std::uint64_t, 2> digitsOf(const Mesh& mesh, intersect::Corners corne
   return digits;
 }
 
-template <class Body>
-void forPolygons(const Mesh& mesh, const Body& body) {
-  intersect::PolygonIndex polygon = 0;
-  for (const Quad& quad : mesh.quads) body(polygon++, intersect::Corners(quad.vertices));
-  for (const Triangle& triangle : mesh.triangles)
-    body(polygon++, intersect::Corners(triangle.vertices));
-}
-
 // Those that are not as they were when nothing met them.
 std::vector<intersect::PolygonIndex> findNew(const Mesh& mesh, const LevelRepairer::Clean& clean) {
   std::vector<intersect::PolygonIndex> found;
-  forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
+  base::forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
     if (!std::binary_search(clean.begin(), clean.end(), digitsOf(mesh, corners))) {
       found.push_back(polygon);
     }
@@ -71,7 +64,7 @@ LevelRepairer::Clean findClean(const Mesh& mesh, const std::vector<intersect::Po
   std::vector<intersect::PolygonIndex> meeting = intersect::polygonsOf(pairs);
   std::sort(meeting.begin(), meeting.end());
   LevelRepairer::Clean clean;
-  forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
+  base::forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
     if (!std::binary_search(meeting.begin(), meeting.end(), polygon)) {
       clean.push_back(digitsOf(mesh, corners));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/polygons.h"
 #include "chunks/levels/stitch.h"
 #include "chunks/seams/curve_side.h"
 
@@ -20,16 +21,12 @@ class Joints {
     const auto add = [&](VertexIndex a, VertexIndex b) {
       if (curves_[a] != 0 && curves_[b] != 0) edges_.emplace_back(std::min(a, b), std::max(a, b));
     };
-    for (const Quad& quad : mesh.quads) {
-      const auto& v = quad.vertices;
-      for (int i = 0; i < 4; ++i) add(v[i], v[(i + 1) % 4]);
+    base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+      for (std::size_t i = 0; i < v.size(); ++i) add(v[i], v[(i + 1) % v.size()]);
+      if (v.size() < 4) return;
       add(v[0], v[2]);
-      add(v[1], v[3]);  // mending may turn it
-    }
-    for (const Triangle& triangle : mesh.triangles) {
-      const auto& v = triangle.vertices;
-      for (int i = 0; i < 3; ++i) add(v[i], v[(i + 1) % 3]);
-    }
+      add(v[1], v[3]);  // the repair may flip it
+    });
     std::sort(edges_.begin(), edges_.end());
   }
 

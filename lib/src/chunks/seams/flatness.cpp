@@ -62,7 +62,7 @@ void measureFlatness(const Mesh& base, const Mesh& before, const grid::Affine& a
       for (; begin < end; ++begin) {
         const VertexIndex from = found[begin];
         const Position& p = before.positions[from];
-        worst = std::max(worst, std::abs(normal.dot(Vec3(p.x, p.y, p.z) - point)));
+        worst = std::max(worst, std::abs(normal.dot(Vec3(p) - point)));
         if (ring == kRings) continue;
         auto edge = std::lower_bound(edges.begin(), edges.end(), Edge(from, 0));
         for (; edge != edges.end() && edge->first == from; ++edge) {

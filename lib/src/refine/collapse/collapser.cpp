@@ -190,7 +190,7 @@ bool Collapser::samplesStayNear(const Edge& edge, double& reach) {
       farthest = std::max(farthest, squared);
       attached_.emplace_back(i, ring_.triangles()[triangle]);
       const Normal& n = state_.bounds.samples[i].normal;
-      const bool own = Vec3(n.x, n.y, n.z).dot(ring_.shapes()[triangle].normal()) > kOneSide;
+      const bool own = Vec3(n).dot(ring_.shapes()[triangle].normal()) > kOneSide;
       Sides& sheets = sheets_[triangle];
       sheets = own && sheets != Sides::Several ? Sides::One : Sides::Several;
       const double apart = (at - edge.point).squaredLength();

@@ -159,7 +159,7 @@ class Repairer {
     Vec3 sum(0);
     for (const VertexIndex vertex : surface_.corners(polygon)) {
       const Position& p = surface_.mesh().positions[vertex];
-      sum += Vec3(p.x, p.y, p.z);
+      sum += Vec3(p);
     }
     return sum;
   }
