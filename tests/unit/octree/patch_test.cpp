@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -132,26 +133,21 @@ struct Glued {
 // once.
 bool isSimple(Samples samples, const std::vector<std::pair<int, std::set<int>>>& polygons,
               const std::set<LatticeEdge>& crossings) {
-  std::set<std::array<LatticeEdge, 2>> arcs;
-  // Two arcs may join the same crossings in the two faces beside an edge: told apart by the face.
-  std::set<std::array<int, 12>> named;
+  // An arc is one of a cell's face: its axis, where it lies along it, and the cell's place in it.
+  std::set<std::tuple<LatticeEdge, LatticeEdge, int, int, int, int>> arcs;
   for (const auto& [child, edges] : polygons) {
+    const auto place = placeOf(child);
     for (int face = 0; face < kFaces; ++face) {
+      const auto [u, v] = uniform::otherAxes(face / 2);
       for (const auto& [a, b] : uniform::test::arcsOf(maskOf(samples, child), face, false)) {
         if (edges.count(a) == 0) continue;
         const LatticeEdge s = latticeEdge(child, a), t = latticeEdge(child, b);
-        const auto place = placeOf(child);
-        const int plane = place[face / 2] + (face & 1);
-        const auto low = std::min(s, t), high = std::max(s, t);
-        // Seen along the face's axis, the cell that the arc lies in.
-        const int u = place[uniform::otherAxes(face / 2)[0]];
-        const int v = place[uniform::otherAxes(face / 2)[1]];
-        named.insert({low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3], face / 2,
-                      plane, u, v});
+        arcs.emplace(std::min(s, t), std::max(s, t), face / 2, place[face / 2] + (face & 1),
+                     place[u], place[v]);
       }
     }
   }
-  const auto euler = static_cast<int>(crossings.size()) - static_cast<int>(named.size()) +
+  const auto euler = static_cast<int>(crossings.size()) - static_cast<int>(arcs.size()) +
                      static_cast<int>(polygons.size());
   if (euler != 1) return false;
   // On the twelve edges of the big cell: those with both other coordinates at an end.
