@@ -44,7 +44,7 @@ struct Arc {
 };
 
 /// A curve in which the surface passes the face between two chunks: arcs one behind the other. The
-/// lower chunk's surface lies to the left of it, seen from outside.
+/// lower chunk's surface lies to the right of it, seen from outside.
 struct SeamCurve {
   int axis = 0;                 ///< across the face
   Coord chunk;                  ///< the one above the face
