@@ -14,15 +14,17 @@ struct StripTriangle {
 };
 
 /// Fills the strip between the vertices inside a chunk and those on its face with triangles. Of all
-/// ways to advance now on one side, now on the other, takes one without folded triangles, if there
-/// is one, and of these the one with the shortest edges across. If there is none, vertices of the
-/// chunk that stand back behind their neighbours are first cut off by a triangle of their own,
-/// where `mayJoin` lets the neighbours be joined.
+/// sequences of steps, now on one side, now on the other, it takes one without folded triangles, if
+/// there is one, and of these the one with the shortest edges across, found by dynamic programming
+/// as for surfaces between contours (Fuchs, Kedem and Uselton 1977). If all sequences fold,
+/// vertices of the chunk that lie behind their neighbours are first cut off by a triangle of their
+/// own, where `mayJoin` lets the neighbours be joined.
 ///
-/// Each of the strip's outer edges gets one triangle, no edge across more than two, and the ends on
-/// chunk edges are joined to the vertices beside them alone. `several`: a vertex of the chunk may
-/// come up more than once; then edges run as the arcs do. Positions and normals are of the vertices
-/// that the seam names.
+/// Promised: each outer edge of the strip gets one triangle, no edge across more than two, and the
+/// ends on chunk edges are joined to the vertices beside them alone, so strips of different faces
+/// share no edge. `several`: a vertex of the chunk may occur more than once; then edges run as the
+/// arcs do. Positions and normals are those of the vertices that the seam names. Cost: the product
+/// of both lengths at most; pairs dearer than the way along the arcs are skipped.
 [[nodiscard]] std::vector<StripTriangle> stitch(
     const ChunkSeam& seam, bool several, std::span<const Position> positions,
     std::span<const Normal> normals,

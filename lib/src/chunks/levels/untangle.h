@@ -7,10 +7,9 @@
 
 namespace tufa::chunks {
 
-/// Moves the arcs' vertices where curves cross on their face, or lead back on themselves from one
-/// vertex to the next, to their `havens`, offsets from their cells, until they do so nowhere or
-/// none of these vertices can be moved. What becomes of a curve depends on what lies on its face
-/// alone.
+/// Moves vertices of arcs to their fallback positions, offsets from their cells, where curves cross
+/// on their face or lead back on themselves, until they do so nowhere or none of these vertices can
+/// be moved. Depends on what lies on the face alone. Ends, as a vertex moves once at most.
 void untangle(const std::vector<Vec3>& fallbacks, Seams& seams);
 
 }  // namespace tufa::chunks

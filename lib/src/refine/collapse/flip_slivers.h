@@ -11,10 +11,8 @@ namespace tufa::refine {
 
 /// Flips the longest edge of slivers if that makes the worse of the two triangles at it rounder,
 /// turns neither over, sharpens no fold, and keeps all samples and the middle of the new edge
-/// within `budget`, world length for each vertex. Such edges are left where a collapse is refused,
-/// and their normals are useless for shading and later collapses. Takes the triangles in the order
-/// of the mesh, a few times over, on one thread. Returns a mark for each triangle, 1 if it was
-/// flipped.
+/// within `budget`, world length for each vertex. Takes the triangles in the order of the mesh, a
+/// few times over, on one thread. Returns a mark for each triangle, 1 if it was flipped.
 [[nodiscard]] std::vector<std::uint8_t> flipSlivers(EdgeMesh& mesh, const Bounds& bounds,
                                                     const std::vector<double>& budget,
                                                     SampleLists samples);
