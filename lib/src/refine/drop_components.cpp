@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Component {
   base::Box box = base::Box::empty();
-  double tolerance = kInfinity;  // the least at one of its base vertices, voxels
+  double tolerance = kInfinity;  // the least at one of its uniform vertices, voxels
   std::size_t baseVertices = 0;
   bool present = false;  // has polygons
   bool gone = false;

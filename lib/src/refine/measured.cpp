@@ -7,7 +7,7 @@
 namespace tufa::refine {
 namespace {
 
-// Those of the polygons that have a marked vertex; all without marks.
+// The polygons that have a marked vertex; all if there are no marks.
 std::vector<intersect::PolygonIndex> withMarks(const Mesh& mesh,
                                                const std::vector<intersect::PolygonIndex>& polygons,
                                                const std::vector<std::uint8_t>& marks) {
@@ -22,7 +22,9 @@ std::vector<intersect::PolygonIndex> withMarks(const Mesh& mesh,
   return some;
 }
 
-// Makes small changes to what is not of the base mesh; pairs that these do not help are left.
+// Makes small changes to what is not of the uniform mesh; pairs that these do not help are left.
+// Uniform vertices stay, as the uniform mesh is free of pairs where all cells are split. Vertices
+// of larger cells have no mass point, so they fall back to where they are.
 RepairReport repairCut(const Repair& repair, const octree::Cut& cut,
                        const std::vector<intersect::PolygonIndex>& candidates, Mesh& mesh,
                        base::Job& job) {

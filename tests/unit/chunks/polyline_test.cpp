@@ -48,7 +48,7 @@ void addLoop(Seams& seams, int count, double radius) {
   seams.curves.push_back(curve);
 }
 
-std::vector<SeamIndex> verticesOf(const SeamLines& lines, const SeamCurve& curve) {
+std::vector<SeamIndex> verticesOf(const SeamPolylines& lines, const SeamCurve& curve) {
   std::vector<SeamIndex> vertices;
   for (const SeamIndex arc : curve.arcs) {
     if (vertices.empty() || vertices.back() != lines[arc]) vertices.push_back(lines[arc]);
@@ -60,9 +60,9 @@ Vec3 placeOf(const Seams& seams, SeamIndex vertex) {
   return Vec3(seams.vertices[vertex].cell) + seams.vertices[vertex].offset;
 }
 
-SeamLines simplified(const Seams& seams, double allowed, const LineTrial& trial = nullptr) {
+SeamPolylines simplified(const Seams& seams, double budget, const PolylineValidation& validation = nullptr) {
   return simplifySeams(
-      seams, kLattice, [&](const Vec3&) { return allowed; }, trial);
+      seams, kLattice, [&](const Vec3&) { return budget; }, validation);
 }
 
 TEST(SimplifySeams, LeavesTheEndsOfAStraightCurve) {
@@ -74,7 +74,7 @@ TEST(SimplifySeams, LeavesTheEndsOfAStraightCurve) {
 TEST(SimplifySeams, GivesEachVertexOneStretchOfArcs) {
   Seams seams;
   addCurve(seams, {0.5, 0.5, 0.5, 0.5, 3.5, 3.5, 3.5, 3.5, 0.5, 0.5});
-  const SeamLines lines = simplified(seams, 0.3);
+  const SeamPolylines lines = simplified(seams, 0.3);
   const auto vertices = verticesOf(lines, seams.curves[0]);
   const std::set<SeamIndex> distinct(vertices.begin(), vertices.end());
   EXPECT_EQ(distinct.size(), vertices.size());
@@ -97,7 +97,7 @@ TEST(SimplifySeams, AsksWhatIsAllowedWhereTheVertexLies) {
   std::vector<double> heights(20, 3.2);
   heights[5] = heights[14] = 3.6;
   addCurve(seams, heights);
-  const SeamLines lines =
+  const SeamPolylines lines =
       simplifySeams(seams, kLattice, [](const Vec3& at) { return at[1] < 10 ? 1.0 : 0.1; });
   const auto vertices = verticesOf(lines, seams.curves[0]);
   EXPECT_EQ(std::count(vertices.begin(), vertices.end(), 5U), 0);
@@ -108,8 +108,8 @@ TEST(SimplifySeams, IsWithinWhatIsAllowedOnACircle) {
   Seams seams;
   addLoop(seams, 60, 9);
   std::size_t before = 61;
-  for (const double allowed : {0.0, 0.05, 0.4}) {
-    const SeamLines lines = simplified(seams, allowed);
+  for (const double budget : {0.0, 0.05, 0.4}) {
+    const SeamPolylines lines = simplified(seams, budget);
     auto vertices = verticesOf(lines, seams.curves[0]);
     if (vertices.front() == vertices.back()) vertices.pop_back();
     EXPECT_LT(vertices.size(), before);
@@ -122,7 +122,7 @@ TEST(SimplifySeams, IsWithinWhatIsAllowedOnACircle) {
         const double along = std::clamp((place(arc) - a).dot(way) / way.squaredLength(), 0.0, 1.0);
         least = std::min(least, (place(arc) - a - way * along).length());
       }
-      EXPECT_LE(least, allowed + 1e-9) << arc;
+      EXPECT_LE(least, budget + 1e-9) << arc;
     }
   }
 }
@@ -130,7 +130,7 @@ TEST(SimplifySeams, IsWithinWhatIsAllowedOnACircle) {
 TEST(SimplifySeams, LeavesThreeVerticesOfALoop) {
   Seams seams;
   addLoop(seams, 24, 3);
-  const SeamLines lines = simplified(seams, 1000);
+  const SeamPolylines lines = simplified(seams, 1000);
   const auto vertices = verticesOf(lines, seams.curves[0]);
   const std::set<SeamIndex> distinct(vertices.begin(), vertices.end());
   EXPECT_GE(distinct.size(), 3U);
@@ -144,7 +144,7 @@ TEST(SimplifySeams, NeedsOneVertexBetweenTwoChunkEdges) {
   seams.vertices.push_back(vertexAt(0, 3.5));
   seams.curves[0].end = static_cast<SeamIndex>(seams.vertices.size());
   seams.vertices.push_back(vertexAt(16, 3.5));
-  const SeamLines lines = simplified(seams, 0.1);
+  const SeamPolylines lines = simplified(seams, 0.1);
   EXPECT_EQ(verticesOf(lines, seams.curves[0]).size(), 1U);
   EXPECT_EQ(lines[16], 16U);
   EXPECT_EQ(lines[17], 17U);
@@ -158,7 +158,7 @@ TEST(SimplifySeams, DoesNotCrossOtherLinesOfTheFace) {
   addCurve(seams, heights);
   ASSERT_EQ(verticesOf(simplified(seams, 100), seams.curves[0]).size(), 2U);
   addLoop(seams, 24, 2);
-  const SeamLines lines = simplified(seams, 100);
+  const SeamPolylines lines = simplified(seams, 100);
   EXPECT_GT(verticesOf(lines, seams.curves[0]).size(), 2U);
   std::vector<FaceSegment> segments;
   for (std::size_t curve = 0; curve < 2; ++curve) {
@@ -170,7 +170,7 @@ TEST(SimplifySeams, DoesNotCrossOtherLinesOfTheFace) {
     }
   }
   for (const FaceSegment& s : segments) {
-    for (const FaceSegment& t : segments) EXPECT_FALSE(&s != &t && meetElsewhere(s, t));
+    for (const FaceSegment& t : segments) EXPECT_FALSE(&s != &t && intersectElsewhere(s, t));
   }
 }
 
@@ -201,10 +201,10 @@ TEST(SimplifySeams, IsFinerWhereATrialFindsFaults) {
   Seams seams;
   addCurve(seams, std::vector<double>(16, 3.5));
   int asked = 0;
-  const LineTrial trial = [&](std::size_t begin, std::size_t end) -> FaceTrial {
+  const PolylineValidation validation = [&](std::size_t begin, std::size_t end) -> FaceValidation {
     EXPECT_EQ(begin, 0U);
     EXPECT_EQ(end, 1U);
-    return [&](const SeamLines& lines) {
+    return [&](const SeamPolylines& lines) {
       // Until vertex 7 or 8, in the middle, is there.
       ++asked;
       LineFaults faults;
@@ -212,7 +212,7 @@ TEST(SimplifySeams, IsFinerWhereATrialFindsFaults) {
       return faults;
     };
   };
-  EXPECT_EQ(verticesOf(simplified(seams, 0.1, trial), seams.curves[0]).size(), 3U);
+  EXPECT_EQ(verticesOf(simplified(seams, 0.1, validation), seams.curves[0]).size(), 3U);
   EXPECT_EQ(asked, 2);
 }
 

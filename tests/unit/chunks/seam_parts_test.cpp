@@ -84,18 +84,18 @@ FaceSegment segment(std::size_t number, double ax, double ay, double bx, double 
 
 TEST(FaceSegments, MeetWhereTheyCrossOrTouch) {
   const FaceSegment along = segment(0, 0, 0, 4, 0);
-  EXPECT_TRUE(meetElsewhere(along, segment(1, 2, -1, 2, 1)));
-  EXPECT_TRUE(meetElsewhere(along, segment(1, 2, 0, 3, 1))) << "an end on the other";
-  EXPECT_FALSE(meetElsewhere(along, segment(1, 5, -1, 5, 1))) << "beyond the end";
-  EXPECT_FALSE(meetElsewhere(along, segment(1, 1, 1, 3, 1))) << "parallel";
+  EXPECT_TRUE(intersectElsewhere(along, segment(1, 2, -1, 2, 1)));
+  EXPECT_TRUE(intersectElsewhere(along, segment(1, 2, 0, 3, 1))) << "an end on the other";
+  EXPECT_FALSE(intersectElsewhere(along, segment(1, 5, -1, 5, 1))) << "beyond the end";
+  EXPECT_FALSE(intersectElsewhere(along, segment(1, 1, 1, 3, 1))) << "parallel";
 }
 
 TEST(FaceSegments, DoNotMeetInACommonEnd) {
   const FaceSegment along = segment(0, 0, 0, 4, 0);
   for (const FaceSegment& other :
        {segment(1, 4, 0, 5, 3), segment(1, 5, 3, 4, 0), segment(1, 0, 0, -1, 2)}) {
-    EXPECT_FALSE(meetElsewhere(along, other));
-    EXPECT_FALSE(meetElsewhere(other, along));
+    EXPECT_FALSE(intersectElsewhere(along, other));
+    EXPECT_FALSE(intersectElsewhere(other, along));
   }
 }
 
@@ -110,7 +110,7 @@ TEST(FaceSegments, AreFoundInAllPairsThatMeet) {
   std::set<std::pair<std::size_t, std::size_t>> expected, found;
   for (const FaceSegment& s : segments) {
     for (const FaceSegment& t : segments) {
-      if (s.line < t.line && meetElsewhere(s, t)) expected.emplace(s.line, t.line);
+      if (s.line < t.line && intersectElsewhere(s, t)) expected.emplace(s.line, t.line);
     }
   }
   forCrossings(segments, [&](std::size_t i, std::size_t j) {
@@ -125,7 +125,7 @@ TEST(FaceSegments, AreFoundInAllPairsThatMeet) {
 struct ThreeArcs {
   Seams seams;
   SeamCurve curve;
-  SeamLines lines = {0, 0, 2, 3, 4};
+  SeamPolylines lines = {0, 0, 2, 3, 4};
 
   ThreeArcs() {
     for (VertexIndex i = 0; i < 3; ++i) {

@@ -149,7 +149,7 @@ TEST(FindPairs, FindsAllPairsOfARandomSoup) {
   for (PolygonIndex a = 0; a < surface.size(); ++a) {
     for (PolygonIndex b = a; b < surface.size(); ++b) {
       if (a == b && !surface.isQuad(a)) continue;
-      if (meetElsewhere(mesh.positions, surface.corners(a), surface.corners(b), a == b)) {
+      if (intersectElsewhere(mesh.positions, surface.corners(a), surface.corners(b), a == b)) {
         expected.push_back({a, b});
       }
     }

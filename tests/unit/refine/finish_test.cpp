@@ -19,7 +19,7 @@ Mesh finished(const ContourOptions& options = {}, double moved = 0) {
   test::ModelOf model(grid, options);
   ExtractedMesh extracted;
   extracted.mesh = model.mesh();
-  extracted.suspects = model.model().suspects();
+  extracted.candidates = model.model().candidates();
   ContourReport report;
   finishMesh(model.model(), options, extracted, report, model.job());
   return std::move(extracted.mesh);
@@ -85,17 +85,17 @@ TEST(FinishMesh, RepairsWhatStillIntersects) {
   // One corner far beyond the opposite one.
   const Vec3 a(extracted.mesh.positions[corners[0]]), c(extracted.mesh.positions[corners[2]]);
   extracted.mesh.positions[corners[0]] = c + (c - a) * 1.5;
-  for (std::uint32_t i = 0; i < extracted.mesh.quads.size(); ++i) extracted.suspects.push_back(i);
+  for (std::uint32_t i = 0; i < extracted.mesh.quads.size(); ++i) extracted.candidates.push_back(i);
   ContourOptions options;
   ContourReport report;
   ExtractedMesh untouched = extracted;
   finishMesh(model.model(), options, extracted, report, model.job());
-  EXPECT_GT(report.movedVertices + report.turnedQuads + report.fannedQuads, 0U);
+  EXPECT_GT(report.movedVertices + report.flippedDiagonals + report.fannedQuads, 0U);
   EXPECT_EQ(report.intersectionsLeft, 0U);
   options.repair = false;
   ContourReport none;
   finishMesh(model.model(), options, untouched, none, model.job());
-  EXPECT_EQ(none.movedVertices + none.turnedQuads + none.fannedQuads, 0U);
+  EXPECT_EQ(none.movedVertices + none.flippedDiagonals + none.fannedQuads, 0U);
 }
 
 }  // namespace

@@ -27,17 +27,17 @@ TEST(Dilate, MarksARingAtATime) {
   const Mesh mesh = strip(5);
   Marks marks(12, 0);
   marks[4] = 1;
-  EXPECT_EQ(widen(mesh, marks, 0), marks);
-  EXPECT_EQ(widen(mesh, marks, 1), (Marks{0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0}));
-  EXPECT_EQ(widen(mesh, marks, 2), (Marks{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0}));
+  EXPECT_EQ(dilate(mesh, marks, 0), marks);
+  EXPECT_EQ(dilate(mesh, marks, 1), (Marks{0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(dilate(mesh, marks, 2), (Marks{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0}));
 }
 
 TEST(Dilate, GoesAcrossTrianglesToo) {
   Mesh mesh = strip(1);
   mesh.positions.emplace_back(5, 0, 0);
   mesh.triangles.emplace_back(2, 4, 3);
-  EXPECT_EQ(widen(mesh, Marks{1, 0, 0, 0, 0}, 1), (Marks{1, 1, 1, 1, 0}));
-  EXPECT_EQ(widen(mesh, Marks{1, 0, 0, 0, 0}, 2), (Marks{1, 1, 1, 1, 1}));
+  EXPECT_EQ(dilate(mesh, Marks{1, 0, 0, 0, 0}, 1), (Marks{1, 1, 1, 1, 0}));
+  EXPECT_EQ(dilate(mesh, Marks{1, 0, 0, 0, 0}, 2), (Marks{1, 1, 1, 1, 1}));
 }
 
 TEST(Dilate, StaysInItsComponent) {
@@ -45,12 +45,12 @@ TEST(Dilate, StaysInItsComponent) {
   const Mesh other = strip(1);
   mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
   mesh.quads.emplace_back(4, 6, 7, 5);
-  EXPECT_EQ(widen(mesh, Marks{0, 0, 0, 0, 0, 0, 1, 0}, 9), (Marks{0, 0, 0, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(dilate(mesh, Marks{0, 0, 0, 0, 0, 0, 1, 0}, 9), (Marks{0, 0, 0, 0, 1, 1, 1, 1}));
 }
 
 TEST(Dilate, OfNoMarksIsNone) {
   const Mesh mesh = strip(3);
-  EXPECT_EQ(widen(mesh, Marks(8, 0), 3), Marks(8, 0));
+  EXPECT_EQ(dilate(mesh, Marks(8, 0), 3), Marks(8, 0));
 }
 
 }  // namespace

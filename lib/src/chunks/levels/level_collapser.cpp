@@ -10,7 +10,7 @@
 namespace tufa::chunks {
 namespace {
 
-// So often edges are collapsed, each time without what went wrong and twice as much around it.
+// Tries at most, each without what went wrong and twice as far around it.
 constexpr int kMostTries = 4;
 // A collapse that saves less than this share of the triangles is not worth its time.
 constexpr double kLeastSaved = 0.05;
@@ -27,7 +27,7 @@ std::vector<std::uint8_t> LevelCollapser::findOwn(const SeamedCut& mesh) const {
   return own;
 }
 
-// Marks what must stay.
+// Marks what must stay, and limits the rest to its chunk.
 refine::Goal LevelCollapser::goalFor(const SeamedCut& mesh,
                                      std::vector<std::uint8_t>& fixed) const {
   const std::vector<std::uint8_t> own = findOwn(mesh);
@@ -115,8 +115,8 @@ SeamedCut LevelCollapser::collapse(const SeamedCut& mesh, const refine::Goal& go
   return result;
 }
 
-// Marks vertices of pairs, if there are more of them than before, and those of a larger error than
-// the tolerance and all errors before.
+// Marks vertices of pairs, if there are more pairs than before, and those with an error above the
+// tolerance and above all errors before.
 std::vector<std::uint8_t> LevelCollapser::findWorse(LevelMeshes& before, const LevelMeshes& now,
                                                     const Level& level) const {
   std::vector<std::uint8_t> worse(now.regular.cut.clusters.size(), 0);
@@ -157,7 +157,7 @@ std::vector<std::uint8_t> LevelCollapser::findWorse(LevelMeshes& before, const L
 }
 
 void LevelCollapser::measure(LevelMeshes& meshes, const Level& level) const {
-  // What was kept from the meshes before does not count here.
+  // A new Certifier, as one in use also reports errors of earlier meshes.
   const auto errorsOf = [&](const SeamedCut& mesh, std::vector<float>& errors) {
     if (!errors.empty()) return;
     distance::Certifier certifier(region_.base, region_.surface, level.rule, job_);
