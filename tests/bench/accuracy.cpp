@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
           "smallest angle %.4f, under 10 degrees %.3f%%\n",
           shape == Shape::Box ? "box" : "bracket", voxel, mesh.triangleCount(),
           checked.selfIntersectingPairs.value_or(0), report.intersectionsFound,
-          report.movedVertices, report.turnedQuads, report.fannedQuads,
+          report.movedVertices, report.flippedDiagonals, report.fannedQuads,
           checked.smallestAngleDegrees, 100 * checked.shareUnder10Degrees);
       print("mesh to shape", meshToShape(mesh, shape, voxel));
       print("crease to mesh", creaseToMesh(mesh, shape, *grid, voxel));

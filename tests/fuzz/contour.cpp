@@ -116,7 +116,7 @@ void requirePromises(const tufa::Mesh& mesh, const tufa::ContourReport& report) 
     require(topology.nonManifoldEdges == 0, "manifold edges");
     require(topology.misorientedEdges == 0, "one orientation");
     require(topology.collapsedFaces == 0, "no collapsed faces");
-    if (report.cutEdges > 0) continue;
+    if (report.openEdges > 0) continue;
     require(topology.boundaryEdges == 0, "closed");
     require(topology.manifold(), "manifold vertices, no duplicate faces, no unused vertices");
   }
@@ -142,7 +142,7 @@ void contourBoth(const openvdb::GridBase& grid, Source& source) {
   const tufa::Mesh uniform = tufa::contour(grid, options, &uniformReport);
   requirePromises(uniform, uniformReport);
 
-  require(report.cutEdges == uniformReport.cutEdges, "the same cut edges");
+  require(report.openEdges == uniformReport.openEdges, "the same cut edges");
   require(report.certificate.has_value(), "a certificate");
   constexpr double kRounding = 1e-3;  // positions are rounded to floats afterwards
   require(report.certificate->maxErrorVoxels <= options.tolerance + kRounding, "the tolerance");

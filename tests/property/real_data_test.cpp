@@ -74,7 +74,7 @@ void expectPromises(const LodChain& chain, const ContourReport& report) {
     const Lod& lod = chain.levels[i];
     SCOPED_TRACE("level " + std::to_string(i));
     const CheckReport found = check(lod.mesh);
-    EXPECT_EQ(found.watertight(), report.cutEdges == 0);
+    EXPECT_EQ(found.watertight(), report.openEdges == 0);
     EXPECT_TRUE(found.manifold && found.oriented);
     EXPECT_EQ(found.selfIntersectingPairs, 0U);
     EXPECT_LE(lod.certificate.maxErrorVoxels, lod.tolerance);
@@ -111,7 +111,7 @@ TEST_P(SampleMesh, ComesBackFromItsVolumeAsAManifold) {
     EXPECT_TRUE(found.manifold && found.oriented) << voxels;
     EXPECT_EQ(found.duplicateFaces + found.collapsedFaces + found.invalidFaces, 0U) << voxels;
     if (!truth.closed) continue;
-    EXPECT_EQ(report.cutEdges, 0U) << voxels;
+    EXPECT_EQ(report.openEdges, 0U) << voxels;
     EXPECT_TRUE(found.closed) << voxels;
     if (!truth.oriented) continue;
     // The surface is off by less than half a voxel, so the volume by less than that times the area.
@@ -142,7 +142,7 @@ TEST_P(SampleVolume, GivesAManifold) {
   ASSERT_GT(mesh.triangleCount(), 0U);
   const CheckReport found = checkTopology(mesh);
   EXPECT_TRUE(found.manifold && found.oriented);
-  EXPECT_EQ(found.closed, report.cutEdges == 0);
+  EXPECT_EQ(found.closed, report.openEdges == 0);
   EXPECT_EQ(found.duplicateFaces + found.collapsedFaces + found.invalidFaces, 0U);
   EXPECT_GT(found.volume, 0);
 }

@@ -48,7 +48,7 @@ TEST_F(Command, MeshGivesTheKeysOfItsReport) {
   const auto json = nlohmann::json::parse(outcome.out);
   for (const char* key : {"active_voxels", "surface_cells", "vertices", "triangles", "quads",
                           "seconds", "peak_memory_bytes", "threads", "check", "isovalue", "inside",
-                          "crease_cells", "cut_edges", "face_flips"}) {
+                          "crease_cells", "open_edges", "face_flips"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const char* key : {"read", "contour", "check", "write", "stages"}) {
@@ -316,7 +316,7 @@ TEST_F(Command, NamesTheEdgeOfTheDataAndCapsIt) {
   EXPECT_NE(open.err.find("runs out of the data"), std::string::npos) << open.err;
   EXPECT_NE(open.err.find("boundary edges"), std::string::npos) << open.err;
   const auto json = nlohmann::json::parse(open.out);
-  EXPECT_GT(json.at("cut_edges"), 0);
+  EXPECT_GT(json.at("open_edges"), 0);
   EXPECT_GT(json.at("check").at("boundary_edges"), 0);
   EXPECT_EQ(run("mesh cut.vdb -o m.ply --check --cap").exitCode, 0);
 }

@@ -38,7 +38,7 @@ struct ChunkSeam {
   static constexpr VertexIndex kNone = std::numeric_limits<VertexIndex>::max();
 
   /// For each arc the vertex inside the chunk that stands for it. From arc to arc the chunk's
-  /// surface lies to the left of the face, seen from outside.
+  /// surface lies to the right of the face, seen from outside.
   std::vector<VertexIndex> tiles;
   std::vector<VertexIndex> polyline;  ///< for each arc the vertex on the face that stands for it
   VertexIndex begin = kNone;          ///< vertex on a chunk edge before the first arc, if any

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tufa/export.h>
+
 #include <algorithm>
 #include <array>
 #include <compare>

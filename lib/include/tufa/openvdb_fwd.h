@@ -1,6 +1,7 @@
 #pragma once
 
 #include <openvdb/version.h>
+#include <tufa/export.h>
 
 // Names of OpenVDB's classes, for headers that only pass grids on: openvdb.h itself costs seconds
 // in each file that includes it.

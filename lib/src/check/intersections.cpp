@@ -16,7 +16,7 @@ Bvh buildFaceTree(const Faces& faces, base::Job& job) {
       boxes[f] = Box::empty();
       for (const VertexIndex v : solid[f].vertices) {
         const Position& p = faces.positions[v];
-        boxes[f].add(Vec3(p.x, p.y, p.z));
+        boxes[f].add(Vec3(p));
       }
     }
   });

@@ -66,8 +66,7 @@ std::set<Coord> findRegions(const grid::Blocks& blocks, const ChunkOptions& opti
   }
   if (options.only.empty()) return regions;
   std::set<Coord> asked;
-  const auto chunkLevel =
-      static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(options.chunkSize)));
+  const int chunkLevel = std::countr_zero(static_cast<unsigned>(options.chunkSize));
   for (const Coord& chunk : options.only) asked.insert(regionOf(chunk << chunkLevel));
   std::erase_if(regions, [&](const Coord& region) { return !asked.contains(region); });
   return regions;

@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t kChunk = 2048;
 constexpr std::uint32_t kNoPiece = std::numeric_limits<std::uint32_t>::max();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Samples inside a triangle: one each two voxels of its longest side, but not more than this along
-// it. The base points, which are dense, are measured too; samples find what sticks out between
-// them.
+// Samples inside a triangle: one for each two voxels of its longest edge, but at most this many
+// along it. Points of the uniform mesh, which are dense, are measured too; samples find what
+// protrudes between them.
 constexpr int kMostSteps = 3;
 constexpr double kSampleSpacing = 2;
-// Most voxels to search around a sample beyond the nearest cells. What is farther is measured to
-// the base quad that the polygon comes from.
+// Voxels to search around a sample at most. What is farther is measured to the uniform quad that
+// the polygon comes from.
 constexpr double kLongestReach = 16;
 
 }  // namespace
@@ -101,6 +101,10 @@ std::vector<float> Certifier::errorsAtVertices() const {
   return errors;
 }
 
+// Collects the triangles at vertices of larger cells or altered ones, and for each vertex those of
+// the polygons around it. Polygons of uniform vertices alone are those of the uniform mesh: their
+// distance is 0. Both triangles of a quad count at all its corners, as a point may lie above the
+// one that a corner is not part of.
 void Certifier::collectNewTriangles() {
   const Mesh& mesh = made_->mesh;
   newTriangles_.clear();
@@ -140,6 +144,9 @@ void Certifier::collectNewTriangles() {
   }
 }
 
+// Marks what must be measured again. A vertex has changed if a uniform vertex that it stands for
+// stood at another place before, or was altered; a distance can have changed only if a triangle
+// that it was measured to has, so vertices that share a polygon with a changed one are touched.
 void Certifier::findChanges() {
   const std::vector<Position>& positions = made_->mesh.positions;
   changed_.assign(positions.size(), positions_.empty() ? 1 : 0);
@@ -161,8 +168,9 @@ void Certifier::findChanges() {
   }
 }
 
-// A piece around `vertex` that the point lies above and within `enough`, else the nearest one if it
-// is nearer than `squared`. Returns whether it is the former, and the search may end.
+// Finds a triangle around `vertex` that the point lies above and within `enough` of, squared, or
+// else the nearest one if it is nearer than `squared`. True if it is the former: the search may
+// end, as what is within the tolerance needs no nearer place.
 bool Certifier::findAround(VertexIndex vertex, const Vec3& point, double enough, double& squared,
                            std::uint32_t& nearest) const {
   const std::uint32_t begin = firstAround_[vertex], end = firstAround_[vertex + 1];
@@ -184,8 +192,9 @@ bool Certifier::findAround(VertexIndex vertex, const Vec3& point, double enough,
   return false;
 }
 
-// Where vertices were joined, what a point lies above may be farther off: goes on from piece to
-// piece while they come nearer, and never to another sheet.
+// Where vertices were joined, the polygon below a point need not be around its cluster. Goes from
+// triangle to neighbouring triangle while that comes nearer: never to another sheet, as those are
+// not neighbours. Ends, as the distance falls with each step.
 void Certifier::walkNearer(const Vec3& point, double enough, double& squared,
                            std::uint32_t& nearest) const {
   for (std::uint32_t last = kNoPiece; squared > enough && last != nearest;) {
@@ -197,7 +206,7 @@ void Certifier::walkNearer(const Vec3& point, double enough, double& squared,
   }
 }
 
-// The distance of a base point to the polygons around its clusters, in voxels.
+// The distance of a uniform point to the polygons around its clusters, in voxels.
 float Certifier::distanceAround(const VertexIndex* vertices, int count, const Vec3& point,
                                 std::uint8_t& wandered, Part& part) const {
   double squared = kInfinity;
@@ -257,8 +266,9 @@ void Certifier::measureQuad(std::size_t index, Part& part) {
   part.sum += static_cast<double>(error);
 }
 
-// The distance of a point of a polygon that comes from a base quad. Where the mesh is folded its
-// normals lead nowhere, and those of that quad's vertices are followed.
+// The distance of a point of a polygon to the uniform mesh, world units. Where the mesh is folded
+// its normals mislead, so the uniform quad that the polygon comes from and the normals of its
+// vertices are tried as well.
 double Certifier::distanceBelow(const Vec3& point, const Vec3& outward,
                                 std::uint32_t source) const {
   const double enough = toleranceAt(point) * base_.affine.voxelSize();
@@ -267,7 +277,7 @@ double Certifier::distanceBelow(const Vec3& point, const Vec3& outward,
   for (const VertexIndex vertex : base_.mesh.quads[source].vertices) {
     if (least <= enough) break;
     const Normal& n = base_.mesh.normals[vertex];
-    least = std::min(least, distanceToBase(point, Vec3(n.x, n.y, n.z), enough));
+    least = std::min(least, distanceToBase(point, Vec3(n), enough));
   }
   return least;
 }
@@ -285,6 +295,8 @@ void Certifier::measureCorner(VertexIndex vertex, Part& part) {
   note(point, voxels, &vertex, 1, part);
 }
 
+// Samples inside a triangle. Its corners are measured once for all triangles around them, see
+// measureCorner().
 void Certifier::measureNewTriangle(std::size_t index, Part& part) {
   const NewTriangle& triangle = newTriangles_[index];
   const auto& v = triangle.corners;
@@ -299,7 +311,7 @@ void Certifier::measureNewTriangle(std::size_t index, Part& part) {
   const Vec3 outward = facing(v.data(), 4);
   for (int i = 0; i < steps; ++i) {
     for (int j = 0; i + j < steps; ++j) {
-      // The middles of small triangles that fill the large one.
+      // The centroids of the upright ones of the small triangles that fill this one.
       const double s = (i + 1.0 / 3) / steps, t = (j + 1.0 / 3) / steps;
       const Vec3 point = a + (b - a) * s + (c - a) * t;
       const double voxels = distanceBelow(point, outward, triangle.source) / voxel;
@@ -309,12 +321,12 @@ void Certifier::measureNewTriangle(std::size_t index, Part& part) {
   }
 }
 
-// Also of what was measured before.
+// Lists a uniform point that is too far, whether its distance is new or kept from a mesh before.
 void Certifier::noteFar(std::uint64_t index, const Vec3& point, double voxels, Part& part) const {
   if (voxels > toleranceAt(point)) part.farPoints.push_back(index);
 }
 
-// Takes a distance into account. Where it is too large, the largest cells of the polygon must be
+// Records a distance. Where it exceeds the tolerance, the largest cells of the polygon must be
 // split.
 void Certifier::note(const Vec3& point, double voxels, const VertexIndex* corners, int count,
                      Part& part) const {
@@ -330,12 +342,12 @@ void Certifier::note(const Vec3& point, double voxels, const VertexIndex* corner
   }
 }
 
-// The mean normal of vertices. Not the polygon's own, which may be folded over.
+// The mean normal of vertices. The polygon's own normal does not serve: it may be folded over.
 Vec3 Certifier::facing(const VertexIndex* vertices, int count) const {
   Vec3 sum(0.0);
   for (int i = 0; i < count; ++i) {
     const Normal& n = made_->mesh.normals[vertices[i]];
-    sum += Vec3(n.x, n.y, n.z);
+    sum += Vec3(n);
   }
   sum.normalize();
   return sum;
@@ -349,7 +361,8 @@ int Certifier::reachOf(double voxels) {
   return 3 + static_cast<int>(std::min(kLongestReach, voxels));
 }
 
-// Sums up in order, so that the mean is the same for any number of threads.
+// Runs body over chunks in parallel and adds up their results in order, so that sums and lists are
+// the same for any number of threads.
 template <class Body>
 void Certifier::forChunks(std::size_t count, const Body& body, Deviation& total, double& sum) {
   std::vector<Part> parts((count + kChunk - 1) / kChunk);

@@ -16,14 +16,16 @@ using uniform::SurfaceBlock;
 
 namespace {
 
-// A vertex whose normal has less than this part along the direction asked for faces away; on the
-// corner of a cube the normals of vertex and face have 0.58.
+// A vertex faces away if its normal has a cosine less than this with the direction asked for; on
+// the corner of a cube the normals of vertex and face have 0.58. Vertices on creases always count.
 constexpr double kFacing = 0.2;
-// So many cells on each side of a point are looked at if the nearest vertex does not do.
+// Cells on each side of a point that are searched if the nearest vertex is not near enough.
 constexpr int kAround = 2;
 constexpr int kSide = 2 * kAround + 1;
 
-// The blocks around a point, each looked up once: entry by the lowest bits of its coordinates.
+// A cache of the blocks around a point, by the lowest bits of their coordinates: cells within a few
+// voxels lie in at most two blocks per axis, so each is looked up once. Farther searches replace
+// entries.
 class BlockCache {
  public:
   explicit BlockCache(const octree::ClusterForest& forest) : forest_(forest) {}
@@ -47,7 +49,7 @@ class BlockCache {
   std::array<Entry, 8> entries_;
 };
 
-// The cells around one, by their distance.
+// Offsets to the cells around one, nearest first.
 using Offsets = std::array<std::array<int, 3>, kSide * kSide * kSide>;
 
 Offsets makeOffsets() {
@@ -100,7 +102,8 @@ void UniformReference::searchCell(std::uint32_t block, int cell, const Vec3& poi
   const std::uint32_t first = base_.topology.firstVertexInBlock(surface, cell);
   std::uint32_t count = 1;
   if (surface.special >= 0) {
-    // Ranks count the cells before; behind the last cell of the block there is none to ask.
+    // The next cell's first vertex would tell the count, but the last cell of the block has no next
+    // one.
     for (const uniform::CellException& exception :
          base_.topology.specials[surface.special].exceptions) {
       if (exception.cell == cell) count = exception.count;
@@ -112,7 +115,7 @@ void UniformReference::searchCell(std::uint32_t block, int cell, const Vec3& poi
     if (squared >= near.squared) continue;
     const Normal& n = base_.mesh.normals[vertex];
     const bool sharp = base_.sheets.isSharp(static_cast<VertexIndex>(vertex));
-    if (!sharp && Vec3(n.x, n.y, n.z).dot(facing) < kFacing) continue;
+    if (!sharp && Vec3(n).dot(facing) < kFacing) continue;
     near = {block, cell, squared};
   }
 }
@@ -134,7 +137,8 @@ UniformReference::Near UniformReference::nearestVertex(const Vec3& point, const 
   const Coord middle = base_.affine.origin() + floorCoord(at);
   BlockCache blocks(forest_);
   Near near;
-  // Rings of cells outward, one more after the first that holds a vertex: it may hold a nearer one.
+  // The 27 cells around the point. If they hold no vertex, shells of cells outward, and one more
+  // shell after the first with a vertex: it may hold a nearer one.
   for (int radius = 1; radius <= reach; ++radius) {
     const bool last = near.block != octree::kNone;
     for (int x = -radius; x <= radius; ++x) {
@@ -197,7 +201,7 @@ double UniformReference::distance(const Vec3& point, const Vec3& facing, int rea
   const auto distanceAt = [&](const Near& near) {
     return distanceAtCell(near.block, near.cell, point, [](int, int) { return false; });
   };
-  // Mostly the surface passes the cell of the point itself.
+  // Mostly the surface passes the cell of the point itself: one block lookup.
   Near near = vertexInCell(point, facing);
   if (near.block != octree::kNone) {
     const double own = distanceAt(near);
@@ -206,18 +210,20 @@ double UniformReference::distance(const Vec3& point, const Vec3& facing, int rea
   near = nearestVertex(point, facing, reach);
   if (near.block == octree::kNone) return std::numeric_limits<double>::infinity();
   const double best = distanceAt(near);
-  // Beside a crease the nearest polygon may not be at the nearest vertex.
+  // Beside a crease the nearest polygon need not be at the nearest vertex.
   return best <= enough ? best : std::min(best, distanceAround(point, facing, enough));
 }
 
-// To the polygons around all vertices near the point that do not face away.
+// The distance to the polygons around all vertices within kAround cells that do not face away.
+// Cells are taken nearest first, and an edge that several of them share is measured once.
 double UniformReference::distanceAround(const Vec3& point, const Vec3& facing,
                                         double enough) const {
   double best = std::numeric_limits<double>::infinity();
   const Vec3 at = base_.affine.latticePoint({point[0], point[1], point[2]}, base_.affine.origin());
   const Coord middle = base_.affine.origin() + floorCoord(at);
   BlockCache blocks(forest_);
-  // Polygons lie around up to four of the cells.
+  // Each polygon lies around four cells: remembers the edges that were measured, by start point and
+  // axis.
   std::bitset<std::size_t{3} * (kSide + 1) * (kSide + 1) * (kSide + 1)> known;
   for (const std::array<int, 3>& offset : nearestFirst()) {
     if (best <= enough) break;

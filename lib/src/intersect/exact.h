@@ -5,8 +5,8 @@
 namespace tufa::intersect {
 
 // Signs of determinants of coordinates, exactly: from floating point where its rounding cannot
-// matter, else from sums of products without rounding (Shewchuk 1997). Coordinates whose products
-// of three leave the range of double are not served.
+// matter, else from sums of products without rounding (Shewchuk 1997). There is no tolerance. Not
+// exact where products of three coordinates overflow or underflow a double.
 
 /// 1 if d sees a, b, c counter-clockwise, -1 if clockwise, 0 if the four lie in one plane.
 [[nodiscard]] int orientation(const Position& a, const Position& b, const Position& c,

@@ -11,7 +11,8 @@ using base::Box;
 
 namespace {
 
-// A quick answer for most polygons that share two vertices or less.
+// Whether a plane certainly separates two polygons but for what they share; a quick answer for most
+// that share two vertices or less. Quads need not be plane: their hulls are separated.
 bool areParted(std::span<const Position> positions, Corners a, Corners b) {
   std::array<Position, 4> ofA, ofB;
   std::array<Position, 2> common;
@@ -55,12 +56,14 @@ struct Candidate {
   Box box;
 };
 
-// So many polygons of a run are compared with what is near at once.
+// Polygons of a run that are compared with the candidates near them at once.
 constexpr PolygonIndex kGroup = 4;
 
 using Matters = std::function<bool(PolygonIndex, PolygonIndex)>;
 
-// The pairs of the polygons of one run with the suspects near it.
+// The pairs of the polygons of one run with the candidates near it. Boxes are compared in three
+// steps: run, group, polygon; so a candidate is compared with few polygons of a run that it does
+// not touch.
 void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Candidate>& near,
                 const Matters& matters, std::vector<PolygonPair>& pairs) {
   const PolygonIndex begin = surface.runBegin(run), end = surface.runEnd(run);
@@ -84,7 +87,7 @@ void pairsOfRun(const Surface& surface, std::size_t run, const std::vector<Candi
     }
     for (PolygonIndex p = group; p < groupEnd; ++p) {
       for (const Candidate& other : nearer) {
-        // Of two suspects the later one is found from the earlier.
+        // Of two candidates, the higher one is found from the lower one.
         if (!boxes[p - group].meets(other.box) || (isCandidate[p - begin] && other.polygon < p)) {
           continue;
         }
@@ -107,6 +110,8 @@ std::vector<PolygonPair> findPairs(const Surface& surface,
   job.forRanges(candidates.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) boxes[i] = surface.box(candidates[i]);
   });
+  // The tree is over the candidates, which are few; runs of all polygons are looked up in it.
+  // Sorting at the end makes the result independent of the threads.
   const base::Bvh tree(std::move(boxes), job);
   std::vector<PolygonPair> pairs;
   std::mutex mutex;

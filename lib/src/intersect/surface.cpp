@@ -46,7 +46,7 @@ Box Surface::box(PolygonIndex polygon) const {
   Box box = Box::empty();
   for (const VertexIndex vertex : corners(polygon)) {
     const Position& p = mesh_.positions[vertex];
-    box.add(Vec3(p.x, p.y, p.z));
+    box.add(Vec3(p));
   }
   return box;
 }
@@ -64,7 +64,7 @@ void Surface::fan(PolygonIndex quad, const Position& centre) {
     Vec3 sum(0);
     for (const VertexIndex vertex : v) {
       const Normal& n = mesh_.normals[vertex];
-      sum += Vec3(n.x, n.y, n.z);
+      sum += Vec3(n);
     }
     sum.normalize();
     mesh_.normals.emplace_back(static_cast<float>(sum[0]), static_cast<float>(sum[1]),

@@ -11,21 +11,19 @@
 
 #include "base/bvh.h"
 #include "base/job.h"
+#include "base/polygons.h"
 
 namespace tufa::intersect {
 
-/// Names a polygon of a mesh: its quads come first, then its triangles.
-using PolygonIndex = std::uint32_t;
+using base::Corners;
+using base::PolygonIndex;
 
-/// Two polygons that meet elsewhere than in what they share, the lesser index first; equal ones are
-/// a quad that is folded onto itself.
+/// Two polygons that intersect elsewhere than in what they share, the lower index first; twice the
+/// same one is a quad that is folded onto itself.
 struct PolygonPair {
   PolygonIndex a, b;
   friend auto operator<=>(const PolygonPair&, const PolygonPair&) = default;
 };
-
-/// The vertices of a polygon in order: three, four, or none.
-using Corners = std::span<const VertexIndex>;
 
 /// The triangles of a polygon, a quad split from its first vertex to its third. Returns how many.
 inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
@@ -43,23 +41,23 @@ inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
 [[nodiscard]] std::vector<VertexIndex> verticesOf(const Mesh& mesh,
                                                   const std::vector<PolygonIndex>& polygons);
 
-/// Whether two polygons, or if they are the `same` the triangles of one, meet elsewhere than in
-/// what they share.
+/// Whether two polygons, or if they are the `same` the triangles of one, intersect elsewhere than
+/// in what they share.
 [[nodiscard]] bool intersectElsewhere(std::span<const Position> positions, Corners a, Corners b,
                                       bool same);
 
-/// The polygons of a mesh while they change, and where they lie.
+/// The polygons of a mesh while they change, with an index of where they lie.
 ///
 /// Neighbours in a mesh are mostly neighbours in its arrays too, so runs of consecutive polygons
-/// have small boxes, and these are all the index that is kept. Quads keep their numbers while
-/// others are taken out.
+/// have small boxes, and these boxes are the whole index. Boxes only grow: one that a polygon has
+/// left is too large but never wrong. Quads keep their indices while others are removed.
 class Surface {
  public:
   Surface(Mesh& mesh, base::Job& job);
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] std::size_t size() const { return mesh_.quads.size() + mesh_.triangles.size(); }
-  /// The vertices of a polygon: 3, 4, or none if it was taken out.
+  /// The vertices of a polygon: 3, 4, or none if it was removed.
   [[nodiscard]] Corners corners(PolygonIndex polygon) const {
     if (polygon >= mesh_.quads.size()) {
       return mesh_.triangles[polygon - mesh_.quads.size()].vertices;
@@ -71,14 +69,16 @@ class Surface {
   [[nodiscard]] base::Box box(PolygonIndex polygon) const;
   [[nodiscard]] bool isQuad(PolygonIndex polygon) const { return polygon < mesh_.quads.size(); }
 
-  /// Call update() for the polygons around a vertex once it has moved.
+  /// Moves a vertex. The caller then calls update() for the polygons around it.
   void move(VertexIndex vertex, const Position& to) { mesh_.positions[vertex] = to; }
-  /// Splits a quad along its other diagonal.
+  /// Flips the diagonal of a quad.
   void turn(PolygonIndex quad);
-  /// Puts four triangles around a new vertex in place of a quad; they get the last indices.
+  /// Replaces a quad by four triangles around a new vertex; they get the last indices.
   void fan(PolygonIndex quad, const Position& centre);
+  /// Extends the index by where a polygon lies now.
   void update(PolygonIndex polygon);
-  /// Leaves no trace of the quads that were taken out. The last call.
+  /// Removes the quads that fans replaced from the mesh, which changes indices. Must be the last
+  /// call.
   void finish();
 
   static constexpr std::size_t kRun = 32;
@@ -97,9 +97,9 @@ class Surface {
   bool fanned_ = false;
 };
 
-/// All pairs of which at least one polygon is among `suspects`, sorted; of two polygons for which
-/// `matters` says so, if there is such a function. The result does not depend on the number of
-/// threads.
+/// All pairs of which at least one polygon is among `candidates`, sorted; if there is a function
+/// `matters`, only those for which it is true. The result does not depend on the number of threads.
+/// Cost: a tree over the candidates, and one query for each run of polygons.
 [[nodiscard]] std::vector<PolygonPair> findPairs(
     const Surface& surface, const std::vector<PolygonIndex>& candidates, base::Job& job,
     const std::function<bool(PolygonIndex, PolygonIndex)>& matters = nullptr);

@@ -14,9 +14,10 @@ namespace {
 
 using Corners = std::array<Position, 3>;
 
-// Far above the rounding of a scalar product, relative to its terms.
+// Above the rounding of a scalar product of differences, at most 4 half ulps or 4.5e-16, relative
+// to its terms.
 constexpr double kRounding = 1e-15;
-// The sine of an angle far above all rounding.
+// Sine of an angle far above all rounding.
 constexpr double kClearly = 1e-6;
 
 Vec3 between(const Position& from, const Position& to) {
@@ -36,8 +37,8 @@ int alignShared(std::array<VertexIndex, 3>& a, std::array<VertexIndex, 3>& b) {
   return shared;
 }
 
-// A quick answer for shared edges: surely not folded over, as the third corners lie on opposite
-// sides of the edge.
+// A quick answer for triangles at a common edge: certainly not folded over, as the third corners
+// lie on opposite sides of the edge.
 bool isUnfolded(const Corners& a, const Corners& b) {
   const Vec3 edge = between(a[0], a[1]), own = between(a[0], a[2]), other = between(a[0], b[2]);
   const Vec3 across = own * edge.squaredLength() - edge * own.dot(edge);
@@ -45,7 +46,7 @@ bool isUnfolded(const Corners& a, const Corners& b) {
   return across.dot(other) < -kClearly * across.length() * other.length();
 }
 
-// An axis along which the triangle is seen with an area; -1 if its corners lie on a line.
+// An axis along which the triangle is seen with an area; -1 if its corners lie on a line. Exact.
 int facingAxis(const Corners& t) {
   for (int axis = 0; axis < 3; ++axis) {
     if (orientationAcross(axis, t[0], t[1], t[2]) != 0) return axis;
@@ -53,7 +54,8 @@ int facingAxis(const Corners& t) {
   return -1;
 }
 
-// All in one plane. Two convex figures are apart if a line along a side of one parts them.
+// A segment and a triangle in one plane. Two convex figures are disjoint exactly if a line along an
+// edge of one separates them, so the edges of the triangle and the segment itself are tried.
 bool intersectsInPlane(const Position& p, const Position& q, const Corners& t) {
   const int axis = facingAxis(t);
   if (axis < 0) return false;
@@ -71,6 +73,10 @@ bool intersectsInPlane(const Position& p, const Position& q, const Corners& t) {
          first != orientationAcross(axis, p, q, t[2]);
 }
 
+// Whether a segment touches a triangle. If its ends are not on the same side of the plane, the line
+// through them crosses the plane in one point of the segment. That point is in the triangle unless
+// the line has one edge of it on its left and another on its right. An end in the plane and a line
+// through an edge or a vertex give zeros, which count as touching.
 bool segmentIntersects(const Position& p, const Position& q, const Corners& t) {
   const int sideP = orientation(t[0], t[1], t[2], p), sideQ = orientation(t[0], t[1], t[2], q);
   if (sideP == sideQ) return sideP == 0 && intersectsInPlane(p, q, t);
@@ -83,7 +89,8 @@ bool segmentIntersects(const Position& p, const Position& q, const Corners& t) {
   return !(left && right);
 }
 
-// Whether all corners of b but the first `skip` are strictly on one side of the plane of a.
+// Whether all corners of b but the first `skip` are strictly on one side of the plane of a: then
+// they have at most those `skip` corners in common.
 bool isBeside(const Corners& a, const Corners& b, int skip) {
   const int side = orientation(a[0], a[1], a[2], b[skip]);
   if (side == 0) return false;
@@ -93,6 +100,8 @@ bool isBeside(const Corners& a, const Corners& b, int skip) {
   return true;
 }
 
+// Two triangles intersect exactly if an edge of one touches the other. Both plane tests come first:
+// they settle most pairs with three determinants each.
 bool intersectAnywhere(const Corners& a, const Corners& b) {
   if (isBeside(a, b, 0) || isBeside(b, a, 0)) return false;
   for (int i = 0; i < 3; ++i) {
@@ -102,11 +111,15 @@ bool intersectAnywhere(const Corners& a, const Corners& b) {
   return false;
 }
 
+// Triangles at a common vertex: where they intersect beyond it, the intersection ends at the far
+// edge of one of them.
 bool intersectBeyondVertex(const Corners& a, const Corners& b) {
   if (isBeside(a, b, 1) || isBeside(b, a, 1)) return false;
   return segmentIntersects(b[1], b[2], a) || segmentIntersects(a[1], a[2], b);
 }
 
+// Triangles at a common edge intersect beyond it only in one plane and on the same side of the
+// edge.
 bool isFoldedOver(const Corners& a, const Corners& b) {
   if (isUnfolded(a, b)) return false;
   if (orientation(a[0], a[1], a[2], b[2]) != 0) return false;
@@ -151,7 +164,9 @@ bool arePartedAlong(const Position& from, const Position& to, std::span<const Po
     return sum / sum.length();  // not a number if they lie on the line
   };
   const Vec3 way = directionAcross(a) - directionAcross(b);
-  // As good as at right angles to the edge: the plane that is so has the same points on each side.
+  // Rounding keeps `way` from being exactly perpendicular to the edge. If it tilts by less than
+  // kClearly / 2, the plane that does contain the edge has the same points on each side, as each
+  // point is off this one by an angle of kClearly.
   const double squared = kClearly * kClearly * way.squaredLength();
   const double along = way.dot(edge);
   if (!(4 * along * along < squared * length)) return false;

@@ -44,7 +44,10 @@ void BlockLevelsBuilder::append(std::size_t index, BlockLevels& out) {
   out.patches.insert(out.patches.end(), top.begin(), top.end());
 }
 
-// The cells of one level in the block. `below` is where the level below was written to.
+// Builds the cells of one level in the block, from the children's patches. `below` is the level
+// below as written so far; it gets its parent cells here, as an occupied cell's index is known only
+// once all cells of the block are counted. A cell with a child that is not safe is not safe either,
+// and gets no patches, so a refused cell costs nothing on the levels above.
 void BlockLevelsBuilder::buildLevel(int level, ClusterLevel* below, ClusterLevel& out,
                                     std::size_t index) {
   const int cells = 1 << (kTop - level);
@@ -83,7 +86,8 @@ void BlockLevelsBuilder::buildLevel(int level, ClusterLevel* below, ClusterLevel
   out.firstInBlock.push_back(firstOfBlock);
 }
 
-// Whether nothing below speaks against a cell: all its children are safe.
+// Whether a cell can be safe at all: no child is unsafe. A cell of level 1 has cells of level 0 as
+// children, which are safe unless an open edge or an ambiguous face forbids it.
 bool BlockLevelsBuilder::isTried(int level, const Coord& cell) const {
   if (level == 1) return ((forbidden1_ >> ClusterForest::slotInBlock(1, cell)) & 1) == 0;
   const Patches& below = levels_[level - 1];
@@ -94,7 +98,8 @@ bool BlockLevelsBuilder::isTried(int level, const Coord& cell) const {
   return true;
 }
 
-// Joins the patches of a cell's children and solves for the cell's clusters.
+// Joins the patches of a cell's children. If the cell is safe, adds up their planes and normals,
+// links their clusters to their parents, and solves for the cell's own clusters.
 bool BlockLevelsBuilder::join(int level, const Coord& cell, ClusterLevel* below,
                               ClusterLevel& out) {
   const Patches& under = levels_[level - 1];
@@ -134,6 +139,10 @@ bool BlockLevelsBuilder::join(int level, const Coord& cell, ClusterLevel* below,
   return true;
 }
 
+// Makes the patches of level 0, one for each uniform vertex of the block: its planes, and its
+// crossings as the lattice coordinates that tell equal ones apart. A cell with an open edge forbids
+// its parent: the surface ends there, and its patch is no disk with the boundary that the safety
+// test counts.
 void BlockLevelsBuilder::readVertices(std::size_t index) {
   const uniform::CellTopology& topology = base_.topology;
   const SurfaceBlock& block = topology.blocks[index];
@@ -170,6 +179,9 @@ void BlockLevelsBuilder::readVertices(std::size_t index) {
   if (special) forbidBeside(index);
 }
 
+// One plane for a smooth vertex, one for each sheet on a crease or corner, so that coarse clusters
+// keep the crease. The planes pass through the vertex, not through its crossings: coarse cells
+// approximate the uniform mesh.
 void BlockLevelsBuilder::addVertexPlanes(VertexIndex vertex, const Coord& origin,
                                          Patch& patch) const {
   const Vec3 point = base_.affine.latticePoint(base_.mesh.positions[vertex], origin);
@@ -190,16 +202,18 @@ void BlockLevelsBuilder::addVertexPlanes(VertexIndex vertex, const Coord& origin
   }
   if (!flat) patch.planes.addPlane(point, base_.affine.planeInLattice(mean));
   if (kind < Kind::Meeting && !flat) return;
-  // Several sides that could not be told apart: the vertex itself must be kept.
+  // Several sheets that could not be told apart, or no normal: three planes hold the vertex itself.
   for (int axis = 0; axis < 3; ++axis) {
     patch.planes.addPlane(point, base_.affine.planeInLattice(Normal(
                                      axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0)));
   }
 }
 
-// A component that owns both arcs of an ambiguous face forbids the cell across that face to
-// collapse, unless both have one parent: the two pieces of the face would become one edge, used
-// twice.
+// Forbids cells of level 1 beside an ambiguous face of which one component of the cell across owns
+// both arcs, unless both cells have the same parent. Were the near cell merged with its siblings,
+// both arcs of the face might join the same two vertices: one edge, used by four polygons. Without
+// this test white noise gives such edges; the first two conditions of PatchJoiner do not see them,
+// as they look at one cell alone.
 void BlockLevelsBuilder::forbidBeside(std::size_t index) {
   const SurfaceBlock& block = base_.topology.blocks[index];
   const CornerWords corners = base_.blocks.cornerWords(block.neighbours);
@@ -220,6 +234,8 @@ void BlockLevelsBuilder::forbidBeside(std::size_t index) {
   }
 }
 
+// Whether one component of the cell across a face, which may lie in the next block, owns both of
+// its arcs.
 bool BlockLevelsBuilder::neighbourOwnsBothArcs(std::size_t index, int cell, int face) const {
   const uniform::CellTopology& topology = base_.topology;
   const SurfaceBlock* owner = &topology.blocks[index];

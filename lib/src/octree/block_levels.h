@@ -11,7 +11,7 @@
 
 namespace tufa::octree {
 
-/// Levels 1 to 3 of some consecutive blocks, with indices that count from 0 in each level.
+/// Levels 1 to 3 of a range of consecutive blocks; indices count from 0 in each level of the range.
 struct BlockLevels {
   std::array<ClusterLevel, ClusterForest::kBlockLevel> levels;
   std::vector<std::uint32_t> parents;  ///< of the blocks' uniform vertices
@@ -19,7 +19,8 @@ struct BlockLevels {
 };
 
 /// Builds levels 1 to 3 block by block: what a block needs fits the cache, and patches, which are
-/// large, live no longer than their block. Used again for each block, so that its arrays are.
+/// large, are discarded with their block except for those of level 3. One builder serves many
+/// blocks, so its arrays are allocated once.
 class BlockLevelsBuilder {
  public:
   BlockLevelsBuilder(const uniform::SurfaceView& base, bool angles)
@@ -34,7 +35,7 @@ class BlockLevelsBuilder {
     std::vector<Patch> patches;
     std::array<std::uint32_t, grid::kBlockCells> first{};  // only of cells with patches
     std::array<std::uint32_t, grid::kBlockCells> count{};
-    std::uint64_t occupied = 0;  // cells that the surface passes; not kept for level 0
+    std::uint64_t occupied = 0;  // surface cells; not set for level 0
     std::uint64_t safe = 0;      // of these, the ones that may become leaves
   };
 

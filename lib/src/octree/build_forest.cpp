@@ -10,18 +10,22 @@
 namespace tufa::octree {
 namespace {
 
-// Blocks that one builder takes in one go: few arrays are freed in no time.
+// Blocks in a range. Each range has one builder and arrays of its own: enough blocks that few
+// arrays are allocated, few enough that threads are kept busy.
 constexpr std::size_t kBlocksInRange = 64;
 
 constexpr int kTop = ClusterForest::kBlockLevel;
 
-// Copies `from` into `to` from index `begin` on, each element as map() has it.
+// Copies `from` into `to` from index `begin` on, each element as map() gives it.
 template <class T, class Map>
 void copyTo(const std::vector<T>& from, std::size_t begin, std::vector<T>& to, const Map& map) {
   std::transform(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(begin), map);
 }
 
-// Puts the levels of all ranges of blocks one behind the other.
+// Concatenates the levels of all ranges. Prefix sums tell where each range goes, so ranges are
+// copied in parallel and the order is that of the blocks for any number of threads. Indices inside
+// a range become indices in the forest. A range is freed as soon as it is copied, so that little is
+// held twice.
 class RangeJoiner {
  public:
   RangeJoiner(std::vector<BlockLevels>& ranges, ClusterForest& forest, std::vector<Patch>& patches,
@@ -72,7 +76,7 @@ class RangeJoiner {
   }
 
  private:
-  // What lies before the elements of a range.
+  // How many elements precede those of a range.
   struct Begin {
     std::array<std::size_t, kTop> cells{}, clusters{};
     std::size_t vertices = 0;
@@ -119,7 +123,8 @@ class RangeJoiner {
   std::vector<Begin> begins_;  ///< of each range, and the totals
 };
 
-// Levels 1 to 3. Returns the patches of the clusters of level 3.
+// Builds levels 1 to 3 and returns the patches of the clusters of level 3, which the level above is
+// built from.
 std::vector<Patch> buildBlockLevels(const uniform::SurfaceView& base, bool angles,
                                     ClusterForest& forest, base::Job& job) {
   const std::size_t count = base.topology.blocks.size();
@@ -143,7 +148,8 @@ ClusterForest buildForest(const uniform::SurfaceView& base, int maxLevel, bool a
   std::vector<Patch> patches = buildBlockLevels(base, angles, forest, job);
   while (forest.topLevel() < maxLevel && !forest.levels.back().clusters.empty()) {
     ClusterLevel above = buildLevelAbove(forest.levels.back(), patches, base.affine, job);
-    // Cells that never share a parent, such as those around the origin: larger ones change nothing.
+    // No two cells have a common parent, as on both sides of a coordinate plane no cells ever have:
+    // larger cells would join nothing.
     if (above.cells.size() == forest.levels.back().cells.size()) break;
     forest.levels.push_back(std::move(above));
   }

@@ -23,8 +23,8 @@ struct Cluster {
   std::uint32_t parent = kNone;  ///< the cluster one level up that holds this one
 };
 
-/// All cells of one size that the surface passes. The cells of a block (levels below 3) lie one
-/// behind the other, in the order of the blocks; those of higher levels in the order of their first
+/// All surface cells of one size and their clusters. The cells of a block (levels below 3) are
+/// consecutive, in the order of the blocks; those of higher levels are in the order of their first
 /// child.
 struct ClusterLevel {
   int level = 0;                   ///< cells have 2^level voxels along their edge
@@ -36,7 +36,7 @@ struct ClusterLevel {
   std::vector<std::uint32_t> parentCells;  ///< in the next level; empty at the last
 
   /// Levels below 3: for each block a bit for each of its cells, by slotInBlock(), and the index of
-  /// the first of them.
+  /// its first cell. The rank of a bit plus that index is the index of the cell.
   std::vector<std::uint64_t> occupied;
   std::vector<std::uint32_t> firstInBlock;
   /// Level 3 and above: from coordinates to cells.
@@ -45,9 +45,10 @@ struct ClusterLevel {
   [[nodiscard]] Coord corner(std::uint32_t cell) const { return cells[cell] << level; }
 };
 
-/// The surface as clusters of all sizes: what every cut is taken from. Depends on no tolerance. A
-/// cell has clusters if its patches, and those of all cells below it, pass the safety test; see
-/// PatchJoiner. All levels have one form: arrays of cells and of their clusters.
+/// The surface as clusters of all sizes, from which every cut is taken. It depends on no tolerance.
+/// A cell has clusters if its patches, and those of all cells below it, pass the safety test (see
+/// PatchJoiner). All levels have one form: an array of cells and an array of their clusters. Cost:
+/// 40 bytes per cluster; no field value is read again.
 struct ClusterForest {
   /// Level 3: its cells are the surface blocks, cell i is surface block i.
   static constexpr int kBlockLevel = 3;
@@ -64,7 +65,8 @@ struct ClusterForest {
     const int bits = kBlockLevel - level;
     return (((local[0] << bits) | local[1]) << bits) | local[2];
   }
-  /// A cell of a level below 3 in a block, by its slot; kNone where the surface does not pass.
+  /// The index of a cell of a level below 3 in a block, by its slot; kNone if it is no surface
+  /// cell.
   [[nodiscard]] std::uint32_t findInBlock(int level, std::uint32_t block, int slot) const {
     const ClusterLevel& own = at(level);
     const std::uint64_t occupied = own.occupied[block];
@@ -72,7 +74,8 @@ struct ClusterForest {
     return own.firstInBlock[block] +
            static_cast<std::uint32_t>(base::countBits(occupied & base::bitsBelow(slot)));
   }
-  /// A cell of a level by its coordinates; kNone where the surface does not pass.
+  /// The index of a cell of a level by its coordinates, in cells of that level; kNone if it is no
+  /// surface cell.
   [[nodiscard]] std::uint32_t find(int level, const Coord& cell) const {
     if (level >= kBlockLevel) return at(level).table.find(cell);
     const int bits = kBlockLevel - level;

@@ -7,9 +7,11 @@
 namespace tufa::octree {
 namespace {
 
-// Numbers the vertices of a cut. Leaf clusters are found from the largest cells down; then each
-// block numbers what its own vertices stand for, which no other block does, from 0 on, and adds
-// what the blocks before it have.
+// Numbers the vertices of a cut. Leaf clusters are found from the largest cells down, as each
+// cluster below one takes over its leaf. A leaf cluster in a cell smaller than a block has uniform
+// vertices of one block only; so each block numbers its own from 0 on, in parallel, and a prefix
+// sum over the blocks makes the numbers final. Cost: two passes over the uniform vertices, one over
+// the clusters.
 class Numbering {
  public:
   Numbering(const ClusterForest& forest, const uniform::CellTopology& topology,
@@ -31,7 +33,7 @@ class Numbering {
   }
 
  private:
-  // A cluster that stands for others, or for itself.
+  // The leaf cluster that stands for a cluster or uniform vertex: itself or one above it.
   struct Leaf {
     std::uint8_t level = 0;  ///< 0: the cell is not merged
     std::uint32_t cluster = kNone;
@@ -70,7 +72,7 @@ class Numbering {
             last ? topology_.vertexCount : topology_.blocks[block + 1].firstVertex};
   }
 
-  // Numbers what stands for a block's vertices in cells smaller than a block. Returns how many.
+  // Numbers the vertices in cells smaller than a block, from 0 on. Returns how many there are.
   VertexIndex countInBlock(std::size_t block) {
     VertexIndex count = 0;
     const auto [begin, end] = verticesOf(block);
@@ -88,6 +90,7 @@ class Numbering {
     return count;
   }
 
+  // Adds the count of the blocks before, and fills in the vertices of cells of a block and more.
   void numberBlock(std::size_t block, VertexIndex first) {
     const auto [begin, end] = verticesOf(block);
     for (std::uint64_t v = begin; v < end; ++v) {
@@ -102,6 +105,7 @@ class Numbering {
     }
   }
 
+  // Numbers the leaf clusters of level 3 and above, behind all others.
   void numberLargeCells() {
     for (int level = forest_.topLevel(); level >= ClusterForest::kBlockLevel; --level) {
       const std::vector<Leaf>& leaves = leaves_[level - 1];

@@ -22,8 +22,9 @@ struct Cut {
   std::vector<ClusterRef> clusters;   ///< for each vertex of the cut
 };
 
-/// Numbers the leaf clusters: those in cells smaller than a block first, in the order of their
-/// uniform vertices, then those of larger cells, from the largest down.
+/// Numbers the leaf clusters: first those in cells smaller than a block, in the order of their
+/// uniform vertices, then those in cells of a block and more, from the largest down. The numbers
+/// depend on the forest and the flags alone.
 [[nodiscard]] Cut makeCut(const ClusterForest& forest, const uniform::CellTopology& topology,
                           const CellFlags& merged, base::Job& job);
 

@@ -33,7 +33,7 @@ void placeVertices(const ClusterForest& forest, const Cut& cut, const Mesh& base
   });
 }
 
-// The distinct vertices of the cut around a base quad, in order. Equal ones are neighbours: two
+// The distinct vertices of the cut around a uniform quad, in order. Equal ones are neighbours: two
 // opposite cells around an edge lie in one leaf only if all four do.
 struct Polygon {
   std::array<VertexIndex, 4> vertices;
@@ -54,7 +54,8 @@ Polygon polygonOf(const Cut& cut, const Quad& quad) {
   return polygon;
 }
 
-// Where the base quad stands for the surface: the middle of its better diagonal.
+// The point that a uniform quad stands for: the middle of its better diagonal, with the normal of
+// the quad.
 uniform::LatticeCrossing middleOf(const Mesh& base, const Quad& quad, double voxelSize) {
   Vec3 p[4];
   for (int i = 0; i < 4; ++i) {

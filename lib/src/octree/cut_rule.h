@@ -8,13 +8,13 @@
 
 namespace tufa::octree {
 
-/// What a cluster must keep for its cell to become a leaf.
+/// What the clusters of a cell must keep for the cell to become a leaf.
 struct CutRule {
   double tolerance = 0;         ///< voxels; bound on a cluster's estimated error
   double maxAngle = kAnyAngle;  ///< radians; bound on the angle between two normals of a cluster
   int minLevel = 0;             ///< cells up to this level need not keep the bounds above
   int maxLevel = 31;            ///< no cell above this level
-  /// Cells in different cells of this level, 3 or more, may differ by more than one level.
+  /// Level of the chunks, 3 or more: leaves in different chunks may differ by more than one level.
   int chunkLevel = kNoChunks;
   static constexpr int kNoChunks = 31;
   static constexpr double kAnyAngle = 4;
@@ -27,8 +27,8 @@ struct CutRule {
   }
 };
 
-/// Whether the options ask for a mesh that is simplified beyond the cells: bounds on cells bound
-/// what one vertex gathers.
+/// Whether edges are to be collapsed after the cut. Bounds on cells bound what one vertex gathers,
+/// so they exclude it.
 [[nodiscard]] bool maySimplify(const ContourOptions& options);
 
 /// The rule that the options of a call ask for. `transform` is the meshed grid's. Throws

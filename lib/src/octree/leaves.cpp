@@ -7,13 +7,21 @@
 namespace tufa::octree {
 namespace {
 
-// Share of the tolerance that a cluster's mean error may take. On a curved patch the largest
-// distance is about twice the mean one; what slips through is found and split by the certificate.
+// Share of the tolerance that the error of a cluster, a root mean square, may take. On a curved
+// patch the largest distance is about twice that; where it is more, the certificate finds it and
+// the cell is split.
 constexpr double kErrorShare = 0.5;
 
-// Decides level by level, from below. A cell that is not merged blocks the cells one level up that
-// it touches, its parent among them: seen from these, all children and all that touches must be
-// merged. So only what is not merged looks at its neighbours, and flat surfaces cost nothing.
+// Decides level by level, from below. A cell that is not merged blocks all cells one level up that
+// it touches, its parent among them. So a cell that no smaller one blocks has all its children
+// merged, and all surface cells of their size around it. Only cells that are not merged visit their
+// neighbours, so flat surfaces cost next to nothing.
+//
+// Why the leaves are restricted: let a leaf c touch a leaf L at least two levels above. The cell
+// around c one level below L is not merged, being larger than the leaf c, and it touches L; so L
+// would be blocked. Why no coarser octree has the same properties: each condition asks for merged
+// cells one level below only and never for cells that are not merged, so merging all that pass
+// gives the largest set there is.
 class Merger {
  public:
   Merger(const ClusterForest& forest, const CutRule& rule, const CellFlags& forbidden,
@@ -66,14 +74,16 @@ class Merger {
     return true;
   }
 
+  // Several cells may block the same one at the same time; all write 1, so the result is the same
+  // for any number of threads.
   void blockAbove(int level) {
     const ClusterLevel& own = forest_.at(level);
     std::vector<std::uint8_t>& blocked = merged_.at(level + 1);
     forCells(level, [&](std::uint32_t cell) {
       if (merged_.at(level)[cell] != 0) return;
       const Coord& at = own.cells[cell];
-      // A cell touches the eight cells of twice its size around the corner that it shares with
-      // them.
+      // A cell touches exactly eight cells of twice its size, those around the corner that it
+      // shares with its parent.
       const Coord lower = at.offsetBy(-1) >> 1;
       for (int i = 0; i < 8; ++i) {
         const Coord above = lower.offsetBy(i >> 2, (i >> 1) & 1, i & 1);
@@ -85,8 +95,8 @@ class Merger {
     });
   }
 
-  // Whether a cell of the level above is in another chunk than one of this level: between chunks
-  // there is no balance.
+  // Whether a cell of the level above is in another chunk than one of this level. Chunks need no
+  // balance between them, as their boundary polylines do not depend on the octree.
   [[nodiscard]] bool areApart(const Coord& above, const Coord& cell, int level) const {
     if (rule_.chunkLevel >= CutRule::kNoChunks) return false;
     const int shift = rule_.chunkLevel - level;

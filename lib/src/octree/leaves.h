@@ -24,8 +24,9 @@ struct CellFlags {
 
 /// The cells that a cut merges: the leaves of a restricted octree, and all cells below them. A cell
 /// is merged if it is safe, keeps the rule, is not forbidden, its children are merged, and so are
-/// all surface cells of its children's size that touch it: no two leaves that touch differ by more
-/// than one level, and no coarser octree has these properties.
+/// all surface cells of its children's size that touch it. So no two leaves that touch differ by
+/// more than one level (those of different chunks may), and no coarser octree has these properties.
+/// Cost: one parallel pass over flags for each level; nothing ripples.
 [[nodiscard]] CellFlags mergeCells(const ClusterForest& forest, const CutRule& rule,
                                    const CellFlags& forbidden, base::Job& job);
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint32_t kNotNumbered = ~std::uint32_t{0};
 
-// The side of the cell, seen across its axis, that an edge lies on: bit 1 for the first other axis,
-// bit 0 for the second.
+// Where an edge lies on the two axes it does not run along: bit 1 for the first, bit 0 for the
+// second.
 constexpr int sideOfEdge(int edge) { return edge & 3; }
 
 // The same two bits of a child's position.
@@ -23,8 +23,8 @@ constexpr int sideOfChild(int child, int axis) {
   return ((child >> (2 - u)) & 1) << 1 | ((child >> (2 - v)) & 1);
 }
 
-// Pairs of edges that coincide where two cells meet in a face across `axis`: upper face of the
-// lower cell, lower face of the upper one.
+// Pairs of edges that coincide where two cells share a face across `axis`: one of the upper face of
+// the lower cell, one of the lower face of the upper cell.
 struct SharedEdge {
   int ofLower, ofUpper;
 };
@@ -47,11 +47,12 @@ double angleBetween(const Vec3& a, const Vec3& b) {
   return lengths > 0 ? std::acos(std::clamp(a.dot(b) / lengths, -1.0, 1.0)) : std::numbers::pi;
 }
 
-// The Euler characteristic is summed times 4: a crossing in the middle is seen from four children,
-// a curve from both its ends.
+// The Euler characteristic is summed times 4, so that all terms are integers: each patch adds 1; a
+// curve on a face between children takes 1 off and is found at both its ends; a crossing on a line
+// from the middle adds 1 and is found in four children.
 constexpr int kPerPatch = 4, kPerSharedCrossing = -2, kPerInnerCrossing = 1, kDisk = 4;
 
-// Whether the patch has no or two crossings around each face of its cell, and three at least.
+// Whether the patch has none or two crossings around each face of its cell, and three at least.
 bool meetsFacesOnce(const Patch& patch) {
   int total = 0;
   std::array<int, kFaces> around{};
@@ -107,7 +108,8 @@ void PatchJoiner::joinAcross(const Children& children, int lower, int upper, int
   }
 }
 
-// Takes over the crossings of a child that lie on edges of the cell. False if there is one already.
+// Takes over those crossings of a child that lie on edges of the cell. False if the patch has one
+// on the same edge already: it would pass that edge twice.
 bool PatchJoiner::addCrossings(Patch& patch, const Patch& child, int position) {
   for (int edge = 0; edge < kEdges; ++edge) {
     if (child.crossings[edge] == Patch::kNoCrossing) continue;
@@ -134,7 +136,8 @@ bool PatchJoiner::join(const Children& children) {
       if ((lower & step) == 0) joinAcross(children, lower, lower | step, axis);
     }
   }
-  // Roots come before their members, so one pass numbers the patches of the cell in order.
+  // The root of a patch is its least member. Curves are counted at roots already; here each child
+  // patch and each of its crossings on the lines from the middle is added to its root.
   patches_.clear();
   sums_.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) sums_[i] = kPerSharedCrossing * shared_[i];
@@ -152,6 +155,8 @@ bool PatchJoiner::join(const Children& children) {
   for (std::uint32_t i = 0; i < count; ++i) {
     if (parents_[i] == i && sums_[i] != kDisk) return false;
   }
+  // Each root becomes a patch of the cell, numbered by its least member, which makes the order
+  // independent of the order of the joins.
   numbers_.assign(count, kNotNumbered);
   position = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -165,7 +170,8 @@ bool PatchJoiner::join(const Children& children) {
       return false;
     }
   }
-  // Downward: a root has a lower index than its members and must be there until they are done.
+  // From the last to the first: a root has the least index of its members, and must still be a root
+  // when they are looked up.
   for (std::uint32_t i = count; i-- > 0;) parents_[i] = numbers_[root(i)];
   return std::all_of(patches_.begin(), patches_.end(), meetsFacesOnce);
 }

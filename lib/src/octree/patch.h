@@ -18,11 +18,14 @@ struct NormalCone {
   Vec3 axis{0.0};    ///< of any length
   double angle = 0;  ///< radians, at most pi
 
+  /// Makes this a cone around both. The new axis is the sum of both, so the angle is an upper bound
+  /// by the triangle inequality on the sphere, not the least one.
   void add(const NormalCone& other);
 };
 
-/// The part of the surface that one cluster stands for, with all that joining it to others needs.
-/// Exists only while the forest is being built.
+/// The surface of one cluster while the forest is being built, with all that is needed to join it
+/// to others: where it crosses the cell's edges, its planes, and its normals. Cost: over 200 bytes,
+/// so patches are kept for one level at a time.
 struct Patch {
   static constexpr std::int32_t kNoCrossing = std::numeric_limits<std::int32_t>::min();
 
@@ -36,23 +39,29 @@ struct Patch {
   Patch() { crossings.fill(kNoCrossing); }
 };
 
-/// Joins the patches of the eight children of a cell to those of the cell itself.
+/// Joins the patches of the eight children of a cell to those of the cell itself, and decides
+/// whether the cell may become a leaf.
 ///
 /// Patches of two children are one if they share a crossing on the face between them. A cell may
 /// become a leaf only if each of its patches is a disk that meets each neighbour in one piece
 /// (Schaefer, Ju and Warren 2007): its Euler characteristic is 1, it has at most one crossing on
 /// each edge of the cell, none or two on the boundary of each face, and three at least.
 ///
-/// The characteristic comes from the children alone, each a disk: every face between two of them
-/// takes one off for each curve on it, which shows as two shared crossings on the boundary of that
-/// face; every crossing on the six lattice lines from the middle of the cell, where four children
-/// meet, adds one.
+/// The children alone give the characteristic, as each child patch is a disk and counts 1. Gluing
+/// two surfaces along a curve takes off one for the curve, an arc with both ends; every face
+/// between two children takes one off for each curve on it, which shows as two shared crossings on
+/// the boundary of that face. A crossing on one of the six lattice lines from the middle of the
+/// cell lies in four patches and ends four such curves: it is counted four times, taken off four
+/// times, and therefore added once more. A closed curve inside a face does not occur: it would
+/// bound a child patch without any crossing on the child's edges, and such a child is not safe.
+///
+/// Cost: one union-find over the children's patches; no field value and no mesh is read.
 class PatchJoiner {
  public:
   using Children = std::array<std::span<const Patch>, uniform::kCorners>;
 
-  /// Children in the order of components' corners. Returns whether the cell may become a leaf; if
-  /// so, the results below hold its patches, without planes and cones.
+  /// Children in the order of a cell's corners, see uniform/case_table.h. Returns whether the cell
+  /// may become a leaf; if so, the results below hold its patches, without planes and cones.
   [[nodiscard]] bool join(const Children& children);
 
   [[nodiscard]] std::vector<Patch>& patches() { return patches_; }

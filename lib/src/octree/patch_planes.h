@@ -27,7 +27,8 @@ struct PatchPlanes : base::Quadric {
   }
   /// Mean squared distance of `x` to the planes.
   [[nodiscard]] double meanSquare(const Vec3& x) const { return count == 0 ? 0 : at(x) / count; }
-  /// The same problem with lengths divided by `size`, for uniform::solve().
+  /// The same problem with lengths divided by `size`, for uniform::solve(). Qef::massPoint()
+  /// divides by the number of planes; so the sum of the points is scaled to that number.
   [[nodiscard]] uniform::Qef scaledBy(double size) const {
     uniform::Qef scaled;
     for (int i = 0; i < 6; ++i) scaled.a[i] = static_cast<float>(a[i]);

@@ -29,8 +29,8 @@ bool isRestricted(const std::vector<LeafCell>& leaves) {
     levels[level].cells.push_back(leaf.corner >> leaf.level);
   }
   for (LevelLeaves& level : levels) level.index();
-  // Seen from the smaller leaf: none of the cells of its size around it, nor its own, may be part
-  // of a leaf two levels up; its own may not be part of any.
+  // From each leaf as the smaller one: none of the cells of its size around it may be part of a
+  // leaf two levels up or more, and it may not itself be part of any larger leaf.
   for (std::size_t level = 0; level < levels.size(); ++level) {
     for (const Coord& cell : levels[level].cells) {
       for (int i = 0; i < 27; ++i) {

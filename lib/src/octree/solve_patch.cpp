@@ -16,7 +16,8 @@ Cluster solvePatch(const Patch& patch, const Vec3& corner, int size, const grid:
   const PatchPlanes planes = patch.planes.translatedTo(corner + Vec3(0.5 * size));
   const auto half = static_cast<float>(0.5 - kMargin / size);
   uniform::Qef scaled = planes.scaledBy(size);
-  // A vertex of the base mesh on a crease may lie outside its cell, and so their mean.
+  // Uniform vertices on creases may lie outside their cells, and so may their mean; solve() expects
+  // it inside.
   for (float& sum : scaled.points) sum = std::clamp(sum, -half * scaled.count, half * scaled.count);
   const uniform::Vector point = uniform::solve(scaled, half);
   Cluster cluster;
@@ -28,6 +29,7 @@ Cluster solvePatch(const Patch& patch, const Vec3& corner, int size, const grid:
   cluster.error = static_cast<float>(std::sqrt(planes.meanSquare(at)));
   const Normal normal = affine.normalOfPlane(planes.normals);
   cluster.normal = {normal.x, normal.y, normal.z};
+  // Two normals in one cone differ by at most twice its angle.
   cluster.angle = static_cast<float>(std::min(2 * patch.cone.angle, std::numbers::pi));
   return cluster;
 }

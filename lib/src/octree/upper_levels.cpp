@@ -9,7 +9,7 @@ namespace {
 
 using uniform::kCorners;
 
-// What one cell of the new level came to.
+// The result for one cell of the new level.
 struct Outcome {
   bool safe = false;
   std::vector<Cluster> clusters;
@@ -50,7 +50,7 @@ Outcome tryCell(const ClusterLevel& below, const std::vector<Patch>& patches,
   return outcome;
 }
 
-// The cells above those of a level, in the order of their first child, and their children.
+// Finds the cells above those of a level, in the order of their first child, with their children.
 std::vector<ChildCells> findCells(ClusterLevel& below, ClusterLevel& above, base::Job& job) {
   std::vector<ChildCells> children;
   below.parentCells.resize(below.cells.size());

@@ -4,16 +4,18 @@
 #include <cmath>
 #include <utility>
 
+#include "base/polygons.h"
 #include "refine/split_cells.h"
 #include "topology/misplaced.h"
 
 namespace tufa::refine {
 namespace {
 
-// A mesh that will be simplified is cut at this share of the tolerance.
+// A mesh whose edges will be collapsed is cut at this share of the tolerance.
 constexpr double kCutShare = 0.5;
-// One that is to have so many triangles is cut with so many times as many, at a tolerance found in
-// so many steps from a first one, voxels. Collapsing begins with a share of it, or the least one.
+// A mesh that is to have a number of triangles is cut with kLeastCut to kMostCut times as many, at
+// a tolerance found in kMostSteps steps from kFirstTolerance, voxels. Edges are then collapsed at
+// kFirstShare of that to begin with, or kLeastTolerance.
 constexpr double kLeastCut = 2, kMostCut = 4;
 constexpr int kMostSteps = 12;
 constexpr double kFirstTolerance = 0.1;
@@ -38,14 +40,12 @@ std::vector<VertexIndex> baseVerticesOf(const octree::Cut& cut) {
 std::int64_t eulerCharacteristic(const Mesh& mesh) {
   std::vector<std::pair<VertexIndex, VertexIndex>> edges;
   edges.reserve(3 * mesh.triangles.size() + 4 * mesh.quads.size());
-  const auto add = [&](const auto& vertices) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const VertexIndex a = vertices[i], b = vertices[(i + 1) % vertices.size()];
+  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const VertexIndex a = v[i], b = v[(i + 1) % v.size()];
       edges.emplace_back(std::min(a, b), std::max(a, b));
     }
-  };
-  for (const Triangle& triangle : mesh.triangles) add(triangle.vertices);
-  for (const Quad& quad : mesh.quads) add(quad.vertices);
+  });
   std::sort(edges.begin(), edges.end());
   const auto distinct = std::unique(edges.begin(), edges.end()) - edges.begin();
   return static_cast<std::int64_t>(mesh.positions.size()) - distinct +
@@ -62,7 +62,7 @@ Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::ClusterFo
     Measured mesh;
     mesh.cut = octree::makeCut(forest, base.topology, merged, job);
     mesh.made = octree::meshCut(forest, mesh.cut, base.mesh, base.affine, job);
-    // Mending comes once the tolerance holds: there is less to mend then.
+    // Repair comes once the tolerance holds: there is less to repair then.
     mesh.deviation = certifier.measure(mesh.cut, mesh.made);
     if (splitCells(forest, tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
                    forbidden))
@@ -82,8 +82,8 @@ Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::ClusterFo
   }
 }
 
-// The tolerance of a cut of between two and four times so many triangles, found on the errors that
-// the forest has stored; 0 if all cells together have no more.
+// The tolerance of a cut with two to four times so many triangles, found from the errors stored in
+// the forest, without making a mesh; 0 if all cells together give no more.
 double toleranceFor(std::size_t triangles, const octree::ClusterForest& forest,
                     const uniform::CellTopology& topology, octree::CutRule rule, base::Job& job) {
   const octree::CellFlags none(forest);
@@ -129,7 +129,8 @@ Measured collapseRest(const uniform::SurfaceView& base, Measured mesh, octree::C
   }
 }
 
-// The share of base vertices and quads that a mesh stands for; the others count as without error.
+// The share of uniform vertices and quads that a mesh stands for; the others count as without
+// error.
 double presentShare(const Mesh& base, const octree::Cut& cut, const std::vector<std::uint8_t>& used,
                     base::Job& job) {
   const auto isUsed = [&](VertexIndex vertex) { return used[cut.vertexOf[vertex]] != 0; };

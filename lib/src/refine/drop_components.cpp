@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/box.h"
+#include "base/polygons.h"
 #include "topology/misplaced.h"
 
 namespace tufa::refine {
@@ -13,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Component {
   base::Box box = base::Box::empty();
-  double tolerance = kInfinity;  // the least at one of its base vertices, voxels
+  double tolerance = kInfinity;  // the least at one of its uniform vertices, voxels
   std::size_t baseVertices = 0;
   bool present = false;  // has polygons
   bool gone = false;
@@ -39,8 +40,9 @@ double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& r
   Mesh& own = mesh.made.mesh;
   const std::vector<VertexIndex> componentOf = topology::connectedComponentsOf(own);
   std::vector<Component> components(own.positions.size());
-  for (const Quad& quad : own.quads) components[componentOf[quad.vertices[0]]].present = true;
-  for (const Triangle& t : own.triangles) components[componentOf[t.vertices[0]]].present = true;
+  base::forPolygons(own, [&](base::PolygonIndex, base::Corners v) {
+    components[componentOf[v[0]]].present = true;
+  });
   for (std::size_t i = 0; i < base.mesh.positions.size(); ++i) {
     Component& component = components[componentOf[mesh.cut.vertexOf[i]]];
     if (!component.present) continue;
@@ -76,12 +78,7 @@ double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& r
 
 std::vector<std::uint8_t> removeUnused(Mesh& mesh, std::vector<VertexIndex>& baseVertices) {
   std::vector<std::uint8_t> used(mesh.positions.size(), 0);
-  for (const Quad& quad : mesh.quads) {
-    for (const VertexIndex vertex : quad.vertices) used[vertex] = 1;
-  }
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const VertexIndex vertex : triangle.vertices) used[vertex] = 1;
-  }
+  base::forCorners(mesh, [&](VertexIndex vertex) { used[vertex] = 1; });
   std::vector<VertexIndex> numbers(used.size());
   VertexIndex count = 0;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -94,12 +91,7 @@ std::vector<std::uint8_t> removeUnused(Mesh& mesh, std::vector<VertexIndex>& bas
   mesh.positions.resize(count);
   mesh.normals.resize(count);
   baseVertices.resize(count);
-  for (Quad& quad : mesh.quads) {
-    for (VertexIndex& vertex : quad.vertices) vertex = numbers[vertex];
-  }
-  for (Triangle& triangle : mesh.triangles) {
-    for (VertexIndex& vertex : triangle.vertices) vertex = numbers[vertex];
-  }
+  base::forCorners(mesh, [&](VertexIndex& vertex) { vertex = numbers[vertex]; });
   return used;
 }
 

@@ -6,17 +6,18 @@
 
 namespace tufa::refine {
 
-/// A piece of surface that a mesh was made without.
+/// A connected component that a mesh was made without.
 struct Dropped {
-  Vec3 centre{0.0};  ///< of its bounding box, world space
+  Vec3 centre{0.0};  ///< of its bounding box, counted as the mesh's positions
   double size = 0;   ///< diagonal of that box, voxels
 };
 
-/// Takes the polygons of connected components out of a mesh whose base vertices lie in a box with a
-/// diagonal of at most the rule's tolerance there, all but the component of most base vertices.
-/// Their vertices stay, without polygons. Appends what was taken out, in the order of the vertices.
+/// Removes the polygons of small connected components from a mesh: those whose uniform vertices lie
+/// in a box with a diagonal of at most the rule's tolerance there, except the component of most
+/// uniform vertices. Their vertices stay, without polygons. Appends what was removed, in the order
+/// of the vertices.
 ///
-/// Returns the size in voxels of the smallest component that stayed and might go with a larger
+/// Returns the size in voxels of the smallest component that stayed and would go with a larger
 /// tolerance; 0 if there is none.
 double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& rule, Measured& mesh,
                       std::vector<Dropped>& dropped);

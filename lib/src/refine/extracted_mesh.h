@@ -12,13 +12,13 @@ namespace tufa::refine {
 /// A mesh taken from a surface model, and where its elements come from.
 struct ExtractedMesh {
   Mesh mesh;
-  /// Uniform vertex of each vertex, kNone for one of a larger cell; empty: the vertices are those
+  /// Uniform vertex of each vertex, kNone for one of a larger cell. Empty: the vertices are those
   /// of the uniform mesh.
   std::vector<VertexIndex> baseVertices;
-  /// Uniform quad of each polygon, quads first; empty: the polygons are those of the uniform mesh.
+  /// Uniform quad of each polygon, quads first. Empty: the polygons are those of the uniform mesh.
   std::vector<std::uint32_t> baseQuads;
   std::vector<intersect::PolygonIndex>
-      candidates;  ///< polygons, of which each pair that meets has one; sorted
+      candidates;  ///< polygons, sorted; each intersecting pair contains one
 };
 
 }  // namespace tufa::refine

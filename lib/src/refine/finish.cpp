@@ -10,8 +10,8 @@
 namespace tufa::refine {
 namespace {
 
-// Asks `base` about the elements that some elements of a mesh come from: sorted and distinct, as it
-// wants them. `points` are the answers for elements without such an origin.
+// Calls `ask` for the elements of the uniform mesh that some elements of a mesh come from, sorted
+// and distinct as it needs them. `points` holds the answers for elements without such an origin.
 template <class Ask>
 void askOrigins(const Ask& ask, const std::vector<std::uint32_t>& origins,
                 std::vector<Position>& points) {
@@ -29,7 +29,7 @@ void askOrigins(const Ask& ask, const std::vector<std::uint32_t>& origins,
   }
 }
 
-// What the repair asks of a mesh in world space.
+// The source of a mesh in world space. Vertices of larger cells stay where they are.
 Source worldSource(const SurfaceModel& model, const ExtractedMesh& extracted, base::Job& job) {
   const Source base = sourceOf(model.surface(), job);
   const grid::Affine& affine = model.affine();

@@ -8,10 +8,10 @@
 
 namespace tufa::refine {
 
-/// The last step of every mesh: to world space, to single precision where that moves nothing far,
-/// and without the self-intersections that only further vertices, or that rounding, leave. Replaces
-/// the normals if options ask for others than the gradient's. Adds to the counts of the repair in
-/// `report`.
+/// The last step of every mesh: to world space; to single precision where that moves nothing far;
+/// and without the self-intersections that rounding makes or only additional vertices remove.
+/// Replaces the normals if the options ask for others than the gradient's. Adds to the counts of
+/// the repair in `report`.
 void finishMesh(const SurfaceModel& model, const ContourOptions& options, ExtractedMesh& extracted,
                 ContourReport& report, base::Job& job);
 

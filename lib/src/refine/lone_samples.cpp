@@ -32,7 +32,7 @@ std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
   return candidates;
 }
 
-// Closed pieces of six quads; each in the order of the mesh.
+// Connected components of six such quads; each lists its quads in the order of the mesh.
 std::vector<std::array<std::uint32_t, kSides>> findLoneComponents(const Mesh& mesh,
                                                                   base::Job& job) {
   const std::vector<std::uint32_t> candidates = findCandidates(mesh, job);

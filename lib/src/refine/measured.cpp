@@ -1,30 +1,30 @@
 #include "refine/measured.h"
 
+#include "base/polygons.h"
+
 #include <algorithm>
 
 namespace tufa::refine {
 namespace {
 
-// Those of the polygons that have a marked vertex; all without marks.
+// The polygons that have a marked vertex; all if there are no marks.
 std::vector<intersect::PolygonIndex> withMarks(const Mesh& mesh,
                                                const std::vector<intersect::PolygonIndex>& polygons,
                                                const std::vector<std::uint8_t>& marks) {
   if (marks.empty()) return polygons;
   std::vector<intersect::PolygonIndex> some;
-  const auto look = [&](const auto& v, intersect::PolygonIndex polygon) {
+  for (const intersect::PolygonIndex polygon : polygons) {
+    const base::Corners v = base::cornersOf(mesh, polygon);
     if (std::any_of(v.begin(), v.end(), [&](VertexIndex i) { return marks[i] != 0; })) {
       some.push_back(polygon);
     }
-  };
-  for (const intersect::PolygonIndex polygon : polygons) {
-    polygon < mesh.quads.size()
-        ? look(mesh.quads[polygon].vertices, polygon)
-        : look(mesh.triangles[polygon - mesh.quads.size()].vertices, polygon);
   }
   return some;
 }
 
-// Makes small changes to what is not of the base mesh; pairs that these do not help are left.
+// Makes small changes to what is not of the uniform mesh; pairs that these do not help are left.
+// Uniform vertices stay, as the uniform mesh is free of pairs where all cells are split. Vertices
+// of larger cells have no mass point, so they fall back to where they are.
 RepairReport repairCut(const Repair& repair, const octree::Cut& cut,
                        const std::vector<intersect::PolygonIndex>& candidates, Mesh& mesh,
                        base::Job& job) {
@@ -49,19 +49,13 @@ std::vector<intersect::PolygonIndex> candidatesOf(
   for (std::size_t i = 0; i < other.size(); ++i) other[i] = cut.clusters[i].level != 0 ? 1 : 0;
   for (const VertexIndex vertex : altered) other[vertex] = 1;
   std::vector<intersect::PolygonIndex> candidates;
-  const auto look = [&](const auto& v, std::uint32_t source, std::size_t polygon) {
+  base::forPolygons(made.mesh, [&](base::PolygonIndex polygon, base::Corners v) {
     if (std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return other[k] != 0; }) ||
-        std::binary_search(uniformCandidates.begin(), uniformCandidates.end(), source)) {
-      candidates.push_back(static_cast<intersect::PolygonIndex>(polygon));
+        std::binary_search(uniformCandidates.begin(), uniformCandidates.end(),
+                           made.sourceOf(polygon))) {
+      candidates.push_back(polygon);
     }
-  };
-  const std::size_t quads = made.mesh.quads.size();
-  for (std::size_t i = 0; i < quads; ++i) {
-    look(made.mesh.quads[i].vertices, made.quadSources[i], i);
-  }
-  for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i) {
-    look(made.mesh.triangles[i].vertices, made.triangleSources[i], quads + i);
-  }
+  });
   return candidates;
 }
 

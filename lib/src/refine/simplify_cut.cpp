@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/huge_pages.h"
+#include "base/polygons.h"
 #include "refine/collapse/collapse.h"
 #include "topology/dilate.h"
 #include "topology/misplaced.h"
@@ -14,29 +15,30 @@ namespace {
 
 using uniform::VertexSheets;
 
-// The level of vertices that stand for several clusters: above all others, so that they are blamed
-// first.
+// The level of vertices that stand for several clusters: above all others, so that they are found
+// at fault first.
 constexpr std::uint8_t kJoined = std::numeric_limits<std::uint8_t>::max();
-// What a vertex may move in all is tested at points only; the rest is for what lies between them.
+// Share of the tolerance that is the error budget. It is tested at points only; the rest is for
+// what lies between them.
 constexpr double kFirstShare = 0.9;
-// A vertex that was faulty gets this share of its freedom, when it is faulty again the square of
-// it, and so on. After so many rounds what made it faulty is undone: the last collapse behind it,
-// when it is faulty again the last two, and so on; and after so many more, nothing is collapsed
-// anew any more.
+// A faulty vertex keeps this share of its error budget, at its next failure the square of that, and
+// so on. From round kSoftRounds on, its last collapse is rolled back, at its next failure the last
+// two, and so on; after kRollBackRounds such rounds nothing new is collapsed.
 constexpr float kLess = 0.6F;
 constexpr int kSoftRounds = 5;
 constexpr int kRollBackRounds = 6;
 constexpr int kMostFailures = 30;
-// After so many further rounds its neighbours are undone, too, then theirs, at most so far at once.
+// After so many further rounds, collapses of its neighbours are rolled back too, then those of
+// theirs; at most so many rings at once.
 constexpr int kRoundsPerRing = 4;
 constexpr int kMostRings = 8;
-// Faults beside what stays may not be helped at all: after so many rounds they are left.
+// Beside fixed vertices a fault may have no remedy: after so many rounds it is left.
 constexpr int kRoundsBesideFixed = 8;
-// What is so near to what was too far is mended anew.
+// Within so many rings of a fault, repair starts from scratch.
 constexpr int kRingsAnew = 2;
 constexpr std::size_t kGrain = 4096;
 
-// The planes of the base vertices that each vertex stands for, seen from it.
+// The planes of the uniform vertices that each vertex stands for, in coordinates counted from it.
 std::vector<base::Quadric> gatherPlanes(const uniform::SurfaceView& base, const Measured& mesh,
                                         base::Job& job) {
   std::vector<base::Quadric> planes(mesh.cut.clusters.size());
@@ -44,7 +46,7 @@ std::vector<base::Quadric> gatherPlanes(const uniform::SurfaceView& base, const 
     const Vec3 normal(n.x, n.y, n.z);
     if (normal.squaredLength() > 0) planes[to].addPlane(offset, normal);
   };
-  // Positions behind those of the cells are fixed.
+  // Vertices behind those of the cells are on seams, and fixed.
   for (std::size_t i = 0; i < base.topology.vertexCount; ++i) {
     job.pollCancelled(i);
     const auto vertex = static_cast<VertexIndex>(i);
@@ -58,7 +60,7 @@ std::vector<base::Quadric> gatherPlanes(const uniform::SurfaceView& base, const 
     if (sheets.count > 0) continue;
     add(to, offset, base.mesh.normals[i]);
     if (kind < VertexSheets::Kind::Meeting) continue;
-    // Several sides that could not be told apart: the vertex itself must be kept.
+    // Several sheets that could not be told apart: three planes hold the vertex itself.
     for (const Normal& axis : {Normal(1, 0, 0), Normal(0, 1, 0), Normal(0, 0, 1)}) {
       add(to, offset, axis);
     }
@@ -66,26 +68,18 @@ std::vector<base::Quadric> gatherPlanes(const uniform::SurfaceView& base, const 
   return planes;
 }
 
-// Points of the base mesh to hold a collapse to. At first the middle of each polygon's base quad,
-// where cells meet, and of the base vertices of each vertex the nearest one; then what was found
-// too far.
+// Points of the uniform mesh that bound a collapse: the middle of each polygon's uniform quad, and
+// of the uniform vertices of each vertex the nearest one; later also those found too far.
 class Samples {
  public:
   Samples(const uniform::SurfaceView& base, const Measured& mesh, base::Job& job)
       : base_(base), mesh_(mesh) {
     const Mesh& own = mesh.made.mesh;
     polygonOf_.assign(own.positions.size(), octree::kNone);
-    std::uint32_t polygon = 0;
-    const auto take = [&](const auto& v, std::uint32_t source) {
+    base::forPolygons(own, [&](base::PolygonIndex polygon, base::Corners v) {
       for (const VertexIndex vertex : v) polygonOf_[vertex] = polygon;
-      addMiddle(source, polygon++);
-    };
-    for (std::size_t i = 0; i < own.quads.size(); ++i) {
-      take(own.quads[i].vertices, mesh.made.quadSources[i]);
-    }
-    for (std::size_t i = 0; i < own.triangles.size(); ++i) {
-      take(own.triangles[i].vertices, mesh.made.triangleSources[i]);
-    }
+      addMiddle(mesh.made.sourceOf(polygon), polygon);
+    });
     addNearest(job);
   }
 
@@ -96,7 +90,7 @@ class Samples {
       addVertex(static_cast<VertexIndex>(number));
       return;
     }
-    // Where the mesh ends, some of the corners have no polygons.
+    // At a boundary of the mesh, some of the corners have no polygons.
     const auto quad = static_cast<std::uint32_t>(number - vertices);
     for (const VertexIndex corner : base_.mesh.quads[quad].vertices) {
       const std::uint32_t polygon = polygonOf_[mesh_.cut.vertexOf[corner]];
@@ -141,7 +135,7 @@ class Samples {
   std::vector<Sample> samples_;
 };
 
-// The base vertices of a point by its number in distance::Deviation::farPoints.
+// The uniform vertices of a point, by its number in distance::Deviation::farPoints.
 std::span<const VertexIndex> verticesOfPoint(const uniform::SurfaceView& base, std::uint64_t point,
                                              VertexIndex& own) {
   const std::size_t vertices = base.mesh.positions.size();
@@ -150,7 +144,7 @@ std::span<const VertexIndex> verticesOfPoint(const uniform::SurfaceView& base, s
   return {&own, 1};
 }
 
-// Marks the vertices around base points.
+// Marks the vertices around uniform points.
 void markAround(const uniform::SurfaceView& base, const Measured& mesh,
                 const std::vector<std::uint64_t>& points, std::vector<std::uint8_t>& marks) {
   for (const std::uint64_t point : points) {
@@ -161,9 +155,9 @@ void markAround(const uniform::SurfaceView& base, const Measured& mesh,
   }
 }
 
-// Marks vertices of polygons that protrude or meet and those around base points that are too far.
-// Of the latter, samples take care while that is `soft`; and where there is to be a number of
-// triangles, nothing is too far after that.
+// Marks vertices of polygons that protrude or intersect, and those around uniform points that are
+// too far. While `soft`, the latter are left to samples; a mesh of a given number of triangles has
+// no tolerance, so afterwards nothing is too far.
 std::vector<std::uint8_t> findFaulty(const uniform::SurfaceView& base, const Measured& mesh,
                                      bool soft, bool counted) {
   std::vector<std::uint8_t> faulty(mesh.cut.clusters.size(), 0);
@@ -174,8 +168,7 @@ std::vector<std::uint8_t> findFaulty(const uniform::SurfaceView& base, const Mea
   return faulty;
 }
 
-// Takes from what was found faulty all that is not beside something that was collapsed or turned:
-// the mesh was so before.
+// Forgives faults that are not beside anything collapsed or flipped: the mesh had them before.
 void forgiveOthers(const uniform::SurfaceView& base, const Collapsed& collapsed, Measured& mesh) {
   std::vector<std::uint8_t> own(collapsed.members.size(), 0);
   for (std::size_t i = 0; i < own.size(); ++i) own[i] = collapsed.members[i] > 1 ? 1 : 0;
@@ -192,9 +185,9 @@ void forgiveOthers(const uniform::SurfaceView& base, const Collapsed& collapsed,
   });
 }
 
-// Marks the last collapses behind each faulty vertex and, so many rings wide, its neighbours; as
-// many rings as it takes. How many is doubled each time, which `strikes` of the vertices before the
-// collapse count. False if there are no such collapses.
+// Marks the last collapses behind each faulty vertex and its neighbours within `rings`, or within
+// as many more rings as it takes to find any. Their number doubles with each failure of a vertex
+// before the collapse. False if there are none.
 bool rollBack(const Collapsed& collapsed, const Mesh& mesh, std::vector<std::uint8_t> faulty,
               int rings, std::vector<std::uint8_t>& failures,
               std::vector<std::uint8_t>& rolledBack) {
@@ -222,7 +215,7 @@ bool rollBack(const Collapsed& collapsed, const Mesh& mesh, std::vector<std::uin
   return false;
 }
 
-// Lets what is undone not be collapsed again in another way.
+// Locks the vertices of rolled-back collapses, so that they are not collapsed in another way.
 void keepRolledBack(const Collapsed& collapsed, Bounds& bounds) {
   bounds.locked.resize(bounds.budget.size(), 0);
   for (std::size_t i = 0; i < bounds.rolledBack.size(); ++i) {
@@ -232,8 +225,8 @@ void keepRolledBack(const Collapsed& collapsed, Bounds& bounds) {
   }
 }
 
-// Takes shares of freedom, which are squared, from what went into faulty vertices. False if none
-// was left.
+// Multiplies the error budgets of all that went into faulty vertices by their shares, and squares
+// the shares. False if no budget was left.
 bool takeBudget(const Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
                 std::vector<float>& shares, std::vector<float>& budget) {
   bool any = false;
@@ -246,7 +239,7 @@ bool takeBudget(const Collapsed& collapsed, const std::vector<std::uint8_t>& fau
   return any;
 }
 
-// Lets no edges be turned at what went into faulty vertices. Whether one had been turned there.
+// Forbids edge flips at all that went into faulty vertices. Whether there had been one.
 bool lockAround(const Collapsed& collapsed, const std::vector<std::uint8_t>& faulty,
                 std::vector<float>& turning) {
   std::vector<std::uint8_t> turned(faulty.size(), 0);
@@ -260,10 +253,10 @@ bool lockAround(const Collapsed& collapsed, const std::vector<std::uint8_t>& fau
   return any;
 }
 
-// Makes `mesh` what `from` is after a collapse, told in the terms of the base mesh.
+// Makes `mesh` what becomes of `from` by a collapse, in terms of the uniform mesh.
 void compose(const Measured& from, const Collapsed& collapsed, bool keepAltered, Measured& mesh,
              base::Job& job) {
-  // The largest part is written over.
+  // The largest array is reused.
   std::vector<VertexIndex> baseVertices = std::move(mesh.cut.vertexOf);
   mesh = {};
   mesh.cut.vertexOf = std::move(baseVertices);
@@ -288,22 +281,17 @@ void compose(const Measured& from, const Collapsed& collapsed, bool keepAltered,
   if (keepAltered) {
     for (const VertexIndex vertex : from.altered) mesh.altered.push_back(vertexOf[vertex]);
   }
-  const std::size_t quadsBefore = from.made.mesh.quads.size();
-  const auto sourceOf = [&](std::uint32_t polygon) {
-    return polygon < quadsBefore ? from.made.quadSources[polygon]
-                                 : from.made.triangleSources[polygon - quadsBefore];
-  };
   const std::size_t quads = collapsed.mesh.quads.size();
   for (std::size_t i = 0; i < collapsed.sources.size(); ++i) {
     (i < quads ? mesh.made.quadSources : mesh.made.triangleSources)
-        .push_back(sourceOf(collapsed.sources[i]));
+        .push_back(from.made.sourceOf(collapsed.sources[i]));
   }
   mesh.made.mesh = collapsed.mesh;
 }
 
-// Marks the vertices around which something is not as in the collapse before, after it was mended:
-// other clusters, edges turned then or now, quads that mending turned, polygons that still met, and
-// all beside what was `tooFar`, which mending may have made so.
+// Marks the vertices around which something differs from the repaired result of the collapse
+// before: other clusters, edges flipped then or now, quads that repair flipped, polygons that still
+// intersected, and all near what was `tooFar`, which repair may have caused.
 std::vector<std::uint8_t> findFresh(const Collapsed& before, const Measured& was,
                                     const std::vector<std::uint8_t>& tooFar, const Collapsed& now) {
   std::vector<std::uint8_t> other = topology::dilate(was.made.mesh, tooFar, kRingsAnew);
@@ -326,7 +314,7 @@ std::vector<std::uint8_t> findFresh(const Collapsed& before, const Measured& was
   return fresh;
 }
 
-// Moves the vertices that are not fresh to where mending had moved them. Whether there are any.
+// Moves the vertices that are not fresh to where repair had moved them. Whether there are any.
 bool moveAsRepaired(const Collapsed& before, const Mesh& repaired, const Collapsed& now,
                     const std::vector<std::uint8_t>& fresh, Measured& mesh) {
   bool any = false;
@@ -387,7 +375,7 @@ Measured simplifyCut(const uniform::SurfaceView& base, const Measured& mesh, oct
     repairAndMeasure(certifier, repair, result, job, fresh);
     if (!goal.fixed.empty()) forgiveOthers(base, collapsed, result);
     for (const std::uint64_t point : result.deviation.farPoints) samples.addFar(point);
-    // Points that stay too far although they are samples are not helped by more rounds.
+    // More rounds do not help points that stay too far although they are samples.
     const std::vector<std::uint64_t>& far = result.deviation.farPoints;
     const bool same = !far.empty() && far == farBefore && result.deviation.protruding.empty();
     const bool soft = round < kSoftRounds && !same;
@@ -408,7 +396,7 @@ Measured simplifyCut(const uniform::SurfaceView& base, const Measured& mesh, oct
       bounds.onlyRepeat = ++rollBackRounds > kRollBackRounds;
     };
     if (!any) rollBackFaulty();
-    // What stays may have no polygons on its other side.
+    // Beside fixed vertices the mesh may be open, and directions are not defined.
     const bool closed = goal.fixed.empty() && base.topology.openEdges == 0;
     if (!any && repair != nullptr && closed) {
       for (const VertexIndex vertex : topology::findMisplaced(result.made.mesh, job))
@@ -418,7 +406,7 @@ Measured simplifyCut(const uniform::SurfaceView& base, const Measured& mesh, oct
     any |= lockAround(collapsed, faulty, bounds.turning);
     bounds.before = &collapsed;
     if (!any && kept && std::find(faulty.begin(), faulty.end(), 1) != faulty.end()) {
-      // Nothing is left to be undone there: it was what mending had moved.
+      // No collapse is left to roll back there: the fault is in what repair moved and was kept.
       keepRepaired = false;
       continue;
     }

@@ -9,13 +9,13 @@
 
 namespace tufa::refine {
 
-/// Forbids the cells above `minLevel` of some vertices of a cut. Returns whether there are any, so
-/// that the next cut will be finer.
+/// Forbids the cells above `minLevel` of some vertices of a cut. True if there are any: the next
+/// cut will be finer.
 bool splitCells(const octree::ClusterForest& forest, const std::vector<VertexIndex>& vertices,
                 const octree::Cut& cut, int minLevel, octree::CellFlags& forbidden);
 
-/// The vertices whose cells must be split for the tolerance: those of the polygons that are too
-/// far, and those that stand for points of the base mesh that are.
+/// The vertices whose cells must be split for the tolerance: those of polygons that are too far,
+/// and those that stand for uniform points that are.
 [[nodiscard]] std::vector<VertexIndex> tooCoarse(const Mesh& base, const octree::Cut& cut,
                                                  const distance::Deviation& deviation);
 

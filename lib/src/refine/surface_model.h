@@ -33,14 +33,15 @@ class SurfaceModel {
   [[nodiscard]] uniform::SurfaceView view() const { return surface_.view(); }
   [[nodiscard]] const Mesh& mesh() const { return surface_.mesh; }
   [[nodiscard]] const grid::Affine& affine() const { return surface_.affine(); }
-  /// The mesh before the repair, which may reach far, without normals; of a part only. Its vertices
-  /// depend on what is near them alone.
+  /// The uniform mesh before its repair, without normals; of a part of a grid only. Repair may
+  /// reach far, whereas these vertices depend on what is near them alone.
   [[nodiscard]] const Mesh& meshBeforeRepair() const { return before_; }
-  /// Quads of the uniform mesh of which each pair that meets, even after rounding, has one. Sorted.
+  /// Candidates of the uniform mesh: each pair of its quads that intersects, even after rounding,
+  /// contains one. Sorted.
   [[nodiscard]] const std::vector<std::uint32_t>& candidates() const { return candidates_; }
   /// How meshes taken from this one are repaired; nothing if they are not to be.
   [[nodiscard]] std::optional<Repair> repair(base::Job& job) const;
-  /// What was read and found, but for the stages' times.
+  /// What was read and found, without the times of stages.
   [[nodiscard]] const ContourReport& report() const { return report_; }
   [[nodiscard]] const octree::ClusterForest& forest() const { return forest_; }
   [[nodiscard]] const distance::UniformReference& reference() const { return *reference_; }

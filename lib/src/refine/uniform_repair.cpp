@@ -13,7 +13,7 @@
 namespace tufa::refine {
 namespace {
 
-// So often pieces that were passed by another one are put back.
+// How often misplaced components are put back.
 constexpr int kMostReturns = 3;
 
 class UniformRepair {
@@ -23,7 +23,7 @@ class UniformRepair {
 
   std::vector<std::uint32_t> run() {
     report_.movedVertices = unfoldLoneComponents(mesh_, sourceOf(surface_, job_), job_);
-    // Rounding moves each of two polygons.
+    // Rounding may move both polygons of a pair.
     const double margin = 2 * kMostRounding * surface_.affine().leastHeight();
     candidates_ = intersect::findCandidates(surface_.view(), mesh_, margin, job_);
     repairCandidates();
@@ -34,7 +34,7 @@ class UniformRepair {
  private:
   void repairCandidates() {
     Source own = sourceOf(surface_, job_);
-    own.crossings = nullptr;  // a forest has no place for the centres of fans
+    own.crossings = nullptr;  // the forest has no place for the centres of fans
     const RepairReport repaired = repairIntersections(mesh_, candidates_, own, job_);
     addCandidates(repaired.changed);
     report_.intersectionsFound = std::max(report_.intersectionsFound, repaired.pairsFound);
@@ -43,8 +43,8 @@ class UniformRepair {
     report_.flippedDiagonals += repaired.flippedDiagonals;
   }
 
-  // Vertices that a crease or the repair drew out of their cells may have passed small pieces:
-  // these and what is beside them goes back into its cells. Whether there are any.
+  // A vertex that a crease or the repair moved out of its cell may have passed a small component.
+  // Moves misplaced components and what is beside them to their mass points. Whether there are any.
   bool putBackComponents() {
     if (surface_.sheets.sharpCount() == 0 || surface_.topology.openEdges > 0 ||
         surface_.volume.blocks.isPart()) {

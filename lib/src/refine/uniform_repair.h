@@ -11,13 +11,13 @@
 
 namespace tufa::refine {
 
-/// What the repair asks of a uniform surface, of its own elements and in its own positions. Keeps
-/// references to both arguments.
+/// The source for repairs of a uniform surface, for its own elements and in its own positions.
+/// Keeps references to both arguments.
 [[nodiscard]] Source sourceOf(const uniform::UniformSurface& surface, base::Job& job);
 
-/// Takes the self-intersections out of a uniform mesh, as far as that can be done without further
-/// vertices, and returns quads of which each pair that still meets, even after rounding, has one;
-/// sorted. Adds to the counts of the repair in `report`.
+/// Removes self-intersections of a uniform mesh, as far as no additional vertices are needed, and
+/// returns the candidates that remain: each pair of quads that still intersects, even after
+/// rounding, contains one; sorted. Adds to the counts of the repair in `report`.
 [[nodiscard]] std::vector<std::uint32_t> repairUniform(uniform::UniformSurface& surface,
                                                        ContourReport& report, base::Job& job);
 

@@ -6,7 +6,8 @@
 
 namespace tufa::topology {
 
-/// The marks of a mesh's vertices and those of all neighbours, so many rings of them.
+/// Adds the neighbours of marked vertices to the marks of a mesh, `rings` times. Vertices of one
+/// polygon are neighbours.
 [[nodiscard]] std::vector<std::uint8_t> dilate(const Mesh& mesh, std::vector<std::uint8_t> marks,
                                                int rings);
 

@@ -8,13 +8,16 @@
 
 #include "base/bvh.h"
 #include "base/flat_triangle.h"
+#include "base/polygons.h"
 #include "intersect/exact.h"
 
 namespace tufa::topology {
 namespace {
 
-// On which side of the line from a to b, seen from above, a point lies that is moved aside by an
-// infinitesimal along x and by a smaller one along y; 0 if the line is vertical.
+// On which side of the line from a to b, seen from above, a point lies; 0 if the line is vertical.
+// A point on the line is taken as moved by an infinitesimal along x and a smaller one along y
+// (simulation of simplicity, Edelsbrunner and Muecke 1990). So a ray never passes a vertex or an
+// edge, and crosses each closed surface a well-defined number of times.
 int sideFromAbove(const Position& a, const Position& b, const Position& point) {
   const int side = intersect::orientationAcross(2, a, b, point);
   if (side != 0) return side;
@@ -22,7 +25,8 @@ int sideFromAbove(const Position& a, const Position& b, const Position& point) {
   return a.x == b.x ? 0 : (a.x < b.x ? 1 : -1);
 }
 
-// Whether the ray up from a point passes through a triangle.
+// Whether the ray up from a point passes through a triangle. A point in the plane of the triangle
+// does not count.
 bool isAbove(const std::vector<Position>& positions, const Triangle& triangle,
              const Position& from) {
   const Position& a = positions[triangle.vertices[0]];
@@ -35,14 +39,16 @@ bool isAbove(const std::vector<Position>& positions, const Triangle& triangle,
   return side * intersect::orientation(a, b, c, from) < 0;
 }
 
-// A mesh and its pieces, to ask what lies around a vertex. Neighbours in a mesh are mostly
-// neighbours in its arrays too: boxes of runs of polygons are all the index there is.
+// A mesh and its connected components, to find what lies around a vertex. Neighbours in a mesh are
+// mostly neighbours in its arrays too, so boxes of runs of consecutive polygons serve as the leaves
+// of the tree.
 class Pieces {
  public:
   Pieces(const Mesh& mesh, const std::vector<VertexIndex>& components, base::Job& job)
       : mesh_(mesh), components_(components), runs_(boxesOfRuns(job), job) {}
 
-  // Six times the volume inside of each piece, by its least vertex.
+  // Six times the signed volume of each component, at its lowest vertex. Taken about that vertex,
+  // so that a component far from the origin does not lose its volume to rounding.
   [[nodiscard]] std::vector<double> volumes() const {
     std::vector<double> volumes(components_.size());
     forTriangles(0, mesh_.quads.size() + mesh_.triangles.size(), [&](const Triangle& triangle) {
@@ -54,7 +60,8 @@ class Pieces {
     return volumes;
   }
 
-  // Whether a ray from the vertex crosses other pieces an odd number of times.
+  // Whether the vertex lies inside an odd number of other components: whether a ray up crosses
+  // their triangles an odd number of times.
   [[nodiscard]] bool isInside(VertexIndex vertex) const {
     bool inside = false;
     runs_.itemsAbove(at(vertex), [&](std::uint32_t run) {
@@ -66,7 +73,7 @@ class Pieces {
     return inside;
   }
 
-  // The triangle of another piece that is nearest to a vertex. Whether there is one.
+  // Finds the triangle of another component that is nearest to a vertex. False if there is none.
   [[nodiscard]] bool findNearestOther(VertexIndex vertex, Triangle& nearest) const {
     double best = std::numeric_limits<double>::infinity();
     return runs_.nearest(at(vertex), best, [&](std::uint32_t run) {
@@ -133,14 +140,12 @@ std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
     while (parents[i] != i) i = parents[i] = parents[parents[i]];
     return i;
   };
-  const auto join = [&](const auto& v) {
+  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
     for (const VertexIndex other : v) {
       const VertexIndex a = rootOf(v[0]), b = rootOf(other);
       parents[std::max(a, b)] = std::min(a, b);
     }
-  };
-  for (const Quad& quad : mesh.quads) join(quad.vertices);
-  for (const Triangle& triangle : mesh.triangles) join(triangle.vertices);
+  });
   for (VertexIndex i = 0; i < parents.size(); ++i) parents[i] = rootOf(i);
   return parents;
 }
@@ -152,8 +157,8 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
     return misplaced;
   }
   const Pieces components(mesh, names, job);
-  // Vertices that no polygon uses are pieces without volume. The piece with the largest lies in no
-  // other one.
+  // Vertices that no polygon uses are components without volume. The component of the largest
+  // volume lies in no other one.
   const std::vector<double> volumes = components.volumes();
   const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const double outermost = *std::max_element(volumes.begin(), volumes.end(), isSmaller);
@@ -167,7 +172,8 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
   job.forRanges(names.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) wrong[i] = names[i] == i && isWrong(i) ? 1 : 0;
   });
-  // Of pieces that meet each other, some vertices are on the right side.
+  // A component some of whose vertices are right intersects another one: it is not misplaced as a
+  // whole. Only components whose first vertex is wrong are tested vertex by vertex.
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i] != i && wrong[names[i]] != 0 && !isWrong(i)) wrong[names[i]] = 0;
   }

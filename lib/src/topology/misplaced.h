@@ -7,14 +7,21 @@
 
 namespace tufa::topology {
 
-/// For each vertex the least one of its connected piece of surface.
+/// For each vertex the lowest-numbered vertex of its connected component.
 [[nodiscard]] std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh);
 
-/// Vertices of the pieces of a closed mesh that lie on the wrong side of another one, and of the
-/// polygons of other pieces that are nearest to them; sorted. Directions must alternate from the
-/// outermost pieces to those inside them; the largest piece tells whether they begin outward. A
-/// surface that was moved may have passed a small piece without meeting it. Pieces that meet
-/// others are not named.
+/// Finds components on the wrong side of another one: the vertices of those components of a closed
+/// mesh, and the vertices of the polygons of other components nearest to them; sorted. A vertex
+/// that was moved may have passed a small component without intersecting it, so that no search for
+/// intersections finds it.
+///
+/// Directions must alternate from the outermost components inward, and the component of the largest
+/// volume, which lies in no other, tells what the outermost direction is. So a component is right
+/// if the number of others around it is odd exactly if its volume has the other sign. Components
+/// that intersect others are not reported; they are left to repair. Every component that lies
+/// wholly on the wrong side is found. Cost: one pass for components and volumes, one ray for each
+/// component, and one for each vertex of those that seem wrong; nothing if there is only one
+/// component.
 [[nodiscard]] std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job);
 
 }  // namespace tufa::topology

@@ -3,19 +3,20 @@
 namespace tufa::uniform {
 namespace {
 
-// The bilinear interpolant's value at its saddle has the sign of (a c - b d) / (a + c - b - d).
+// The bilinear interpolant has the value (a c - b d) / (a + c - b - d) at its saddle (Nielson and
+// Hamann 1991).
 bool saddleIsInside(const std::array<double, 4>& v) {
   const double numerator = v[0] * v[2] - v[1] * v[3];
   const double denominator = v[0] + v[2] - v[1] - v[3];
   return denominator < 0 ? numerator > 0 : numerator < 0;
 }
 
-// Where a linear change from a to b is zero; half way if both are zero.
+// Where a linear function from a to b is zero; half way if both are zero.
 double zeroBetween(double a, double b) { return a == b ? 0.5 : a / (a - b); }
 
-// The two chords join opposite crossings; the sign of the bilinear interpolant where they meet.
+// Whether the bilinear interpolant is inside where the two chords between opposite crossings cross.
 bool chordsMeetInside(const std::array<double, 4>& v) {
-  // Corners at (0,0), (1,0), (1,1), (0,1); crossings on the sides v = 0, u = 1, v = 1, u = 0.
+  // Corners at (0,0), (1,0), (1,1), (0,1); crossings on the edges v = 0, u = 1, v = 1, u = 0.
   const double bottom = zeroBetween(v[0], v[1]);
   const double right = zeroBetween(v[1], v[2]);
   const double top = zeroBetween(v[3], v[2]);

@@ -12,14 +12,16 @@ using grid::kBlockSize;
 
 namespace {
 
-// Vertices keep this distance from the faces of their cell, so that no two of different cells meet.
+// Vertices keep this distance from the faces of their cell, so that no two of different cells
+// coincide.
 constexpr float kHalfCell = 0.499F;
-// A mean normal shorter than this is of more than one side (two of equal weight, 30 degrees apart).
+// A mean normal shorter than this is that of several sheets (two of equal weight, 30 degrees
+// apart).
 constexpr float kOneSide = 0.966F;
 
 using Kind = VertexSheets::Kind;
 
-// Whether the planes of a QEF seem to belong to one smooth side.
+// Whether the planes of a QEF seem to belong to one smooth sheet.
 Kind kindOf(const Qef& qef) {
   const float squared = dot(qef.normals, qef.normals);
   return squared < kOneSide * kOneSide * qef.count * qef.count ? Kind::Unknown : Kind::Near;

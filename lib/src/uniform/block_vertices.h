@@ -14,14 +14,14 @@
 
 namespace tufa::uniform {
 
-/// Gathers the QEFs of one block's vertices and solves them. Made once for each range of blocks and
-/// used again for each block, so that its arrays stay in the cache.
+/// Gathers the QEFs of one block's vertices and solves them. One object serves a range of blocks,
+/// so its arrays stay in the cache.
 class BlockVertices {
  public:
   explicit BlockVertices(const grid::FieldScale& scale)
       : scale_(scale), finder_(samples_, scale), creaseCell_(samples_, scale) {}
 
-  /// Fills the results below for one block.
+  /// Computes the results below for one block.
   void place(const grid::Blocks& blocks, const CellTopology& topology, const SurfaceBlock& block,
              grid::Accessor& accessor);
 
@@ -37,14 +37,14 @@ class BlockVertices {
   [[nodiscard]] Vector massPoint(std::size_t vertex) const { return qefs_[vertex + 1].massPoint(); }
   /// The sum of the normals gathered at each vertex, in index space.
   [[nodiscard]] const std::vector<Vector>& normals() const { return normals_; }
-  /// A vertex on a crease or corner, and the normals of the sides that meet there, in index space.
+  /// A vertex on a crease or corner, and the normals of the sheets that meet there, in index space.
   struct Meeting {
     std::uint32_t vertex;
     int count;
     std::array<Vector, 3> normals;
   };
   [[nodiscard]] const std::vector<Meeting>& meetings() const { return meetings_; }
-  /// Vertices of the block that may lie outside of their cells.
+  /// Vertices of the block that may lie out of their cells.
   [[nodiscard]] const std::vector<std::uint32_t>& outOfCell() const { return outOfCell_; }
   /// Each vertex's relation to creases.
   [[nodiscard]] const std::vector<VertexSheets::Kind>& kinds() const { return kinds_; }
@@ -52,7 +52,8 @@ class BlockVertices {
  private:
   // Samples and cells are numbered alike, by BlockSamples::index() of a cell's first corner.
   static constexpr int kSlots = grid::BlockSamples::kSize * grid::BlockSamples::kStrideX;
-  // Among qefs_: what belongs to cells outside of the block goes there. Vertex i is at i + 1.
+  // Among qefs_: collects the planes of cells outside the block and is never solved. Vertex i is at
+  // i + 1.
   static constexpr std::uint16_t kNobody = 0;
   static constexpr int kMostEdges =
       grid::kBlockSize * (grid::kBlockSize + 1) * (grid::kBlockSize + 1);

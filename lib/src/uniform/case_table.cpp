@@ -15,8 +15,8 @@ constexpr auto kAmbiguousFaces = [] {
   return table;
 }();
 
-// Split into one constant a group of masks, so that each stays below the compilers' default limits
-// on constant evaluation.
+// One constant for each group of masks, so that each stays below the default limits of compilers on
+// constant evaluation.
 constexpr int kGroup = 32;
 using Group = std::array<std::array<Components, 64>, kGroup>;
 

@@ -81,17 +81,17 @@ inline constexpr bool isAmbiguous(CornerMask mask, int face) {
          isInside(mask, c[0]) != isInside(mask, c[1]);
 }
 
-/// Which surface component of a cell owns each of its crossings: the crossings, joined through the
-/// faces, form closed loops, and each loop is one component.
+/// Which cell component owns each crossing of a cell: the crossings, joined through the faces, form
+/// closed loops, and each loop is one component (Nielson 2004).
 class Components {
  public:
   constexpr Components() = default;
 
-  /// The component, from 0, that owns the crossing of `edge`, which must be crossed and not cut.
+  /// The component, from 0, that owns the crossing of `edge`, which must be crossed and not open.
   [[nodiscard]] constexpr int of(int edge) const {
     return static_cast<int>(packed_ >> (3 * edge)) & 7;
   }
-  /// Number of components: 0 to 4 loops, or up to 6 chains where crossings are cut.
+  /// Number of components: 0 to 4 loops, or up to 6 loops and chains where edges are open.
   [[nodiscard]] constexpr int count() const { return static_cast<int>(packed_ >> 36); }
 
   constexpr void set(int edge, int component) {
@@ -103,8 +103,8 @@ class Components {
   std::uint64_t packed_ = 0;
 };
 
-/// Joins the crossings of a cell. `cutEdges` has a bit for each crossing that is left out because
-/// the data ends there: the loops fall apart into chains, each a component.
+/// Joins the crossings of a cell. `openEdges` has a bit for each crossed edge that is left out
+/// because the data ends there: loops through it fall apart into chains, each a component.
 inline constexpr Components joinCrossings(CornerMask mask, FaceBits joined, unsigned openEdges) {
   std::array<int, kEdges> root{};
   for (int edge = 0; edge < kEdges; ++edge) {
@@ -146,7 +146,7 @@ inline constexpr Components joinCrossings(CornerMask mask, FaceBits joined, unsi
   return components;
 }
 
-/// joinCrossings() without cut edges, from a table made at compile time.
+/// joinCrossings() without open edges, from a table made at compile time.
 [[nodiscard]] Components componentsOf(CornerMask mask, FaceBits joined);
 
 /// The six bits of the ambiguous faces of a cell.

@@ -49,8 +49,8 @@ struct Step {
   int dx, dy, dz;
 };
 
-// Where a lattice point, up to one past the end of a block on each axis, lies: the special block
-// there, and its index in it. Null where nothing is special.
+// Finds the special block that holds the lattice point at a step from a cell, which may be one past
+// the end of the block on each axis, and its index there. Null where nothing is special.
 const SpecialBlock* specialAt(const CellTopology& topology, const SurfaceBlock& block, int cell,
                               Step step, int& local) {
   const int x = (cell >> 6) + step.dx, y = ((cell >> 3) & 7) + step.dy, z = (cell & 7) + step.dz;
@@ -109,7 +109,7 @@ bool CellTopology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask 
       cut == 0 ? componentsOf(mask, joined) : joinCrossings(mask, joined, cut);
   const bool cutOffInside = ((joined >> face) & 1) == 0;
   const int first = isInside(mask, kFaceCorners[face][0]) == cutOffInside ? 0 : 1;
-  // An arc belongs to the component of either of its ends that is not cut.
+  // An arc belongs to the component of either of its ends that is not open.
   const auto ownerOf = [&](int a, int b) {
     if (((cut >> a) & 1) == 0) return components.of(a);
     return ((cut >> b) & 1) == 0 ? components.of(b) : -1;
@@ -120,7 +120,7 @@ bool CellTopology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask 
 
 namespace {
 
-// Builds a Topology step by step; each step is one parallel pass over blocks.
+// Builds a CellTopology step by step; each step is one parallel pass over blocks.
 class CellTopologyBuilder {
  public:
   CellTopologyBuilder(const grid::Blocks& blocks, const grid::FieldScale& scale, base::Job& job)
@@ -138,7 +138,7 @@ class CellTopologyBuilder {
 
  private:
   using Accessor = grid::Accessor;
-  using Cuts = std::array<BlockBits, 3>;  ///< the cut edges of a block along each axis
+  using Cuts = std::array<BlockBits, 3>;  ///< the open edges of a block along each axis
 
   void findSurfaceBlocks() {
     std::vector<BlockBits> cells;
@@ -186,7 +186,7 @@ class CellTopologyBuilder {
     return cells;
   }
 
-  // A block is special if a cell of it may have several components or touches a cut edge.
+  // A block is special if a cell of it may have several components or touches an open edge.
   void chooseSpecialBlocks(bool dataEnds, bool blocksEnd) {
     const bool cut = dataEnds || blocksEnd;
     const std::size_t count = topology_.blocks.size();
@@ -237,8 +237,8 @@ class CellTopologyBuilder {
     return ~(a ^ d) & ~(b ^ c) & (a ^ b);
   }
 
-  // Whether two opposite corners of a cell differ from its other six. It has two components, though
-  // none of its faces is ambiguous.
+  // Cells of which two opposite corners differ from the other six. They have two components, though
+  // none of their faces is ambiguous; no other cell without an ambiguous face has.
   static std::uint64_t oppositeCornersAlone(const std::array<std::uint64_t, 4>& lower,
                                             const std::array<std::uint64_t, 4>& upper) {
     std::uint64_t found = 0;
@@ -268,7 +268,7 @@ class CellTopologyBuilder {
     return found != 0;
   }
 
-  // Crossed edges with a cell in a missing block.
+  // Finds the crossed edges that have a cell in a missing block; they are open.
   static bool cutAtMissing(const SurfaceBlock& block, const CornerWords& corners,
                            std::array<BlockBits, 3>& cuts) {
     constexpr std::uint64_t kFirstY = 0xff, kFirstZ = 0x0101010101010101u;
@@ -291,7 +291,8 @@ class CellTopologyBuilder {
     return any;
   }
 
-  // Sign changes between an active and an inactive sample that a distance cannot make in one step.
+  // Finds sign changes between an active and an inactive sample that a distance cannot make in one
+  // step; they are open.
   bool findOpenEdges(const SurfaceBlock& block, const CornerWords& corners, Accessor& accessor,
                      std::array<BlockBits, 3>& cuts) const {
     const grid::SampleReader samples(blocks_, scale_, block.block, block.neighbours, accessor);
@@ -348,6 +349,7 @@ class CellTopologyBuilder {
     }
   }
 
+  // All bad faces of a class are found before any is flipped, see buildCellTopology().
   void flipFaces() {
     std::vector<BlockBits> flips(topology_.specials.size());
     for (int axis = 0; axis < 3; ++axis) {
@@ -365,6 +367,8 @@ class CellTopologyBuilder {
     }
   }
 
+  // Faces of a class at the lower ends of cells of the block whose arcs have one owner in both
+  // cells. The block below exists: were it missing, all edges of the face would be open.
   BlockBits badFaces(const SurfaceBlock& block, int axis, int parity) const {
     BlockBits bad;
     const CornerWords corners = blocks_.cornerWords(block.neighbours);
@@ -442,7 +446,7 @@ class CellTopologyBuilder {
     });
   }
 
-  // One voxel and a little for rounding: the farthest that a distance can move in one step.
+  // The farthest that a distance can change in one step, in voxels, with a margin for rounding.
   static constexpr double kLongestStep = 1.02;
 
   const grid::Blocks& blocks_;

@@ -12,19 +12,19 @@ using grid::BlockSamples;
 
 namespace {
 
-// Sides whose normals differ by less than this (18 degrees) are one.
+// Planes whose normals differ by less than this (18 degrees) may be of one sheet.
 constexpr float kSameSide = 0.95F;
-// Planes farther than this from each other, at the foot of one, are two sheets.
+// Planes farther than this from each other, in voxels at the foot of one, are of two sheets.
 constexpr float kSameSheet = 0.25F;
-// A foot farther than this from the cell says nothing of it.
+// A plane whose foot is farther than this from the cell, in voxels, tells nothing of it.
 constexpr float kReach = 1.25F;
 constexpr float kHalfCell = 0.5F;
-// How far a vertex may leave its cell, in voxels, where its crossings lie on two sides that meet
-// outside it.
+// How far a vertex may leave its cell, in voxels, where its crossings lie on sheets that meet
+// outside.
 constexpr float kBeyond = 1.0F;
-// A vertex this deep in its cell, in voxels, surely is in it.
+// A vertex this deep in its cell, in voxels, is in it whatever the rounding.
 constexpr float kSureInside = 1e-3F;
-// A vertex on one side stays in its cell up to this.
+// A vertex on one sheet may leave its cell by this, in voxels.
 constexpr float kSideSlack = 0.02F;
 constexpr int kProjections = 8;
 // Slack of a crossing's place on its edge.
@@ -36,13 +36,13 @@ constexpr int kMostSheets = 5;
 // normals span, is less.
 constexpr float kLeastSquaredSine = 0.05F;
 constexpr float kLeastVolume = 0.1F;
-// Damping of a side's bend, in squared voxels: feet that spread less than a third of a voxel say
-// little of it.
+// Damping of a bend, in squared voxels: feet that spread less than a third of a voxel tell little
+// of it.
 constexpr float kBendDamping = 0.02F;
 constexpr int kBendRounds = 3;
-// A bend that moves a point farther than this, in voxels, is not to be trusted.
+// A bend that moves a point farther than this, in voxels, is not trusted.
 constexpr float kFarthestBend = 0.5F;
-// A side within this angle (radians) and distance (voxels) of lying between two others is a blend.
+// A sheet within this angle (radians) and distance (voxels) of lying between two others is a blend.
 constexpr float kBlendAngle = 0.15F;
 constexpr float kBlendDistance = 0.2F;
 
@@ -97,7 +97,7 @@ float outside(const Vector& p) {
 }
 
 // Moves a point along a line into the cube of that half size around the cell's middle; false if the
-// line does not meet it.
+// line misses it.
 bool slideInto(float half, const Vector& direction, Vector& point) {
   float from = -std::numeric_limits<float>::infinity(), to = -from;
   for (int axis = 0; axis < 3; ++axis) {
@@ -153,7 +153,8 @@ void CreaseCell::collectPlanes() {
   }
 }
 
-// Greedy: the best plane left starts a side, planes that agree with it join.
+// Greedy: the best plane left starts a sheet, and all planes that agree with it join. Planes are
+// weighted by how linear the samples are and how near the foot is to the cell.
 void CreaseCell::sortIntoSheets() {
   sheets_.clear();
   while (static_cast<int>(sheets_.size()) < kMostSheets) {
@@ -182,9 +183,9 @@ void CreaseCell::sortIntoSheets() {
   }
 }
 
-// The matrix H of least squares in n_i - n = H (f_i - m), over the feet f_i and normals n_i, damped
-// where the feet do not spread, and made symmetric. A surface of that bend through m is
-// n . (p - m) + (p - m) H (p - m) / 2 = 0.
+// The bend of a sheet: the matrix H of least squares in n_i - n = H (f_i - m), over the feet f_i
+// and normals n_i, damped where the feet do not spread, and made symmetric. It is the shape
+// operator up to sign; a surface of that bend through m is n . (p - m) + (p - m) H (p - m) / 2 = 0.
 void CreaseCell::bendSide(Sheet& sheet) const {
   std::array<float, 6> spread{};  // xx, xy, xz, yy, yz, zz
   std::array<Vector, 3> turn{};   // turn[i][j]: change of normal i with step j
@@ -227,6 +228,8 @@ TangentPlane CreaseCell::tangentAt(const Sheet& sheet, const Vector& point) {
   return plane;
 }
 
+// Newton's method: the point of the tangent planes at the last point. Back to the start if a step
+// leaves the range in which bends are trusted.
 void CreaseCell::followBends(Vector& point, std::initializer_list<int> sheets) const {
   const Vector start = point;
   for (int round = 0; round < kBendRounds; ++round) {
@@ -244,11 +247,12 @@ void CreaseCell::followBends(Vector& point, std::initializer_list<int> sheets) c
   }
 }
 
-// Beyond a convex edge the nearest point of the surface is on the edge, and the planes seen there
-// touch it at angles between those of the two sides. They are no sides of their own.
+// Whether a sheet is a blend of two others. Beyond a convex edge the nearest surface point is on
+// the edge itself, so planes seen there touch the edge at angles between those of the two sheets;
+// they are no sheet of their own.
 bool CreaseCell::isBlend(const Sheet& sheet, const Sheet& a, const Sheet& b) const {
   if (sheet.weight > a.weight || sheet.weight > b.weight) return false;
-  // side.normal = s a.normal + t b.normal, with s and t positive, up to a few degrees.
+  // sheet.normal = s a.normal + t b.normal, with s and t positive, up to a few degrees.
   const float cosine = dot(a.normal, b.normal);
   const float squared = 1 - cosine * cosine;
   if (squared < 0.05F) return false;
@@ -277,7 +281,7 @@ void CreaseCell::dropBlendedSheets() {
   sheets_.resize(kept);
 }
 
-// A side is crossed where its plane meets a crossed edge of the cell in a point of the surface.
+// A sheet is crossed where its plane meets a crossed edge of the cell in a point of the surface.
 void CreaseCell::markCrossedSheets() {
   for (int edge = 0; edge < kEdges; ++edge) {
     const auto [lower, upper] = edgeCorners(edge);
@@ -374,7 +378,7 @@ bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       if (beyond && !(sheets_[i].crossed && sheets_[j].crossed)) continue;
-      // The point of both sides nearest to the mass point, then along the crease into the cell.
+      // The point of both planes nearest to the mass point, then along the crease into the cell.
       Vector point = massPoint;
       if (!moveOntoBoth(planeOf(i), planeOf(j), point)) continue;
       followBends(point, {i, j});
@@ -398,7 +402,7 @@ bool CreaseCell::placeOnSide(const Vector& massPoint, CreasePlacement& placement
   for (int i = 0; i < static_cast<int>(sheets_.size()); ++i) {
     const float away = std::abs(sheets_[i].offset - dot(sheets_[i].normal, massPoint));
     if (away >= nearest) continue;
-    // Into the cell and onto the plane in turn: ends where the two meet, if they do.
+    // Into the cell and onto the plane alternately: converges to a point of both, if there is one.
     Vector point = massPoint;
     for (int step = 0; step < kProjections; ++step) {
       for (float& p : point) p = std::clamp(p, -kHalfCell, kHalfCell);

@@ -7,13 +7,13 @@
 
 namespace tufa::uniform {
 
-/// What the surface is like in a cell near a crease.
+/// Where the vertex of a cell near a crease lies, and on which sheets.
 struct CreasePlacement {
   Vector point{};   ///< in voxels from the middle of the cell
-  Vector normal{};  ///< outward unit normal: of the plane, or the mean of those that meet
-  std::array<Vector, 3> sheets{};  ///< normals of the planes that meet
-  bool outOfCell = false;          ///< the point may lie outside of the cell
-  int planes = 0;  ///< 1: the cell lies on one smooth side; 2: a crease; 3: a corner; 0: unknown
+  Vector normal{};  ///< outward unit normal: the sheet's, or the mean of those that meet
+  std::array<Vector, 3> sheets{};  ///< normals of the sheets that meet
+  bool outOfCell = false;          ///< the point may lie out of the cell
+  int planes = 0;  ///< 1: on one smooth sheet; 2: on a crease; 3: on a corner; 0: unknown
 };
 
 /// The plane normal . p = offset.
@@ -22,29 +22,35 @@ struct TangentPlane {
   float offset = 0;
 };
 
-/// Places the vertex of a cell near a crease from the tangent planes of the cubes around it.
+/// Places the vertex of a cell near a crease from the tangent planes of the 27 cubes around it.
 ///
-/// The planes whose feet lie near the cell are sorted into smooth sides, each a plane that bends as
-/// the normals of its members change from foot to foot. If three sides meet in the
-/// cell the vertex is their corner; if two do, the point of their crease nearest to the mass point.
-/// If none meet in the cell but its crossings lie on two or three sides, the crease or corner just
-/// outside is taken, up to a voxel away: the cell there has no vertex of its own. Else the vertex
-/// lies on the one side that passes the mass point. A point counts only if no sample around it is
-/// farther from the surface than from the point: that proves that the planes meet there, and not
-/// only their continuations.
+/// The planes whose feet lie near the cell are sorted into smooth sheets; each is a plane that
+/// bends as the normals of its members change from foot to foot. The vertex is the first of these
+/// that exists: the corner of three sheets in the cell; the point of the crease of two sheets in
+/// the cell nearest to the mass point; a corner or crease up to a voxel outside, if crossings of
+/// the cell lie on all its sheets, as then no cell with a vertex holds it; a point of the one sheet
+/// that passes nearest to the mass point.
+///
+/// Why a candidate is believed: the surface enters no ball around a sample whose radius is the
+/// sample's distance. A point where only continuations of the planes meet, and not the sheets
+/// themselves, lies in such a ball. If no candidate passes this test, the cell keeps its QEF's
+/// vertex. It is a heuristic: where sharp edges are closer than about two voxels, too few cubes see
+/// one sheet alone. Cost: the planes are shared by the cells of a block; the sheets of a cell by
+/// none.
 class CreaseCell {
  public:
   CreaseCell(const grid::BlockSamples& samples, const grid::FieldScale& scale)
       : samples_(samples), scale_(scale), planes_(samples, scale) {}
 
+  /// To be called when the samples change to another block.
   void reset() { planes_.reset(); }
 
-  /// `x`, `y`, `z` are the cell's place in the block, 0..7; `massPoint` is in voxels from the
-  /// middle of the cell.
+  /// Places the vertex of one cell. `x`, `y`, `z` are its place in the block, 0..7; `massPoint` is
+  /// in voxels from the middle of the cell.
   [[nodiscard]] CreasePlacement place(int x, int y, int z, const Vector& massPoint);
 
  private:
-  /// A smooth side of the surface near the cell: the plane normal . p = offset, and how that bends.
+  /// A smooth sheet near the cell: the plane normal . p = offset, and how it bends.
   struct Sheet {
     Vector normal{};
     float offset = 0;
@@ -63,7 +69,7 @@ class CreaseCell {
   void readBalls();
   [[nodiscard]] float sampleAt(int corner) const;
   [[nodiscard]] bool isOnSurface(const Vector& point) const;
-  // Both search in the cell, or, if `beyond`, around it among the sides that the crossings lie on.
+  // Both search in the cell, or, if `beyond`, around it among the sheets that the crossings lie on.
   [[nodiscard]] bool placeOnCorner(const Vector& massPoint, bool beyond,
                                    CreasePlacement& placement) const;
   [[nodiscard]] bool placeOnCrease(const Vector& massPoint, bool beyond,
@@ -73,9 +79,9 @@ class CreaseCell {
     return {sheets_[sheet].normal, sheets_[sheet].offset};
   }
   void bendSide(Sheet& sheet) const;
-  // The tangent plane of a side near a point.
+  // The tangent plane of a bent sheet near a point.
   [[nodiscard]] static TangentPlane tangentAt(const Sheet& sheet, const Vector& point);
-  // Moves a point of the planes of some sides to where the bent sides meet.
+  // Moves a point where the planes of some sheets meet to where the bent sheets meet.
   void followBends(Vector& point, std::initializer_list<int> sheets) const;
   void setNormal(CreasePlacement& placement, std::initializer_list<int> sheets) const;
 
@@ -85,7 +91,7 @@ class CreaseCell {
   std::vector<PatchPlane> near_;  ///< feet in voxels from the middle of the cell
   std::vector<float> weights_;    ///< of near_
   std::vector<Sheet> sheets_;
-  std::vector<std::size_t> members_;  ///< of near_: those of the side at hand
+  std::vector<std::size_t> members_;  ///< of near_: those of the sheet at hand
   /// Squared radii of the balls around the 64 samples nearest to the cell that the surface does not
   /// enter.
   std::array<std::array<float, 4>, 16> squaredBalls_{};

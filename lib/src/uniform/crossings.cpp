@@ -17,8 +17,9 @@ Crossing CrossingFinder::atKink(int lower, int axis) const {
   return crossing;
 }
 
-// Of the forward and backward differences on each axis, those whose gradient has a length nearest
-// to 1; samples beyond the band do not take part.
+// Picks a forward or backward difference on each axis so that the gradient's length is nearest to
+// 1: beside a kink, differences across it give a gradient that is shorter or longer. Samples beyond
+// the band are not used. Cost: eight combinations.
 Vector CrossingFinder::oneSidedGradient(int at) const {
   const float here = samples_[at];
   std::array<std::array<float, 2>, 3> sides{};
@@ -54,7 +55,9 @@ Vector CrossingFinder::oneSidedGradient(int at) const {
   return best;
 }
 
-// The field along the edge as two straight lines, one from each end by the slope beyond it.
+// The root of the field along the edge, taken as two straight lines that go on from beyond either
+// end (Harten 1989). They meet at the kink; the root counts if it is on the line's own side of
+// that. Otherwise the kink is not on this edge, and linear interpolation is as good.
 float CrossingFinder::subcellRoot(int lower, int axis) const {
   const int stride = BlockSamples::stride(axis);
   const float a = samples_[lower], b = samples_[lower + stride];

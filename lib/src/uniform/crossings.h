@@ -36,10 +36,11 @@ struct CrossingBatch {
 ///
 /// Smooth field: linear interpolation for the place, central differences at both ends,
 /// interpolated, for the normal. Where a distance field has a kink, both are wrong: the normals of
-/// two sides are blended, and the place is off by up to 0.3 voxel. A kink shows as a gradient whose
-/// length is not 1 in a field that bends, or as slopes along the edge that disagree. There the
-/// place comes from the straight lines on either side (ENO with subcell resolution, Harten 1989),
-/// and the normal from the one-sided differences whose length is nearest to 1.
+/// two sheets are blended, and the place is off by up to 0.3 voxel. A kink shows as a gradient
+/// whose length is not 1 in a field that bends, or as slopes along the edge that disagree. There
+/// the place comes from the straight lines that continue the field from beyond either end (ENO with
+/// subcell resolution, Harten 1989), and the normal from the one-sided differences whose length is
+/// nearest to 1.
 class CrossingFinder {
  public:
   CrossingFinder(const grid::BlockSamples& samples, const grid::FieldScale& scale)
@@ -93,7 +94,7 @@ class CrossingFinder {
     }
   }
 
-  /// Whether a sample is a distance, and not the side of a clamped one.
+  /// Whether a sample is a distance, and not clamped to the width of the narrow band.
   [[nodiscard]] bool inBand(float value) const {
     return value > scale_.bandInside && value < scale_.bandOutside;
   }
@@ -103,15 +104,15 @@ class CrossingFinder {
   // blended half and half) or a sample beyond the band. Central differences on a sphere of radius 3
   // voxels are off by 0.02.
   static constexpr float kLengthTolerance = 0.03F;
-  // A kink also bends the field. Where its second differences, at both ends of the edge together,
-  // are shorter than this, it is smooth and only not quite a distance. A curvature radius of seven
+  // A kink also bends the field. Where the second differences at both ends of the edge together are
+  // less than this, the field is smooth and only not quite a distance. A curvature radius of seven
   // voxels gives as much.
   static constexpr float kBendTolerance = 0.3F;
-  // Slopes along an edge that differ by more than this from one sample to the next: a curvature
-  // radius of five voxels gives 0.1.
+  // A kink changes the slope along the edge by more than this from one sample to the next; a
+  // curvature radius of five voxels changes it by 0.1.
   static constexpr float kSlopeTolerance = 0.1F;
   // Crossings keep this far from the ends of their edge, so that a sample on the isovalue does not
-  // bring the vertices of all cells around it to one point.
+  // pull the vertices of all cells around it to one point.
   static constexpr float kEndMargin = 1e-3F;
 
   // The samples at both ends of an edge and the gradients there.
@@ -121,8 +122,8 @@ class CrossingFinder {
     float squaredBend;  // of both ends together, see below
   };
 
-  // The crossing of a field that is smooth there, but for the length of its gradient; `kinked` if
-  // it is not. Plain numbers, so that the compiler can work on several at a time.
+  // The crossing if the field is smooth there; `kinked` if it is not. Plain numbers, so that the
+  // compiler can work on several at a time.
   struct Smooth {
     float along;
     float x, y, z;  // gradient
@@ -185,8 +186,8 @@ class CrossingFinder {
     return limits;
   }
 
-  // Where a linear change from a to b, on different sides, is zero; half way if both are. Written
-  // without a choice, which would keep the loop over a batch from being vectorized.
+  // Where a linear function from a to b, on different sides of zero, is zero; half way if both are
+  // zero. Without a branch, which would keep the loop over a batch from being vectorized.
   static float linearRoot(float a, float b) {
     const float across = a - b;
     const auto flat = static_cast<float>(across == 0);
@@ -216,7 +217,7 @@ class CrossingFinder {
     return sum;
   }
 
-  // What makes a unit vector of one with this squared length; 0 if it vanishes.
+  // The factor that normalizes a vector of this squared length; 0 if it vanishes.
   static float normalizer(float squared) { return squared > 1e-12F ? 1 / std::sqrt(squared) : 0; }
 
   // The unit vector along g; along the edge if g vanishes.

@@ -20,8 +20,7 @@ struct Split {
   }
   // From the crossing to the triangles along the lattice edge, in voxels.
   [[nodiscard]] double distance(const LatticeCrossing& crossing) const {
-    // Seen along the edge, the crossing lies right of the diagonal in the first triangle, else
-    // left.
+    // Seen along the edge, the crossing is in the first triangle if it lies right of the diagonal.
     const Vec3 toCrossing = crossing.point - a;
     const bool right = (c - a).cross(toCrossing).dot(crossing.outward) < 0;
     const Vec3& normal = normals[right ? 0 : 1];

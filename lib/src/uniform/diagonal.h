@@ -17,7 +17,7 @@ struct LatticeCrossing {
 /// Compares the two ways to split one quad: along its diagonal from corner 0 to corner 2, or along
 /// the second, from 1 to 3.
 ///
-/// Beside a crease the better diagonal is the one whose triangles lie on one smooth side each.
+/// Beside a crease the better diagonal is the one whose triangles lie on one smooth sheet each.
 /// Else, if the two differ by more than a fiftieth of a voxel, it is the one nearer to the
 /// crossing, where the surface is known to be, unless that folds a triangle over; else the shorter
 /// one, which has the better angles.
@@ -44,7 +44,7 @@ class SplitChooser {
   }
 
  private:
-  // Diagonals that pass each other at less than this, in voxels, are equally near to the surface.
+  // Diagonals whose lines are less than this apart, in voxels, are equally near to the surface.
   static constexpr double kSameDistance = 0.02;
 
   [[nodiscard]] bool isSecondShorter() const {

@@ -28,7 +28,7 @@ class PatchPlanes {
   PatchPlanes(const grid::BlockSamples& samples, const grid::FieldScale& scale)
       : samples_(samples), scale_(scale) {}
 
-  /// Forgets the planes of the block before.
+  /// Discards the planes of the block before.
   void reset() { states_.fill(State::Unknown); }
 
   /// The plane of the cube whose lowest sample is lattice point (x, y, z), each -1..8; null if the

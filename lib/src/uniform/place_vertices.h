@@ -13,14 +13,14 @@
 
 namespace tufa::uniform {
 
-/// Sizes and fills the positions of the mesh and, if asked, its normals from the field's gradient.
-/// Returns which vertices lie near or on creases.
+/// Sizes and fills the positions of the mesh and, if `normals`, its normals from the field's
+/// gradient. Returns which vertices lie near or on creases.
 [[nodiscard]] VertexSheets placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
                                          const CellTopology& topology, const grid::Affine& affine,
                                          bool normals, Mesh& mesh, base::Job& job);
 
-/// The mean of the crossings of each of some vertices, sorted, in world space: a point inside the
-/// vertex's cell.
+/// The mass point of each of some vertices, given in rising order: the mean of its crossings, a
+/// point inside its cell. Counted from affine.origin(), like the positions of the mesh.
 [[nodiscard]] std::vector<Position> massPoints(
     const grid::Blocks& blocks, const grid::FieldScale& scale, const CellTopology& topology,
     const grid::Affine& affine, const std::vector<VertexIndex>& vertices, base::Job& job);

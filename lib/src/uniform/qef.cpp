@@ -7,7 +7,8 @@
 namespace tufa::uniform {
 namespace {
 
-// Eigenvalues below this share of the largest belong to directions that the planes leave free.
+// Eigenvalues below this share of the largest belong to directions that the planes leave free:
+// noise in normals a few degrees apart would move the point far along them.
 constexpr double kFreeShare = 0.01;
 // Pull to the mass point in the bounded problem, in units of the number of planes. It keeps the
 // problem definite; at a right-angled crease it moves the vertex by about a hundredth of its way.
@@ -21,7 +22,7 @@ Matrix3 matrixOf(const Qef& qef) {
   return {{{a[0], a[1], a[2]}, {a[1], a[3], a[4]}, {a[2], a[4], a[5]}}};
 }
 
-// A^T (b - A c) of the planes, c being the mass point.
+// The right-hand side of the normal equations with the origin at c: sum of n (n . (p - c)).
 Vector residualAt(const Qef& qef, const Vector& c) {
   const auto& a = qef.a;
   return {qef.b[0] - (a[0] * c[0] + a[1] * c[1] + a[2] * c[2]),
@@ -29,7 +30,7 @@ Vector residualAt(const Qef& qef, const Vector& c) {
           qef.b[2] - (a[2] * c[0] + a[4] * c[1] + a[5] * c[2])};
 }
 
-// One cyclic Jacobi rotation in the plane of rows p and q.
+// One Jacobi rotation in the plane of rows p and q; zeroes m[p][q].
 void rotate(Matrix3& m, Matrix3& vectors, int p, int q) {
   if (m[p][q] == 0) return;
   const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
@@ -50,7 +51,8 @@ void rotate(Matrix3& m, Matrix3& vectors, int p, int q) {
   }
 }
 
-// Least-squares step from the mass point by the truncated pseudo-inverse.
+// The least-squares step from the mass point by the pseudo-inverse without the free directions, as
+// Ju et al. 2002 truncate theirs. Cyclic Jacobi sweeps converge quadratically: a few do.
 Vector truncatedStep(const Qef& qef, const Vector& residual) {
   Matrix3 m = matrixOf(qef);
   Matrix3 vectors = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -74,7 +76,8 @@ Vector truncatedStep(const Qef& qef, const Vector& residual) {
   return step;
 }
 
-// Solves the system of the free axes, the others held, by Gauss elimination; it is definite.
+// Solves the system for the free axes, the others being held, by Gaussian elimination. The matrix
+// is positive definite, so no pivoting is needed.
 void solveFree(const Matrix3& m, const Vector3& r, const std::array<bool, 3>& free, Vector3& x) {
   Matrix3 a = m;
   Vector3 right = r;
@@ -101,8 +104,11 @@ void solveFree(const Matrix3& m, const Vector3& r, const std::array<bool, 3>& fr
   }
 }
 
-// The least error in the cube: the best of the points where it is stationary inside, on a face, on
-// an edge or at a corner. `c` is the mass point, steps are measured from it.
+// The step to the least error in the cube; `c` is the mass point. The error is strictly convex, and
+// its least point lies inside exactly one of the cube, its 6 faces, 12 edges and 8 corners, where
+// it is stationary. So the best of these 27 stationary points that lie in the cube is the solution;
+// corners always do. Clamping the unbounded solution would leave the planes. Cost: 27 small
+// eliminations, for the few vertices whose solution leaves the cube.
 Vector boundedStep(const Qef& qef, const Vector& residual, const Vector& c, float halfSize) {
   Matrix3 m = matrixOf(qef);
   for (int i = 0; i < 3; ++i) m[i][i] += kPull * static_cast<double>(qef.count);
@@ -135,17 +141,18 @@ Vector boundedStep(const Qef& qef, const Vector& residual, const Vector& c, floa
   return best;
 }
 
-// What the short way finds.
+// The result of the closed form.
 struct Solution {
   float x, y, z;
   int oneDirection;  // the planes have one normal direction: the point is their solution
   int inside;        // it lies in the cube
 };
 
-// Most cells have one normal direction. Then the sum n of the normals is along the first
-// eigenvector to second order, its Rayleigh quotient n A n / n n is the first eigenvalue to fourth,
-// and what is left of the trace bounds the other two. Without branches, so that the compiler can
-// work on several problems at a time.
+// The closed form for one normal direction, as most cells have. With normals that differ by angles
+// of order e, their sum n is along the first eigenvector up to order e^2, its Rayleigh quotient n A
+// n / n n is the first eigenvalue up to order e^4, and the rest of the trace bounds the other two
+// eigenvalues: if it is under kFreeShare, truncatedStep() would drop both. Without branches, so
+// that the compiler can work on several problems at a time.
 inline Solution solveOneDirection(const Qef& qef, float halfSize) {
   const Vector c = qef.massPoint();
   const Vector residual = residualAt(qef, c);
@@ -165,7 +172,7 @@ inline Solution solveOneDirection(const Qef& qef, float halfSize) {
   return {x[0], x[1], x[2], oneDirection, insideX & insideY & insideZ};
 }
 
-// Several problems, number by number.
+// Several problems, one array for each number.
 struct Lanes {
   static constexpr std::size_t kCount = 8;
   std::array<std::array<float, kCount>, 6> a;
@@ -218,7 +225,7 @@ void solveAll(const Qef* qefs, const Vector* origins, std::size_t count, float h
   for (std::size_t first = 0; first < count; first += Lanes::kCount) {
     Lanes lanes;
     for (std::size_t lane = 0; lane < Lanes::kCount; ++lane) {
-      // The last problem fills the lanes that are left over.
+      // The last problem also fills the unused lanes.
       const std::size_t i = std::min(first + lane, count - 1);
       lanes.load(lane, qefs[i], origins[i]);
     }

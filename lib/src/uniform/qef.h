@@ -59,11 +59,11 @@ struct alignas(16) Qef {
   }
 };
 
-/// The point of the cube [-halfSize, halfSize]^3 around the origin with the least error, as near to
-/// the mass point as the planes leave free: directions whose eigenvalue is under a hundredth of the
-/// largest count as free. Where the unbounded solution leaves the cube, the problem is solved again
-/// on the cube's faces, edges and corners. The mass point must lie in the cube and the count must
-/// not be 0.
+/// The point of the cube [-halfSize, halfSize]^3 around the origin with the least error. Directions
+/// whose eigenvalue is under a hundredth of the largest count as free; along them the point stays
+/// at the mass point. Where the unbounded solution leaves the cube, the problem is solved again on
+/// the cube's faces, edges and corners. The mass point must lie in the cube and the count must not
+/// be 0.
 [[nodiscard]] Vector solve(const Qef& qef, float halfSize);
 
 /// Solves `count` problems, each in the cube around an origin of its own: bit for bit

@@ -16,7 +16,7 @@ using grid::kBlockSize;
 
 namespace {
 
-// The vertices of a block's cells and of the layer of cells below it on each axis.
+// For each cell of a block, and of the layer of cells below it on each axis, its first vertex.
 class VertexTable {
  public:
   VertexTable(const grid::Blocks& blocks, const CellTopology& topology)
@@ -116,7 +116,8 @@ void turn(Quad& quad) {
   std::rotate(quad.vertices.begin(), quad.vertices.begin() + 1, quad.vertices.end());
 }
 
-// Where a quad's crossing is in the world, by linear interpolation, and which way is out.
+// Where the surface crosses the lattice edge of a quad, by linear interpolation, and which way is
+// out.
 LatticeCrossing crossingOf(const SurfaceView& context, const SurfaceBlock& block,
                            const QuadPlace& place, grid::Accessor& accessor) {
   const grid::SampleReader samples(context.blocks, context.scale, block.block, block.neighbours,

@@ -16,11 +16,11 @@ namespace {
 constexpr double kFarthest = 1.0;
 // Two corners nearer than this, in voxels, are one.
 constexpr double kSameCorner = 0.5;
-// A move opens new defects around it, and of moves beside each other one waits; few places need
-// more than two rounds. A round reaches two cells far.
+// A snap may leave a defect in the next quad, and of snaps beside each other only one is made in a
+// round; few places need more than two rounds. A round reaches two cells far.
 constexpr int kRounds = 6;
-// Moves whose distances are in one step of this, in voxels, go in an order that is as good as
-// random, so that few along a crease have to wait.
+// Snaps whose distances fall into one step of this, in voxels, are ordered by a hash. Ordered by
+// distance alone, those along a straight crease would wait for each other in a long chain.
 constexpr double kStep = 1.0 / 16;
 
 struct Plane {
@@ -30,7 +30,7 @@ struct Plane {
 
 struct Move {
   double distance = std::numeric_limits<double>::infinity();
-  std::uint64_t order = 0;  // of two moves beside each other the lower one is made
+  std::uint64_t order = 0;  // of two snaps beside each other the lower one is made
   std::size_t quad = 0;
   VertexIndex vertex = 0;
   Vec3 point;
@@ -75,7 +75,7 @@ class CreaseSnapper {
       dropContested(moves);
       std::size_t inRound = 0;
       for (const Move& move : moves) {
-        // Two quads apart may have found the same corner.
+        // Two quads that share no vertex may have found the same corner.
         if (move.sheets.count > 2 && isCorner(move.point)) continue;
         apply(move);
         ++inRound;
@@ -106,8 +106,8 @@ class CreaseSnapper {
     });
   }
 
-  // After the first round only quads with a vertex that was moved in the last one, and those whose
-  // move had to wait, can need one.
+  // Finds the snap of each quad that needs one. After the first round only quads with a vertex
+  // moved in the last one, or whose snap had to wait, can need one.
   std::vector<Move> findMoves(bool first, base::Job& job) const {
     std::vector<Move> moves;
     std::mutex mutex;
@@ -127,8 +127,8 @@ class CreaseSnapper {
     return moves;
   }
 
-  // Keeps the moves that no lower one comes before: none that moves a vertex of the same quad.
-  // Which those are depends on what is near alone, and not on where the mesh begins.
+  // Keeps the snaps that wait for none: no lower one moves a vertex of the same quad. So the kept
+  // ones are independent, and which they are depends on what is near alone.
   void dropContested(std::vector<Move>& moves) {
     lowest_.resize(mesh_.positions.size(), kNoMove);
     for (const Move& move : moves) {
@@ -152,8 +152,8 @@ class CreaseSnapper {
     moves = std::move(kept);
   }
 
-  // A number by the distance of a move, in steps, then by digits of the quad's corners: those of
-  // their positions now, which are the same wherever the mesh begins.
+  // The order of a snap: its distance in steps, then a hash of the positions of the quad's corners.
+  // Not of their indices: positions are the same wherever the mesh begins.
   [[nodiscard]] std::uint64_t orderOf(const Move& move) const {
     std::uint64_t hash = 0;
     for (const VertexIndex vertex : mesh_.quads[move.quad].vertices) {
@@ -168,7 +168,8 @@ class CreaseSnapper {
     return (step << kHashBits) | (hash >> (64 - kHashBits));
   }
 
-  // The shortest move that mends a quad; none if it needs none or none is short enough.
+  // The shortest snap that lets a quad be split along its crease; none if it needs none or none is
+  // short enough. Creases are tried only if no corner is near enough.
   [[nodiscard]] std::optional<Move> moveFor(std::size_t quad) const {
     const Quad& q = mesh_.quads[quad];
     if (QuadSheets::isOneSheet(mesh_, sheets_, q)) return {};
@@ -190,7 +191,8 @@ class CreaseSnapper {
     return best;
   }
 
-  // The plane of a side, through the vertex itself if it lies on it.
+  // The plane of a sheet, through vertex `corner` itself if that lies on it, else through the next
+  // vertex that does, with that vertex's own normal of the sheet.
   [[nodiscard]] std::optional<Plane> planeOf(const Quad& quad, const QuadSheets& around, int side,
                                              int corner) const {
     for (int i = 0; i < 4; ++i) {
@@ -210,7 +212,7 @@ class CreaseSnapper {
     return {};
   }
 
-  // The planes of all sides, as far as they are known, seen from one corner.
+  // The planes of all sheets as far as they are known, preferably through one corner.
   using Planes = std::array<std::optional<Plane>, QuadSheets::kMost>;
   [[nodiscard]] Planes planesOf(const Quad& quad, const QuadSheets& around, int corner) const {
     Planes planes;
@@ -273,7 +275,7 @@ class CreaseSnapper {
     Vec3 sum(0);
     for (int i = 0; i < move.sheets.count; ++i) {
       const Normal& n = move.sheets.normals[i];
-      sum += Vec3(n.x, n.y, n.z);
+      sum += Vec3(n);
     }
     mesh_.normals[move.vertex] = toNormal(sum.unitOrX());
     sheets_.setMeeting(move.vertex, move.sheets);
@@ -285,7 +287,7 @@ class CreaseSnapper {
   VertexSheets& sheets_;
   double voxelSize_;
   std::vector<Vec3> corners_;
-  std::vector<std::uint8_t> touched_;  // vertices where the last round left something to look at
+  std::vector<std::uint8_t> touched_;  // vertices around which the next round looks
   static constexpr std::uint64_t kNoMove = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint64_t> lowest_;  // order of the moves of each vertex, kNoMove between rounds
 };

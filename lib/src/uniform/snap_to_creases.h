@@ -11,11 +11,16 @@ namespace tufa::uniform {
 /// Moves vertices onto creases and corners that pass between cells.
 ///
 /// A crease may run through cells that have no sign change and so no vertex. Then some quad cannot
-/// be split into two triangles that lie on one smooth side each: it cuts the crease off, by up to
-/// half a voxel. Of its vertices the one nearest to the line where its sides meet moves there, or,
-/// where three sides meet, to their corner. The vertex leaves its cell, by a voxel at most, into a
-/// cell that has none. Uses positions and normals of the mesh, each exact on its side, and changes
-/// both. `voxelSize` is in world units. Returns the number of vertices moved.
+/// be split into two triangles that lie on one smooth sheet each: it cuts the crease off, by up to
+/// half a voxel. Of its vertices the one nearest to the line where its sheets meet snaps to it, or,
+/// where three sheets meet, to their corner. The vertex leaves its cell, by a voxel at most, into a
+/// cell that has none. `voxelSize` is in world units. Reads positions and normals as exact on their
+/// sheets, and changes both. Returns the number of vertices moved.
+///
+/// Promised: a vertex depends on what is within six rounds of two cells each, and not on where the
+/// mesh begins, so a part of a grid gets the same vertices as the whole. Polygons may intersect
+/// afterwards; repair removes that. Cost: one pass over the quads; later rounds compute only around
+/// the vertices moved before.
 std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job);
 
 }  // namespace tufa::uniform

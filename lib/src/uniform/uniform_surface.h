@@ -10,14 +10,14 @@
 
 namespace tufa::uniform {
 
-/// The end of a call's progress that each stage reaches.
+/// The share of a call's progress that is reached at the end of each stage, 0 to 1.
 struct StageEnds {
   double blocks, topology, vertices, polygons, creases, repair;
 };
 
 /// The uniform mesh of a grid, or of a box of its blocks, and all that is known of its cells.
-/// Positions are counted from affine().origin(). Vertices may have been snapped to creases in a way
-/// that lets polygons intersect: refine/uniform_repair.h takes that out.
+/// Positions are counted from affine().origin(). Snapping vertices to creases may have made
+/// polygons intersect; refine/uniform_repair.h removes that.
 struct UniformSurface {
   grid::Volume volume;
   CellTopology topology;
@@ -30,7 +30,7 @@ struct UniformSurface {
   }
 };
 
-/// Runs the stages of level 0. Throws Error(LimitExceeded) if the mesh would have more vertices
+/// Runs the stages of the uniform mesh. Throws Error(LimitExceeded) if it would have more vertices
 /// than 32-bit indices can name.
 [[nodiscard]] UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,
                                                 const StageEnds& ends, base::Job& job);

@@ -5,7 +5,7 @@
 namespace tufa::uniform {
 namespace {
 
-// Sides whose normals differ by less than this (18 degrees) are one.
+// Sheets whose normals differ by less than this (18 degrees) are one.
 constexpr double kSameSide = 0.95;
 
 }  // namespace

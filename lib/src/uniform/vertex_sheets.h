@@ -12,24 +12,24 @@
 
 namespace tufa::uniform {
 
-/// The smooth sides of the surface that meet at one vertex on a crease (2) or corner (3).
+/// The smooth sheets of the surface that meet at one vertex on a crease (2) or corner (3).
 struct MeetingSheets {
   std::uint8_t count = 0;
   std::array<Normal, 3> normals{};  ///< outward, world space
 };
 
-/// Which smooth sides of the surface each vertex of a mesh lies on.
+/// The smooth sheets of the surface that each vertex of a mesh lies on.
 ///
 /// Almost every vertex lies on one, whose normal is the vertex's own; only vertices on creases and
-/// corners have an entry of their own.
+/// corners have an entry. Cost: two bytes a vertex, and the entries.
 class VertexSheets {
  public:
-  /// A crease runs near, or through, the vertex.
+  /// How a vertex lies to creases.
   enum class Kind : std::uint8_t {
     Smooth,   ///< no kink of the field was seen
-    Near,     ///< on one side, with a crease nearby
-    Meeting,  ///< on a crease or corner; sides() says which
-    Unknown,  ///< on several sides that could not be told apart
+    Near,     ///< on one sheet, with a crease nearby
+    Meeting,  ///< on a crease or corner; sheets() tells the sheets
+    Unknown,  ///< on several sheets that could not be told apart
   };
 
   explicit VertexSheets(std::size_t vertices = 0)
@@ -42,7 +42,7 @@ class VertexSheets {
   void setKinds(std::size_t first, const std::vector<Kind>& kinds) {
     std::copy(kinds.begin(), kinds.end(), kinds_.begin() + static_cast<std::ptrdiff_t>(first));
   }
-  /// Whether the vertex may lie outside of its cell.
+  /// Whether the vertex may lie out of its cell.
   [[nodiscard]] bool isOutOfCell(VertexIndex vertex) const { return outOfCell_[vertex] != 0; }
   /// May be called from several threads.
   void setOutOfCell(VertexIndex vertex) { outOfCell_[vertex] = 1; }
@@ -50,7 +50,7 @@ class VertexSheets {
     kinds_[vertex] = Kind::Meeting;
     meeting_[vertex] = sheets;
   }
-  /// The sides of a vertex; count 0 if they are unknown.
+  /// The sheets of a vertex; count 0 if they are unknown.
   [[nodiscard]] MeetingSheets sheets(const Mesh& mesh, VertexIndex vertex) const;
   /// Number of vertices on creases and corners.
   [[nodiscard]] std::size_t sharpCount() const;
@@ -61,27 +61,27 @@ class VertexSheets {
   std::unordered_map<VertexIndex, MeetingSheets> meeting_;
 };
 
-/// The sides around one quad: its corners' sides, equal ones merged.
+/// The sheets around one quad: those of its corners, equal ones merged.
 class QuadSheets {
  public:
   static constexpr int kMost = 12;  ///< three for each corner
 
   QuadSheets(const Mesh& mesh, const VertexSheets& sheets, const Quad& quad);
 
-  /// Whether all vertices of a quad surely lie on one side: a quick answer for most.
+  /// Whether all vertices of a quad certainly lie on one sheet: a quick answer for most.
   [[nodiscard]] static bool isOneSheet(const Mesh& mesh, const VertexSheets& sheets,
                                        const Quad& quad);
 
-  /// Whether both triangles of the split at diagonal 0-2 (or 1-3) lie on one side each. A triangle
+  /// Whether both triangles of the split at diagonal 0-2 (or 1-3) lie on one sheet each. A triangle
   /// that does not cuts off a crease or corner.
   [[nodiscard]] bool fits(bool secondDiagonal) const;
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] const Vec3& normal(int side) const { return normals_[side]; }
-  /// Whether corner `corner` of the quad lies on `side`.
+  /// Whether corner `corner` of the quad lies on sheet `side`.
   [[nodiscard]] bool lies(int corner, int side) const {
     return ((masks_[corner] >> side) & 1) != 0;
   }
-  /// Whether the sides of the corner are known.
+  /// Whether the sheets of the corner are known.
   [[nodiscard]] bool known(int corner) const { return masks_[corner] != kAll; }
 
  private:

@@ -71,7 +71,7 @@ TEST(JobParts, StopWhenTheCallerSaysSo) {
       job.run([&] {
         job.forParts(1000, [&](Job& part, std::size_t) {
           part.beginStage("stage", 1);
-          for (int i = 0; i < 10; ++i) part.look(0, 1);
+          for (int i = 0; i < 10; ++i) part.checkCancelled(0, 1);
           ++ended;
         });
       });

@@ -155,8 +155,8 @@ inline std::vector<Chunk> makeSheet() {
         top.tiles.push_back(group == 0 ? inner : first ? add(1 + group, 1) : top.tiles.back());
       }
       std::reverse(top.tiles.begin(), top.tiles.end());
-      right.line = lineOf(k, false);
-      top.line = lineOf(k, true);
+      right.polyline = lineOf(k, false);
+      top.polyline = lineOf(k, true);
       right.begin = edge;
       top.end = edge;
       for (const auto& tiles : {top.tiles, right.tiles}) {

@@ -55,7 +55,7 @@ TEST(Contour, ReportsWhatItDid) {
   EXPECT_EQ(report.activeVoxels, grid->activeVoxelCount());
   EXPECT_EQ(report.surfaceCells, mesh.positions.size());  // no ambiguous cell on a ball
   EXPECT_EQ(report.faceFlips, 0U);
-  EXPECT_EQ(report.cutEdges, 0U);
+  EXPECT_EQ(report.openEdges, 0U);
   EXPECT_EQ(report.nonFiniteValues, 0U);
   std::set<std::string> stages;
   for (const StageTime& stage : report.stages) {
@@ -241,7 +241,7 @@ TEST(Contour, CutsTheSurfaceWhereALevelSetEndsOrCapsIt) {
   }
   ContourReport report;
   const Mesh open = tufa::test::uniformMesh(*half, {}, &report);
-  EXPECT_GT(report.cutEdges, 0U);
+  EXPECT_GT(report.openEdges, 0U);
   test::MeshTopology topology = test::inspect(open);
   EXPECT_TRUE(topology.manifold()) << topology;
   EXPECT_GT(topology.boundaryEdges, 0U);
@@ -250,7 +250,7 @@ TEST(Contour, CutsTheSurfaceWhereALevelSetEndsOrCapsIt) {
   ContourOptions options;
   options.cap = true;
   const Mesh capped = tufa::test::uniformMesh(*half, options, &report);
-  EXPECT_EQ(report.cutEdges, 0U);
+  EXPECT_EQ(report.openEdges, 0U);
   topology = test::inspect(capped);
   EXPECT_TRUE(topology.manifold() && topology.closed()) << topology;
   EXPECT_GT(test::volume(capped), test::volume(tufa::test::uniformMesh(*grid)) / 2);

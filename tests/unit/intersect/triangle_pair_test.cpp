@@ -14,7 +14,7 @@ namespace {
 // CGAL's answer by the definition of check(), which leaves triangles on a line out.
 bool expected(const std::vector<Position>& p, const Triangle& a, const Triangle& b) {
   if (checks::areCollinear(p, a) || checks::areCollinear(p, b)) return false;
-  return checks::meetElsewhere(p, a, b);
+  return checks::intersectElsewhere(p, a, b);
 }
 
 // Points of a small lattice: most pairs touch, lie in one plane or share lines.
@@ -35,10 +35,10 @@ TEST(TrianglePair, AgreesWithCgalOnSmallLattices) {
           b.vertices[2] == b.vertices[0]) {
         b = {3, 4, 5};
       }
-      const bool meet = intersect::meetElsewhere(p, a, b);
+      const bool meet = intersect::intersectElsewhere(p, a, b);
       met += meet ? 1 : 0;
       ASSERT_EQ(meet, expected(p, a, b)) << "lattice of " << size << ", pair " << i;
-      ASSERT_EQ(meet, intersect::meetElsewhere(p, b, a));
+      ASSERT_EQ(meet, intersect::intersectElsewhere(p, b, a));
     }
     EXPECT_GT(met, 1000);
   }
@@ -57,7 +57,7 @@ TEST(TrianglePair, AgreesWithCgalOnFlatTriangles) {
                               : Position(u, v, u));
     }
     for (const Triangle& b : {Triangle(3, 4, 5), Triangle(3, 4, 0), Triangle(1, 0, 3)}) {
-      ASSERT_EQ(intersect::meetElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
+      ASSERT_EQ(intersect::intersectElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
     }
   }
 }
@@ -71,7 +71,7 @@ TEST(TrianglePair, AgreesWithCgalOnRandomPoints) {
       p.emplace_back(coordinate(random), coordinate(random), coordinate(random));
     }
     for (const Triangle& b : {Triangle(3, 4, 5), Triangle(3, 4, 0), Triangle(1, 0, 3)}) {
-      ASSERT_EQ(intersect::meetElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
+      ASSERT_EQ(intersect::intersectElsewhere(p, {0, 1, 2}, b), expected(p, {0, 1, 2}, b)) << i;
     }
   }
 }

@@ -74,7 +74,7 @@ refine::Source sourceOf(const Mesh& good) {
   return source;
 }
 
-TEST(Mend, FindsThePairsThatCheckFinds) {
+TEST(Repair, FindsThePairsThatCheckFinds) {
   const Mesh mesh = contourOf(Shape::Bracket, 0.03, false);
   const std::vector<intersect::PolygonPair> pairs = allPairs(mesh);
   ASSERT_FALSE(pairs.empty());
@@ -85,7 +85,7 @@ TEST(Mend, FindsThePairsThatCheckFinds) {
   EXPECT_EQ(allPairs(split).size(), check(mesh).selfIntersectingPairs.value());
 }
 
-TEST(Mend, UnfoldsASheet) {
+TEST(Repair, UnfoldsASheet) {
   Mesh good = foldedSheet();
   good.positions[12] = {2, 2, 0};
   ASSERT_TRUE(allPairs(good).empty());
@@ -93,7 +93,7 @@ TEST(Mend, UnfoldsASheet) {
   const std::size_t pairs = allPairs(mesh).size();
   ASSERT_GT(pairs, 0U);
   base::Job job(0, {});
-  const refine::MendReport report = refine::mend(mesh, allPolygons(mesh), sourceOf(good), job);
+  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), sourceOf(good), job);
   EXPECT_EQ(report.pairsFound, pairs);
   EXPECT_TRUE(report.left.empty());
   EXPECT_TRUE(allPairs(mesh).empty());
@@ -101,17 +101,17 @@ TEST(Mend, UnfoldsASheet) {
   EXPECT_EQ(mesh.positions.size(), 25U);
 }
 
-TEST(Mend, LeavesAGoodMeshAlone) {
+TEST(Repair, LeavesAGoodMeshAlone) {
   Mesh mesh = contourOf(Shape::Sphere, 0.05, false);
   const Mesh before = mesh;
   base::Job job(0, {});
-  const refine::MendReport report = refine::mend(mesh, allPolygons(mesh), sourceOf(before), job);
+  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), sourceOf(before), job);
   EXPECT_EQ(report.pairsFound, 0U);
   EXPECT_EQ(mesh.positions, before.positions);
   EXPECT_EQ(mesh.quads, before.quads);
 }
 
-TEST(Mend, ReportsWhatItCannotMendWithoutTheFloor) {
+TEST(Repair, ReportsWhatItCannotMendWithoutTheFloor) {
   // Two sheets that cross; their mass points are where they are.
   Mesh mesh;
   mesh.positions = {{0, 0, 0},  {4, 0, 0},  {4, 4, 0}, {0, 4, 0},
@@ -119,14 +119,14 @@ TEST(Mend, ReportsWhatItCannotMendWithoutTheFloor) {
   mesh.quads = {{0, 1, 2, 3}, {4, 5, 6, 7}};
   const Mesh before = mesh;
   refine::Source source = sourceOf(before);
-  source.toTheFloor = false;
+  source.lastResort = false;
   base::Job job(0, {});
-  const refine::MendReport report = refine::mend(mesh, allPolygons(mesh), source, job);
+  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), source, job);
   ASSERT_EQ(report.left.size(), 1U);
   EXPECT_EQ(report.left[0], (intersect::PolygonPair{0, 1}));
 }
 
-TEST(Mend, FansAQuadWhereNothingElseHelps) {
+TEST(Repair, FansAQuadWhereNothingElseHelps) {
   // A sheet with a thin one standing in it, which the quad's crossing lies above.
   Mesh mesh;
   mesh.positions = {{0, 0, 0},    {4, 0, 0},    {4, 4, 0},   {0, 4, 0},
@@ -142,7 +142,7 @@ TEST(Mend, FansAQuadWhereNothingElseHelps) {
     return points;
   };
   base::Job job(0, {});
-  const refine::MendReport report = refine::mend(mesh, allPolygons(mesh), source, job);
+  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), source, job);
   EXPECT_EQ(report.fannedQuads, 1U);
   EXPECT_TRUE(report.left.empty());
   EXPECT_TRUE(allPairs(mesh).empty());
@@ -155,7 +155,7 @@ TEST(Mend, FansAQuadWhereNothingElseHelps) {
   EXPECT_EQ(mesh.normals[8], Normal(0, 0, 1));
 }
 
-TEST(Mend, TakesAllPairsOutOfEveryShape) {
+TEST(Repair, TakesAllPairsOutOfEveryShape) {
   for (const Shape shape :
        {Shape::Sphere, Shape::Torus, Shape::Box, Shape::Bracket, Shape::Gyroid, Shape::Terrain}) {
     for (const double voxelSize : {0.02, 0.031}) {
@@ -175,7 +175,7 @@ TEST(Mend, TakesAllPairsOutOfEveryShape) {
   }
 }
 
-TEST(Mend, LeavesNoiseNearlyFreeOfPairs) {
+TEST(Repair, LeavesNoiseNearlyFreeOfPairs) {
   const auto grid = makeGrid(Shape::Noise, 0.04);
   ContourOptions options;
   options.uniform = true;
@@ -186,7 +186,7 @@ TEST(Mend, LeavesNoiseNearlyFreeOfPairs) {
   EXPECT_TRUE(checked.closed && checked.manifold && checked.oriented);
 }
 
-TEST(Mend, GivesTheSameBytesForAnyNumberOfThreads) {
+TEST(Repair, GivesTheSameBytesForAnyNumberOfThreads) {
   for (const Shape shape : {Shape::Bracket, Shape::Gyroid}) {
     const auto grid = makeGrid(shape, 0.02);
     ContourOptions options;
@@ -216,7 +216,7 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   Mesh mesh = good;
   const refine::Source source = sourceOf(good);
   base::Job job(0, {});
-  EXPECT_EQ(refine::unfoldLonePieces(mesh, source, job), 0U);
+  EXPECT_EQ(refine::unfoldLoneComponents(mesh, source, job), 0U);
   // One of them mirrored at a plane through it.
   std::size_t mirrored = 0;
   for (Position& p : mesh.positions) {
@@ -226,7 +226,7 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   }
   ASSERT_EQ(mirrored, 8U);
   EXPECT_FALSE(check(mesh).outward);
-  EXPECT_EQ(refine::unfoldLonePieces(mesh, source, job), 8U);
+  EXPECT_EQ(refine::unfoldLoneComponents(mesh, source, job), 8U);
   EXPECT_EQ(mesh.positions, good.positions);
 }
 
@@ -257,20 +257,20 @@ TEST(SmallPieces, StayOnTheirSideOfCreases) {
 }
 
 // What findSuspects() promises: every pair has a suspect.
-TEST(Suspects, HaveAPartInEveryPair) {
+TEST(Candidates, HaveAPartInEveryPair) {
   for (const Shape shape : {Shape::Noise, Shape::Gyroid, Shape::Bracket, Shape::Terrain}) {
     const auto grid = makeGrid(shape, 0.03);
     base::Job job(0, {});
     const ContourOptions options;
     uniform::UniformSurface uniform =
         uniform::makeUniformSurface(grid::openVolume(*grid, options, job), options, {}, job);
-    const std::vector<std::uint32_t> suspects = intersect::findSuspects(
+    const std::vector<std::uint32_t> candidates = intersect::findCandidates(
         uniform.view(), uniform.mesh, 1e-3 * uniform.affine().leastHeight(), job);
     const intersect::Surface surface(uniform.mesh, job);
     const auto all = intersect::findPairs(surface, allPolygons(uniform.mesh), job);
     EXPECT_FALSE(all.empty());
-    EXPECT_EQ(intersect::findPairs(surface, suspects, job), all);
-    EXPECT_LT(suspects.size(), uniform.mesh.quads.size());
+    EXPECT_EQ(intersect::findPairs(surface, candidates, job), all);
+    EXPECT_LT(candidates.size(), uniform.mesh.quads.size());
   }
 }
 

@@ -35,7 +35,7 @@ TEST(Pieces, AreNamedByTheirLeastVertex) {
   addTetrahedron(mesh, {0, 0, 0}, 1);
   addTetrahedron(mesh, {5, 0, 0}, 1);
   mesh.positions.emplace_back(9, 9, 9);
-  EXPECT_EQ(piecesOf(mesh), (Vertices{0, 0, 0, 0, 4, 4, 4, 4, 8}));
+  EXPECT_EQ(connectedComponentsOf(mesh), (Vertices{0, 0, 0, 0, 4, 4, 4, 4, 8}));
 }
 
 TEST(Misplaced, AreNone) {

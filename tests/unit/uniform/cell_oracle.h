@@ -75,12 +75,12 @@ inline Arcs arcsOf(CornerMask mask, FaceBits joined) {
 }
 
 /// Crossings that chains of arcs join, those of cut edges left out.
-inline Partition partitionOf(CornerMask mask, FaceBits joined, unsigned cutEdges) {
+inline Partition partitionOf(CornerMask mask, FaceBits joined, unsigned openEdges) {
   Partition parts;
   for (int a = 0; a < 8; ++a) {
     for (int b = a + 1; b < 8; ++b) {
       const int edge = edgeOf(a, b);
-      if (edge >= 0 && ((mask >> a) & 1) != ((mask >> b) & 1) && ((cutEdges >> edge) & 1) == 0) {
+      if (edge >= 0 && ((mask >> a) & 1) != ((mask >> b) & 1) && ((openEdges >> edge) & 1) == 0) {
         parts.insert({edge});
       }
     }
@@ -102,10 +102,10 @@ inline Partition partitionOf(CornerMask mask, FaceBits joined, unsigned cutEdges
 }
 
 /// The same out of a Components.
-inline Partition partitionOf(const Components& components, CornerMask mask, unsigned cutEdges) {
+inline Partition partitionOf(const Components& components, CornerMask mask, unsigned openEdges) {
   std::vector<std::set<int>> parts(static_cast<std::size_t>(components.count()));
   for (int edge = 0; edge < kEdges; ++edge) {
-    if (isCrossed(mask, edge) && ((cutEdges >> edge) & 1) == 0) {
+    if (isCrossed(mask, edge) && ((openEdges >> edge) & 1) == 0) {
       parts.at(static_cast<std::size_t>(components.of(edge))).insert(edge);
     }
   }

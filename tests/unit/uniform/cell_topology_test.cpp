@@ -128,7 +128,7 @@ void expectPatternsAreMeshed(const CoordBBox& box, const std::vector<unsigned>& 
   }
 }
 
-TEST(Topology, EveryCornerMaskGivesAClosedManifold) {
+TEST(CellTopology, EveryCornerMaskGivesAClosedManifold) {
   std::mt19937 random(1);
   std::vector<unsigned> patterns(256);
   std::iota(patterns.begin(), patterns.end(), 0U);
@@ -154,7 +154,7 @@ std::vector<unsigned> ambiguousPatterns(const CoordBBox& box, int axis) {
   return patterns;
 }
 
-TEST(Topology, EveryPairOfCellsAcrossAnAmbiguousFaceGivesAClosedManifold) {
+TEST(CellTopology, EveryPairOfCellsAcrossAnAmbiguousFaceGivesAClosedManifold) {
   std::mt19937 random(2);
   for (int axis = 0; axis < 3; ++axis) {
     for (const int place : kPlaces) {
@@ -173,28 +173,28 @@ struct Stages {
   base::Job job{1, {}};
   grid::FieldScale scale;
   grid::Blocks blocks;
-  Topology topology;
+  CellTopology topology;
 
   Stages(const FloatGrid& grid, grid::FieldScale fieldScale, Ambiguity rule, bool cap)
       : scale(fieldScale),
         blocks(grid::treeOf(grid, job), {0, true}, NonFinite::Refuse, job),
-        topology(buildTopology(blocks, scale, rule, cap, job)) {}
+        topology(buildCellTopology(blocks, scale, rule, cap, job)) {}
 
   // The faces, with all vertices at one place.
   Mesh faces(const FloatGrid& grid) {
     Mesh mesh;
     mesh.positions.assign(topology.vertexCount, Position(0, 0, 0));
     const grid::Affine affine(grid::transformOf(grid));
-    const VertexSides sides(topology.vertexCount);
-    connectQuads({blocks, scale, affine, topology, sides, mesh}, mesh, job);
+    const VertexSheets sheets(topology.vertexCount);
+    connectQuads({blocks, scale, affine, topology, sheets, mesh}, mesh, job);
     return mesh;
   }
 };
 
-TEST(Topology, NumbersOfVerticesAndQuadsAddUp) {
+TEST(CellTopology, NumbersOfVerticesAndQuadsAddUp) {
   const auto grid = tufa::test::noise<FloatGrid>({.size = 20, .seed = 4});
   const Stages stages(*grid, {}, Ambiguity::Separate, false);
-  const Topology& topology = stages.topology;
+  const CellTopology& topology = stages.topology;
   std::uint64_t vertices = 0, quads = 0;
   for (const SurfaceBlock& block : topology.blocks) {
     EXPECT_EQ(block.firstVertex, vertices);
@@ -212,7 +212,7 @@ TEST(Topology, NumbersOfVerticesAndQuadsAddUp) {
   EXPECT_EQ(topology.quadCount, quads);
 }
 
-TEST(Topology, OnlyInactiveSamplesFarApartCutTheSurface) {
+TEST(CellTopology, OnlyInactiveSamplesFarApartCutTheSurface) {
   // A plane at x = 0.5; behind y = 3 nothing is active, and the jump is of two voxels.
   const CoordBBox box(Coord(-4), Coord(5, 3, 5));
   auto grid = tufa::test::levelSet<FloatGrid>(box, 3, [](const Coord& at) { return at.x() - 0.5; });
@@ -222,13 +222,13 @@ TEST(Topology, OnlyInactiveSamplesFarApartCutTheSurface) {
   grid::FieldScale scale;
   scale.distance = scale.narrowBand = true;
   const Stages open(*grid, scale, Ambiguity::Separate, false);
-  EXPECT_GT(open.topology.cutEdges, 0U);
+  EXPECT_GT(open.topology.openEdges, 0U);
   const Stages capped(*grid, scale, Ambiguity::Separate, true);
-  EXPECT_EQ(capped.topology.cutEdges, 0U);
-  EXPECT_EQ(capped.topology.quadCount, open.topology.quadCount + open.topology.cutEdges);
+  EXPECT_EQ(capped.topology.openEdges, 0U);
+  EXPECT_EQ(capped.topology.quadCount, open.topology.quadCount + open.topology.openEdges);
 }
 
-TEST(Topology, RandomCutsLeaveAManifoldWithBoundary) {
+TEST(CellTopology, RandomCutsLeaveAManifoldWithBoundary) {
   grid::FieldScale scale;
   scale.factor = 3;
   scale.distance = scale.narrowBand = true;
@@ -241,7 +241,7 @@ TEST(Topology, RandomCutsLeaveAManifoldWithBoundary) {
         if (random() % (seed % 2 == 0 ? 2 : 10) == 0) value.setActiveState(false);
       }
       Stages stages(*grid, scale, rule, false);
-      ASSERT_GT(stages.topology.cutEdges, 0U);
+      ASSERT_GT(stages.topology.openEdges, 0U);
       const auto found = tufa::test::inspect(stages.faces(*grid));
       EXPECT_GT(found.boundaryEdges, 0U);
       EXPECT_TRUE(found.manifold())

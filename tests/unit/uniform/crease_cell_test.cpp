@@ -50,13 +50,13 @@ TEST(CreaseCell, OnAPlaneIsOnOneSide) {
 
 TEST(CreaseCell, FindsTheCreasesAndTheCornerOfABox) {
   const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
-  int corners = 0, creases = 0, sides = 0;
+  int corners = 0, creases = 0, sheets = 0;
   forCells(distanceAroundBlock(box), [&](const Vec3& middle, const CreasePlacement& placement) {
     if (placement.planes == 0) return;
     const Vec3 point = middle + toVec3(placement.point);
     EXPECT_LT(std::abs(box(point)), 0.03) << middle;
     if (placement.planes == 1) {
-      ++sides;
+      ++sheets;
       return;
     }
     // On a crease two of the box's coordinates are at their end, at the corner all three.
@@ -66,12 +66,12 @@ TEST(CreaseCell, FindsTheCreasesAndTheCornerOfABox) {
     EXPECT_GE(ends, placement.planes) << middle << " " << off;
     (placement.planes == 3 ? corners : creases)++;
     for (int i = 0; i < placement.planes; ++i) {
-      EXPECT_GT(box.cosineToAxis(toVec3(placement.sides[i])), 0.98) << middle;
+      EXPECT_GT(box.cosineToAxis(toVec3(placement.sheets[i])), 0.98) << middle;
     }
   });
   EXPECT_LE(corners, 1);
   EXPECT_GT(creases, 8);
-  EXPECT_GT(sides, 20);
+  EXPECT_GT(sheets, 20);
 }
 
 TEST(CreaseCell, FindsNoCreaseOnASphere) {

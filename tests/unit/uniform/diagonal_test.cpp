@@ -7,7 +7,7 @@
 namespace tufa::uniform {
 namespace {
 
-using Kind = uniform::VertexSides::Kind;
+using Kind = uniform::VertexSheets::Kind;
 
 /// A quad around the z axis, its corners at (-1,-1), (1,-1), (1,1), (-1,1) and the heights given.
 Mesh quadOfHeights(double a, double b, double c, double d) {
@@ -73,14 +73,14 @@ TEST(SplitChooser, FollowsACreaseBeforeAllElse) {
   const float half = std::sqrt(0.5F);
   const Normal left(-half, 0, half), right(half, 0, half), up(0, 0, 1);
   mesh.normals = {left, up, right, up};
-  uniform::VertexSides sides(4);
-  sides.setKinds(0, {Kind::Near, Kind::Near, Kind::Near, Kind::Near});
-  sides.setMeeting(1, {2, {left, right}});
-  sides.setMeeting(3, {2, {left, right}});
+  uniform::VertexSheets sheets(4);
+  sheets.setKinds(0, {Kind::Near, Kind::Near, Kind::Near, Kind::Near});
+  sheets.setMeeting(1, {2, {left, right}});
+  sheets.setMeeting(3, {2, {left, right}});
   const SplitChooser chooser(mesh, mesh.quads[0], 1);
   const auto below = [] { return LatticeCrossing{Vec3(0, 0, -1), Vec3(0, 0, 1)}; };
   EXPECT_FALSE(chooser.isSecondDiagonalBetter(below));
-  EXPECT_TRUE(chooser.isSecondDiagonalBetterAtCrease(sides, below));
+  EXPECT_TRUE(chooser.isSecondDiagonalBetterAtCrease(sheets, below));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using test::distanceAroundBlock;
 /// The vertices of a field, with the cell that each lies in.
 struct Placed {
   Mesh mesh;
-  uniform::VertexSides sides;
+  uniform::VertexSheets sheets;
   std::vector<Coord> cells;
 };
 
@@ -28,10 +28,10 @@ Placed place(BlockField& field, int threads = 1) {
   Placed placed;
   base::Job job(threads, {});
   const auto topology =
-      uniform::buildTopology(field.blocks(), field.scale(), Ambiguity::Separate, false, job);
+      uniform::buildCellTopology(field.blocks(), field.scale(), Ambiguity::Separate, false, job);
   const grid::Affine affine(grid::transformOf(field.grid()));
   job.run([&] {
-    placed.sides =
+    placed.sheets =
         placeVertices(field.blocks(), field.scale(), topology, affine, true, placed.mesh, job);
   });
   for (const uniform::SurfaceBlock& block : topology.blocks) {
@@ -109,9 +109,9 @@ TEST(PlaceVertices, TellsWhichLieOnCreases) {
   const Placed placed = place(field);
   std::size_t sharp = 0;
   for (VertexIndex v = 0; v < placed.cells.size(); ++v) {
-    if (placed.sides.kind(v) != uniform::VertexSides::Kind::Meeting) continue;
+    if (placed.sheets.kind(v) != uniform::VertexSheets::Kind::Meeting) continue;
     ++sharp;
-    EXPECT_GE(placed.sides.sides(placed.mesh, v).count, 2);
+    EXPECT_GE(placed.sheets.sheets(placed.mesh, v).count, 2);
   }
   EXPECT_GT(sharp, 10U);
   EXPECT_LT(sharp, placed.cells.size() / 2);

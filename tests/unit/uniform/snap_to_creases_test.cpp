@@ -11,7 +11,7 @@
 namespace tufa::uniform {
 namespace {
 
-using Kind = VertexSides::Kind;
+using Kind = VertexSheets::Kind;
 
 const float kHalf = std::sqrt(0.5F);
 const Normal kLeft(-kHalf, 0, kHalf);
@@ -20,7 +20,7 @@ const Normal kRight(kHalf, 0, kHalf);
 /// A roof with its ridge along y at x = 0, z = 0, and quads that step over it.
 struct Roof {
   Mesh mesh;
-  VertexSides sides;
+  VertexSheets sheets;
 
   void add(double x, double y) {
     mesh.positions.emplace_back(x, y, -std::abs(x));
@@ -34,47 +34,47 @@ struct Roof {
     for (VertexIndex y = 0; y < 3; ++y) {
       mesh.quads.emplace_back(2 * y, 2 * y + 1, 2 * y + 3, 2 * y + 2);
     }
-    sides = VertexSides(mesh.positions.size());
-    sides.setKinds(0, std::vector<Kind>(mesh.positions.size(), Kind::Near));
+    sheets = VertexSheets(mesh.positions.size());
+    sheets.setKinds(0, std::vector<Kind>(mesh.positions.size(), Kind::Near));
   }
 };
 
-TEST(VertexSides, TellSidesApart) {
+TEST(VertexSheets, TellSidesApart) {
   Roof roof;
-  EXPECT_EQ(roof.sides.kind(0), Kind::Near);
-  EXPECT_EQ(roof.sides.sides(roof.mesh, 0).count, 1);
-  EXPECT_EQ(roof.sides.sides(roof.mesh, 0).normals[0], kLeft);
-  roof.sides.setMeeting(1, {2, {kLeft, kRight}});
-  EXPECT_EQ(roof.sides.sides(roof.mesh, 1).count, 2);
-  EXPECT_TRUE(roof.sides.isSharp(1));
-  roof.sides.setKinds(2, {Kind::Unknown});
-  EXPECT_EQ(roof.sides.sides(roof.mesh, 2).count, 0);
-  EXPECT_EQ(roof.sides.sharpCount(), 2U);
+  EXPECT_EQ(roof.sheets.kind(0), Kind::Near);
+  EXPECT_EQ(roof.sheets.sheets(roof.mesh, 0).count, 1);
+  EXPECT_EQ(roof.sheets.sheets(roof.mesh, 0).normals[0], kLeft);
+  roof.sheets.setMeeting(1, {2, {kLeft, kRight}});
+  EXPECT_EQ(roof.sheets.sheets(roof.mesh, 1).count, 2);
+  EXPECT_TRUE(roof.sheets.isSharp(1));
+  roof.sheets.setKinds(2, {Kind::Unknown});
+  EXPECT_EQ(roof.sheets.sheets(roof.mesh, 2).count, 0);
+  EXPECT_EQ(roof.sheets.sharpCount(), 2U);
 }
 
-TEST(QuadSides, FitWhereADiagonalFollowsTheCrease) {
+TEST(QuadSheets, FitWhereADiagonalFollowsTheCrease) {
   Roof roof;
   const Quad& quad = roof.mesh.quads[0];
-  EXPECT_EQ(QuadSides(roof.mesh, roof.sides, quad).count(), 2);
-  EXPECT_FALSE(QuadSides(roof.mesh, roof.sides, quad).fits(false));
-  EXPECT_FALSE(QuadSides(roof.mesh, roof.sides, quad).fits(true));
+  EXPECT_EQ(QuadSheets(roof.mesh, roof.sheets, quad).count(), 2);
+  EXPECT_FALSE(QuadSheets(roof.mesh, roof.sheets, quad).fits(false));
+  EXPECT_FALSE(QuadSheets(roof.mesh, roof.sheets, quad).fits(true));
   // Corners 1 and 3 on the ridge: the diagonal between them leaves one side on either side.
-  roof.sides.setMeeting(quad.vertices[1], {2, {kLeft, kRight}});
-  roof.sides.setMeeting(quad.vertices[3], {2, {kLeft, kRight}});
-  EXPECT_FALSE(QuadSides(roof.mesh, roof.sides, quad).fits(false));
-  EXPECT_TRUE(QuadSides(roof.mesh, roof.sides, quad).fits(true));
+  roof.sheets.setMeeting(quad.vertices[1], {2, {kLeft, kRight}});
+  roof.sheets.setMeeting(quad.vertices[3], {2, {kLeft, kRight}});
+  EXPECT_FALSE(QuadSheets(roof.mesh, roof.sheets, quad).fits(false));
+  EXPECT_TRUE(QuadSheets(roof.mesh, roof.sheets, quad).fits(true));
 }
 
 TEST(PromoteToCreases, MovesTheNearestVerticesOntoTheRidge) {
   Roof roof;
   const Mesh before = roof.mesh;
   base::Job job(2, {});
-  const std::size_t moved = promoteToCreases(roof.mesh, roof.sides, 1, job);
+  const std::size_t moved = snapToCreases(roof.mesh, roof.sheets, 1, job);
   EXPECT_GT(moved, 0U);
-  EXPECT_EQ(moved, roof.sides.sharpCount());
+  EXPECT_EQ(moved, roof.sheets.sharpCount());
   for (VertexIndex v = 0; v < before.positions.size(); ++v) {
     const Position& p = roof.mesh.positions[v];
-    if (roof.sides.kind(v) != Kind::Meeting) {
+    if (roof.sheets.kind(v) != Kind::Meeting) {
       EXPECT_EQ(p, before.positions[v]);
       continue;
     }
@@ -85,16 +85,16 @@ TEST(PromoteToCreases, MovesTheNearestVerticesOntoTheRidge) {
     EXPECT_NEAR(roof.mesh.normals[v].z, 1, 1e-6);
   }
   for (const Quad& quad : roof.mesh.quads) {
-    const QuadSides around(roof.mesh, roof.sides, quad);
+    const QuadSheets around(roof.mesh, roof.sheets, quad);
     EXPECT_TRUE(around.fits(false) || around.fits(true));
   }
 }
 
-/// A band of quads along y whose vertices lie on one of three sides each, or nobody knows where.
+/// A band of quads along y whose vertices lie on one of three sheets each, or nobody knows where.
 struct Band {
   static constexpr int kWidth = 6;
   Mesh mesh;
-  VertexSides sides;
+  VertexSheets sheets;
 
   Band(int from, int to) {
     std::vector<Kind> kinds;
@@ -118,8 +118,8 @@ struct Band {
         mesh.quads.emplace_back(at, at + 1, at + 1 + kWidth, at + kWidth);
       }
     }
-    sides = VertexSides(mesh.positions.size());
-    sides.setKinds(0, kinds);
+    sheets = VertexSheets(mesh.positions.size());
+    sheets.setKinds(0, kinds);
   }
 };
 
@@ -128,7 +128,7 @@ TEST(PromoteToCreases, DependsOnWhatIsNearAlone) {
   const auto promote = [](int from, int to) {
     Band band(from, to);
     base::Job job(2, {});
-    EXPECT_GT(promoteToCreases(band.mesh, band.sides, 1, job), 0U);
+    EXPECT_GT(snapToCreases(band.mesh, band.sheets, 1, job), 0U);
     return band.mesh;
   };
   const Mesh whole = promote(0, 400);
@@ -143,14 +143,14 @@ TEST(PromoteToCreases, DependsOnWhatIsNearAlone) {
 TEST(PromoteToCreases, LeavesWhatIsTooFar) {
   Roof roof;
   base::Job job(1, {});
-  EXPECT_EQ(promoteToCreases(roof.mesh, roof.sides, 0.2, job), 0U);  // in voxels of a fifth
+  EXPECT_EQ(snapToCreases(roof.mesh, roof.sheets, 0.2, job), 0U);  // in voxels of a fifth
 }
 
 TEST(PromoteToCreases, LeavesSmoothVertices) {
   Roof roof;
-  roof.sides = VertexSides(roof.mesh.positions.size());
+  roof.sheets = VertexSheets(roof.mesh.positions.size());
   base::Job job(1, {});
-  EXPECT_EQ(promoteToCreases(roof.mesh, roof.sides, 1, job), 0U);
+  EXPECT_EQ(snapToCreases(roof.mesh, roof.sheets, 1, job), 0U);
 }
 
 }  // namespace

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/polygons.h"
 #include "chunks/levels/seam_rim.h"
 #include "topology/dilate.h"
 
 namespace tufa::chunks {
 namespace {
 
-// So often edges are collapsed, each time without what went wrong and twice as much around it.
+// Tries at most, each without what went wrong and twice as far around it.
 constexpr int kMostTries = 4;
 // A collapse that saves less than this share of the triangles is not worth its time.
 constexpr double kLeastSaved = 0.05;
@@ -26,7 +27,7 @@ std::vector<std::uint8_t> LevelCollapser::findOwn(const SeamedCut& mesh) const {
   return own;
 }
 
-// Marks what must stay.
+// Marks what must stay, and limits the rest to its chunk.
 refine::Goal LevelCollapser::goalFor(const SeamedCut& mesh,
                                      std::vector<std::uint8_t>& fixed) const {
   const std::vector<std::uint8_t> own = findOwn(mesh);
@@ -47,12 +48,9 @@ refine::Goal LevelCollapser::goalFor(const SeamedCut& mesh,
 
   std::size_t count = 0;
   const auto isOwn = [&](VertexIndex vertex) { return own[vertex] != 0; };
-  for (const Quad& quad : mesh.made.mesh.quads) {
-    if (std::any_of(quad.vertices.begin(), quad.vertices.end(), isOwn)) count += 2;
-  }
-  for (const Triangle& triangle : mesh.made.mesh.triangles) {
-    if (std::any_of(triangle.vertices.begin(), triangle.vertices.end(), isOwn)) ++count;
-  }
+  base::forPolygons(mesh.made.mesh, [&](base::PolygonIndex, base::Corners v) {
+    if (std::any_of(v.begin(), v.end(), isOwn)) count += v.size() - 2;
+  });
   goal.giveUp = mesh.made.mesh.triangleCount() -
                 static_cast<std::size_t>(kLeastSaved * static_cast<double>(count));
   return goal;
@@ -117,8 +115,8 @@ SeamedCut LevelCollapser::collapse(const SeamedCut& mesh, const refine::Goal& go
   return result;
 }
 
-// Marks vertices of pairs, if there are more of them than before, and those of a larger error than
-// the tolerance and all errors before.
+// Marks vertices of pairs, if there are more pairs than before, and those with an error above the
+// tolerance and above all errors before.
 std::vector<std::uint8_t> LevelCollapser::findWorse(LevelMeshes& before, const LevelMeshes& now,
                                                     const Level& level) const {
   std::vector<std::uint8_t> worse(now.regular.cut.clusters.size(), 0);
@@ -159,7 +157,7 @@ std::vector<std::uint8_t> LevelCollapser::findWorse(LevelMeshes& before, const L
 }
 
 void LevelCollapser::measure(LevelMeshes& meshes, const Level& level) const {
-  // What was kept from the meshes before does not count here.
+  // A new Certifier, as one in use also reports errors of earlier meshes.
   const auto errorsOf = [&](const SeamedCut& mesh, std::vector<float>& errors) {
     if (!errors.empty()) return;
     distance::Certifier certifier(region_.base, region_.surface, level.rule, job_);

@@ -16,21 +16,22 @@
 
 namespace tufa::chunks {
 
-/// Collapses edges of a region's levels, see refine::simplifyCut(). What is on seams stays; what
-/// is beside them is joined as rimOf() says, so that strips to any line close the surface.
+/// Collapses edges of a region's LODs, see refine::simplifyCut(). Vertices on seams stay; those
+/// beside seams are joined only as rimOf() allows, so that strips to any polyline close the
+/// surface.
 class LevelCollapser {
  public:
-  /// What all levels share; must outlive the collapser.
+  /// What all LODs share; must outlive this object.
   struct Region {
     const uniform::SurfaceView base;            ///< with the seams' vertices
-    const distance::UniformReference& surface;  ///< of the base
-    const std::vector<Coord>& cells;            ///< of the base vertices but for the seams'
+    const distance::UniformReference& surface;  ///< of the uniform mesh
+    const std::vector<Coord>& cells;            ///< of the uniform vertices but for the seams'
     const Seams& seams;
     const ChunkCells& chunks;
-    const std::vector<std::uint8_t>& beyond;  ///< base quads that no chunk to be made reaches
+    const std::vector<std::uint8_t>& beyond;  ///< uniform quads that no chunk to be made reaches
     const LevelRepairer& repairer;
   };
-  /// One level.
+  /// One LOD.
   struct Level {
     octree::CutRule rule;
     double nextTolerance;            ///< of the transition mesh, voxels
@@ -40,13 +41,14 @@ class LevelCollapser {
 
   LevelCollapser(const Region& region, base::Job& job) : region_(region), job_(job) {}
 
-  /// Collapses the edges of a level's meshes, which are measured then; `certifier` is of the
-  /// level's rule. Where that makes a mesh worse it is tried again without what is around, and
-  /// given up at last.
+  /// Collapses the edges of an LOD's meshes and measures them; `certifier` has the LOD's rule.
+  /// Where a mesh has more pairs than before, or a larger error than both the tolerance and before,
+  /// the surroundings are fixed and all is tried again, twice as far each time; in the end nothing
+  /// is collapsed.
   void collapse(LevelMeshes& meshes, const Level& level, const refine::Repair* repair,
                 distance::Certifier& certifier) const;
 
-  /// Measures the errors of a level's meshes, of those that have none yet.
+  /// Measures the errors of those of an LOD's meshes that have none yet.
   void measure(LevelMeshes& meshes, const Level& level) const;
 
  private:

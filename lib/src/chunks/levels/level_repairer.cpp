@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "base/polygons.h"
 #include "base/single_precision.h"
 #include "chunks/levels/mixed_pairs.h"
 #include "refine/measured.h"
@@ -12,11 +13,11 @@
 namespace tufa::chunks {
 namespace {
 
-// How often the two meshes of a level are mended in turn.
+// How often the two meshes of an LOD are repaired alternately.
 constexpr int kMostFlips = 3;
 
-// Polygons of which each pair that meets has one: those of strips and of the pairs that another
-// mesh with the same clusters has.
+// The candidates of a mesh whose clusters another mesh has been searched with: strips, and a
+// polygon of each pair found there.
 std::vector<intersect::PolygonIndex> stripCandidatesOf(
     const SeamedCut& mesh, const std::vector<intersect::PolygonPair>& shared) {
   const auto firstStrip = static_cast<intersect::PolygonIndex>(mesh.firstStripPolygon());
@@ -31,8 +32,8 @@ std::vector<intersect::PolygonIndex> stripCandidatesOf(
   return candidates;
 }
 
-// Digits of a polygon's corners in their order. Of two different polygons all are as good as never
-// the same.
+// A hash of 128 bits of a polygon's corners in their order. Two different polygons practically
+// never have the same.
 std::array<std::uint64_t, 2> digitsOf(const Mesh& mesh, intersect::Corners corners) {
   std::array<std::uint64_t, 2> digits{corners.size(), 0};
   for (const VertexIndex vertex : corners) {
@@ -48,18 +49,10 @@ std::array<std::uint64_t, 2> digitsOf(const Mesh& mesh, intersect::Corners corne
   return digits;
 }
 
-template <class Body>
-void forPolygons(const Mesh& mesh, const Body& body) {
-  intersect::PolygonIndex polygon = 0;
-  for (const Quad& quad : mesh.quads) body(polygon++, intersect::Corners(quad.vertices));
-  for (const Triangle& triangle : mesh.triangles)
-    body(polygon++, intersect::Corners(triangle.vertices));
-}
-
-// Those that are not as they were when nothing met them.
+// The polygons that are not among the clean ones.
 std::vector<intersect::PolygonIndex> findNew(const Mesh& mesh, const LevelRepairer::Clean& clean) {
   std::vector<intersect::PolygonIndex> found;
-  forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
+  base::forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
     if (!std::binary_search(clean.begin(), clean.end(), digitsOf(mesh, corners))) {
       found.push_back(polygon);
     }
@@ -71,7 +64,7 @@ LevelRepairer::Clean findClean(const Mesh& mesh, const std::vector<intersect::Po
   std::vector<intersect::PolygonIndex> meeting = intersect::polygonsOf(pairs);
   std::sort(meeting.begin(), meeting.end());
   LevelRepairer::Clean clean;
-  forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
+  base::forPolygons(mesh, [&](intersect::PolygonIndex polygon, intersect::Corners corners) {
     if (!std::binary_search(meeting.begin(), meeting.end(), polygon)) {
       clean.push_back(digitsOf(mesh, corners));
     }
@@ -80,8 +73,8 @@ LevelRepairer::Clean findClean(const Mesh& mesh, const std::vector<intersect::Po
   return clean;
 }
 
-// Makes of one mesh, but for seams and strips, what another of the same cut is. Returns whether
-// that changed anything.
+// Makes one mesh, except for seams and strips, what another of the same cut is. Whether that
+// changed anything.
 bool takeShared(const SeamedCut& from, SeamedCut& to) {
   const Mesh& mesh = from.made.mesh;
   Mesh& own = to.made.mesh;
@@ -113,7 +106,7 @@ std::vector<intersect::PolygonPair> LevelRepairer::repairIntersections(
     p = mesh.isOnSeam(i) ? region_.seamPositions[mesh.seamAt(i)] : region_.affine.toWorld(p);
     if (region_.singlePrecision) p = base::toSingle(p);
   }
-  // Also those of the base mesh: they may meet what was clean before.
+  // Polygons of the uniform mesh too: they may intersect what has changed.
   if (clean != nullptr && !clean->empty()) candidates = findNew(mesh.made.mesh, *clean);
   refine::Source source;
   source.singlePrecision = region_.singlePrecision;

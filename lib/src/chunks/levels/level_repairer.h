@@ -13,17 +13,17 @@
 
 namespace tufa::chunks {
 
-/// What may move so that no polygons meet: vertices that stand for larger cells, or all but those
-/// on seams, which other chunks have too.
+/// What repair may move: vertices of larger cells, or all but those on seams, which other chunks
+/// have too.
 enum class Movable : std::uint8_t { Clusters, All };
 
-/// Takes the self-intersections out of a region's levels.
+/// Repairs the self-intersections of a region's LODs.
 class LevelRepairer {
  public:
-  /// What all levels share; must outlive the mender.
+  /// What all LODs share; must outlive this object.
   struct Region {
-    const std::vector<Coord>& cells;                      ///< of the base vertices
-    const std::vector<std::uint32_t>& uniformCandidates;  ///< see intersect::findSuspects()
+    const std::vector<Coord>& cells;                      ///< of the uniform vertices
+    const std::vector<std::uint32_t>& uniformCandidates;  ///< see intersect::findCandidates()
     const Seams& seams;
     const std::vector<Position>& seamPositions;  ///< of the vertices on seams, in the world
     const ChunkCells& chunks;
@@ -31,15 +31,16 @@ class LevelRepairer {
     bool singlePrecision;  ///< positions are rounded to floats
   };
 
-  /// The polygons of a level's regular mesh that met no others when it was mended last, by digits
-  /// of their corners; sorted. Where all is as it was then, nothing is searched again.
+  /// The polygons of an LOD's regular mesh that intersected no others after its last repair, by
+  /// digits of their corners; sorted. Pairs of such polygons are not searched again.
   using Clean = std::vector<std::array<std::uint64_t, 2>>;
 
   LevelRepairer(const Region& region, base::Job& job) : region_(region), job_(job) {}
 
-  /// Moves vertices and turns quads until no polygons meet, as they will be written, where that can
-  /// be; says which pairs are left. The two meshes of the level, which share all but their strips,
-  /// are mended in turn; or the regular one `alone`. Pairs of a strip of each are found only.
+  /// Moves vertices and flips diagonals until no polygons intersect, in positions as they will be
+  /// written, as far as possible; tells which pairs are left. The two meshes of the LOD, which
+  /// share all but polylines and strips, are repaired alternately, or the regular one `alone`.
+  /// Pairs of a strip of each are found but not repaired.
   void repairIntersections(LevelMeshes& meshes, bool alone, Movable movable, Clean& clean) const;
 
  private:

@@ -25,7 +25,7 @@ std::vector<intersect::PolygonPair> findMixedPairs(const SeamedCut& regular,
                                                    const std::vector<Position>& seamPositions,
                                                    const grid::Affine& affine, bool singlePrecision,
                                                    base::Job& job) {
-  // The strips of both as one mesh; what lies on a seam at the same place is one vertex.
+  // The strips of both meshes as one mesh; a vertex on a seam is the same in both.
   Mesh strips;
   const auto seamBegin = static_cast<VertexIndex>(regular.clusterCount);
   const auto addPosition = [&](const Position& p) {

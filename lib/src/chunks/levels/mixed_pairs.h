@@ -10,10 +10,11 @@
 
 namespace tufa::chunks {
 
-/// Finds strips that meet although neither mesh of a level has both: of one chunk, one with the
-/// lines of its own level on a face, one with those of the next level on another face. Of each pair
-/// `a` is a polygon of `regular`, `b` one of `transition`; the two share all but lines and strips.
-/// `seamPositions` are those of the seams' vertices in the world; `affine` takes the others there.
+/// Finds strips that intersect although neither mesh of an LOD has both: two of one chunk, one to
+/// its own polyline on a face, the other to that of the next LOD on another face, as a mask may
+/// combine them. Of each pair `a` is a polygon of `regular`, `b` one of `transition`; the two
+/// meshes share all but polylines and strips. `seamPositions` are the seams' vertices in the world;
+/// `affine` takes the others there.
 [[nodiscard]] std::vector<intersect::PolygonPair> findMixedPairs(
     const SeamedCut& regular, const SeamedCut& transition, const Seams& seams,
     const std::vector<Position>& seamPositions, const grid::Affine& affine, bool singlePrecision,

@@ -21,20 +21,20 @@
 namespace tufa::chunks {
 namespace {
 
-// What of the tolerance a polyline may use up on its face.
+// Share of the tolerance that a polyline may use on its face.
 constexpr double kLineShare = 0.5;
 // And never more than this, in voxels: where the surface is nearly flat on the face, what lies
 // beside the polyline would be on its other side.
 constexpr double kMostOff = 1.5;
-// Up to so far from its curve, in voxels, a line is near the base mesh beside it.
+// A polyline up to this far from its curve, in voxels, is near the uniform mesh beside it.
 constexpr double kNearLine = 1;
-// After so many rounds no cells are split any more because polygons meet: where they still do, as
-// on white noise, smaller cells do not help.
+// After so many rounds no more cells are split because of intersections: where there still are any,
+// as on white noise, smaller cells do not help.
 constexpr int kMostRounds = 12;
 // Cells are merged at this share of the tolerance where edges will be collapsed.
 constexpr double kCutShare = 0.5;
 
-// The cell of each base vertex.
+// The cell of each uniform vertex.
 std::vector<Coord> cellsOf(const uniform::SurfaceView& base, base::Job& job) {
   std::vector<Coord> cells(base.topology.vertexCount);
   job.forRanges(base.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
@@ -60,8 +60,8 @@ std::vector<Coord> cellsOf(const uniform::SurfaceView& base, base::Job& job) {
   return cells;
 }
 
-// Vertices that stand for a crease that passes between cells may lie beyond the faces of their
-// chunk: they are brought back, and the crease is cut off there.
+// Moves vertices that a crease drew beyond the faces of their chunk back into it; the crease is cut
+// off there.
 void keepInChunks(std::vector<Position>& positions, const std::vector<Coord>& cells,
                   const ChunkCells& chunks, const grid::Affine& affine, base::Job& job) {
   job.forRanges(positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -134,7 +134,7 @@ class RegionMaker {
     const octree::CutRule rule = ruleFor(options_.tolerances[level]);
     const octree::CutRule cutRule = ruleFor((options_.simplify ? kCutShare : 1) * rule.tolerance);
     const bool last = level + 1 == options_.tolerances.size();
-    // Where the next level has the same lines, there is but one mesh.
+    // If the next LOD has the same polylines, one mesh serves as both.
     const bool alone = last || lines_[level + 1] == lines_[level];
     octree::CellFlags forbidden = forbidden_;
     Certifier regular(seamBase_, surface_, cutRule, job_);
@@ -189,7 +189,7 @@ class RegionMaker {
     return mesh;
   }
 
-  // Base quads with a vertex in a chunk that is not made, and their middle there.
+  // Uniform quads with a vertex and their middle in chunks that are not made.
   [[nodiscard]] std::vector<std::uint8_t> findBeyond() const {
     std::vector<std::uint8_t> beyond(mesh_.quads.size(), 0);
     const auto isOwn = [&](const Coord& cell) {
@@ -226,8 +226,8 @@ class RegionMaker {
                               mesh.cut, options_.rule.minLevel, forbidden);
   }
 
-  // Where cells do not help strips that meet others, they are made as their arcs run: like the base
-  // mesh. Returns whether there are any.
+  // Where splitting cells does not help, strips that intersect others run as their arcs do, like
+  // the uniform mesh. Whether there are any.
   bool straighten(const SeamedCut& mesh, const std::vector<intersect::PolygonPair>& pairs,
                   SideFlags& direct) const {
     const std::size_t firstStrip = mesh.firstStripPolygon();
@@ -242,7 +242,7 @@ class RegionMaker {
     return any;
   }
 
-  // Splits the cells of polygons that meet; returns whether there are any.
+  // Splits the cells of polygons that intersect. Whether there are any.
   bool splitPairs(const LevelMeshes& meshes, octree::CellFlags& forbidden) {
     bool split = splitPairs(meshes.regular, meshes.pairs, forbidden);
     split |= splitPairs(meshes.transition, meshes.transitionPairs, forbidden);
@@ -276,17 +276,17 @@ class RegionMaker {
   const ChunkCells& chunks_;
   const RegionOptions& options_;
   base::Job& job_;
-  std::vector<Coord> cells_;  ///< of the base vertices
-  Mesh mesh_;                 ///< the base mesh, no vertex of it outside of its chunk
+  std::vector<Coord> cells_;  ///< of the uniform vertices
+  Mesh mesh_;                 ///< the uniform mesh, all vertices in their chunks
   uniform::SurfaceView base_;
   octree::ClusterForest forest_;
-  Mesh before_;  ///< the base mesh before its repair, no vertex of it outside of its chunk
+  Mesh before_;  ///< mesh_ before its repair
   Seams seams_;
   std::vector<Position> seamPositions_;  ///< in the world
   uniform::SurfaceView seamBase_;        ///< with the seams' vertices
   distance::UniformReference surface_;
   LevelRepairer repairer_;
-  std::vector<SeamPolylines> lines_;  ///< of each level
+  std::vector<SeamPolylines> lines_;  ///< of each LOD
   octree::CellFlags forbidden_;
   std::vector<std::uint8_t> beyond_;
   LevelCollapser collapser_;

@@ -11,20 +11,22 @@
 
 namespace tufa::chunks {
 
-/// How the chunks of a region are made.
+/// How the chunks of a region are made. A region is a box of chunks that are built together.
 struct RegionOptions {
   octree::CutRule rule;            ///< but for its tolerance
-  std::vector<double> tolerances;  ///< of the levels, voxels
-  bool repair = true;              ///< split cells until no two polygons meet
+  std::vector<double> tolerances;  ///< of the LODs, voxels
+  bool repair = true;              ///< split cells until no two polygons intersect
   bool simplify = true;            ///< collapse edges inside the chunks
   bool singlePrecision = false;    ///< positions are rounded to floats
 };
 
-/// Makes the chunks of a region that the surface passes, in the order of their indices. `level0`
+/// Makes the chunks of a region that the surface passes, in the order of their indices. `model`
 /// must hold all blocks of these chunks and those that touch them.
 ///
-/// Each level is a cut of the region's forest in which every chunk is a cut of its own. It is
-/// measured, and cells are split, with the seams of its level and with those of the next.
+/// Each LOD is a cut of the region's forest in which every chunk is a cut of its own. It is
+/// repaired and measured with its own boundary polylines and with those of the next LOD; where it
+/// is at fault, cells are split. Chunks of neighbouring regions fit: what both share, vertices and
+/// polylines on seams, depends on what is near the face alone.
 [[nodiscard]] std::vector<MadeChunk> makeRegion(const refine::SurfaceModel& model,
                                                 const ChunkCells& chunks,
                                                 const RegionOptions& options, base::Job& job);

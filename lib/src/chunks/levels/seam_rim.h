@@ -9,9 +9,9 @@
 
 namespace tufa::chunks {
 
-/// What the clusters of a mesh stand for on its seams: as long as each stands for one stretch of a
-/// curve, and of a closed one in one quadrant, strips to any line close the surface. Clusters of
-/// which that is not true already, and vertices on seams, are marked in `fixed`.
+/// The stretches that the clusters of a mesh stand for on its seams. As long as each stands for one
+/// stretch of a curve, and of a closed one in one quadrant, strips to any polyline close the
+/// surface. Clusters that break this rule already, and vertices on seams, are marked in `fixed`.
 [[nodiscard]] refine::Rim rimOf(const SeamedCut& mesh, const Seams& seams,
                                 std::vector<std::uint8_t>& fixed);
 

@@ -3,33 +3,31 @@
 #include <algorithm>
 #include <array>
 
+#include "base/polygons.h"
 #include "chunks/levels/stitch.h"
 #include "chunks/seams/curve_side.h"
 
 namespace tufa::chunks {
 namespace {
 
-// Which vertices of the chunks a strip may join.
+// Tells which vertices of the chunks a strip may join by an edge.
 class Joints {
  public:
-  // Strips see their own side of a curve only. An edge between two vertices that both lie beside
-  // several curves might come up in several strips.
+  // A strip knows its own side of a curve only. An edge between two vertices that both lie beside
+  // several curves might occur in several strips, and one that the mesh has already would be used
+  // twice.
   Joints(const Mesh& mesh, const std::vector<VertexIndex>& beside, std::size_t vertexCount)
       : curves_(vertexCount, 0) {
     for (const VertexIndex vertex : beside) curves_[vertex] = kBeside;
     const auto add = [&](VertexIndex a, VertexIndex b) {
       if (curves_[a] != 0 && curves_[b] != 0) edges_.emplace_back(std::min(a, b), std::max(a, b));
     };
-    for (const Quad& quad : mesh.quads) {
-      const auto& v = quad.vertices;
-      for (int i = 0; i < 4; ++i) add(v[i], v[(i + 1) % 4]);
+    base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+      for (std::size_t i = 0; i < v.size(); ++i) add(v[i], v[(i + 1) % v.size()]);
+      if (v.size() < 4) return;
       add(v[0], v[2]);
-      add(v[1], v[3]);  // mending may turn it
-    }
-    for (const Triangle& triangle : mesh.triangles) {
-      const auto& v = triangle.vertices;
-      for (int i = 0; i < 3; ++i) add(v[i], v[(i + 1) % 3]);
-    }
+      add(v[1], v[3]);  // the repair may flip it
+    });
     std::sort(edges_.begin(), edges_.end());
   }
 
@@ -50,8 +48,8 @@ class Joints {
   std::vector<std::pair<VertexIndex, VertexIndex>> edges_;  // between such vertices
 };
 
-// Begins a mesh of `cut` with the vertices of the lines behind those of the clusters. Returns the
-// vertex of each seam vertex that is on a line.
+// Starts a mesh of `cut` with the vertices of the polylines behind those of the clusters. Returns
+// the mesh vertex of each seam vertex that is on a polyline.
 std::vector<VertexIndex> addLines(const Seams& seams, const SeamPolylines& lines, octree::Cut cut,
                                   SeamedCut& result) {
   result.clusterCount = static_cast<VertexIndex>(cut.clusters.size());
@@ -77,8 +75,8 @@ bool isSet(const SideFlags& flags, const StripPlace& place) {
   return !flags.empty() && flags[place.number()] != 0;
 }
 
-// Adds the strips on both sides of all seams, where the chunk is to be made, but for those that are
-// kept; empty: none.
+// Adds the strips on both sides of all seams in chunks to be made, except those that are kept;
+// empty: none are.
 void addStrips(const Seams& seams, const SeamPolylines& lines,
                const std::vector<VertexIndex>& seamVertices, const ChunkCells& chunks,
                const SideFlags& kept, SeamedCut& result) {
@@ -120,7 +118,8 @@ void addStrips(const Seams& seams, const SeamPolylines& lines,
   }
 }
 
-// Marks the sides of curves where what is left of the strips has no edge across more than twice.
+// Marks the sides of curves on which no edge across is used more than twice by what is left of the
+// strips.
 SideFlags findClosed(const SeamedCut& before, const std::vector<StripLeft>& left,
                      const Seams& seams, const SeamedCut& result) {
   using Edge = std::array<std::size_t, 3>;  // of a side: cluster and seam vertex
@@ -142,7 +141,7 @@ SideFlags findClosed(const SeamedCut& before, const std::vector<StripLeft>& left
   return closed;
 }
 
-// Adds what is left of the strips that are kept.
+// Adds what is left of the strips to be kept.
 void keepStrips(const SeamedCut& before, const std::vector<StripLeft>& left, const SideFlags& kept,
                 SeamedCut& result) {
   const std::size_t first = before.firstStrip();
@@ -155,7 +154,7 @@ void keepStrips(const SeamedCut& before, const std::vector<StripLeft>& left, con
   }
 }
 
-// Quads whose diagonal is an edge of a strip are split along the other one.
+// Flips the diagonals of quads that are edges of a strip.
 void partDiagonals(SeamedCut& result) {
   Mesh& mesh = result.made.mesh;
   std::vector<std::pair<VertexIndex, VertexIndex>> edges;

@@ -11,7 +11,7 @@
 
 namespace tufa::chunks {
 
-/// A side of a curve.
+/// One side of a curve.
 struct StripPlace {
   std::uint32_t curve = 0;  ///< in Seams::curves
   bool above = false;       ///< in the chunk above the face
@@ -23,17 +23,16 @@ struct StripPlace {
 /// A flag for each side of each curve, by StripPlace::number(); empty: none is set.
 using SideFlags = std::vector<std::uint8_t>;
 
-/// The mesh of a cut, parted at the seams.
+/// The mesh of a cut, divided at the seams, with strips.
 struct SeamedCut {
-  octree::Cut cut;  ///< of the base mesh with the seams' vertices
+  octree::Cut cut;  ///< of the uniform mesh with the seams' vertices
   octree::CutMesh made;
-  /// The strip that each of the last triangles is in: all others are inside their chunks.
+  /// The strip of each of the last triangles; all other polygons are inside their chunks.
   std::vector<StripPlace> strips;
-  VertexIndex clusterCount = 0;   ///< vertices from here on are on seams
-  std::vector<SeamIndex> seamOf;  ///< of each of these
-  std::vector<VertexIndex>
-      altered;       ///< vertices of pieces and seams: not as the base mesh has them
-  SideFlags direct;  ///< sides whose strips run as the arcs do, see stitch()
+  VertexIndex clusterCount = 0;      ///< vertices from here on are on seams
+  std::vector<SeamIndex> seamOf;     ///< of each of these
+  std::vector<VertexIndex> altered;  ///< beside and on seams: not as in the uniform mesh
+  SideFlags direct;                  ///< sides whose strips run as the arcs do, see stitch()
 
   /// The first triangle that is in a strip, counted among triangles and among all polygons.
   [[nodiscard]] std::size_t firstStrip() const {
@@ -46,29 +45,29 @@ struct SeamedCut {
   [[nodiscard]] SeamIndex seamAt(VertexIndex vertex) const { return seamOf[vertex - clusterCount]; }
 };
 
-/// Takes the mesh of `cut`, which is one of the base mesh, with its seams as `lines` have them and
-/// strips along these in the chunks to be made, those of `direct` as their arcs run. `vertexCells`
-/// has the cell of each base vertex.
+/// The mesh of `cut`, a cut of the uniform mesh, with boundary polylines as in `lines` and strips
+/// to them in the chunks to be made; strips of `direct` run as their arcs do. `vertexCells` has the
+/// cell of each uniform vertex.
 [[nodiscard]] SeamedCut meshWithSeams(const octree::ClusterForest& forest, octree::Cut cut,
                                       const Seams& seams, const SeamPolylines& lines,
                                       const std::vector<Coord>& vertexCells,
                                       const ChunkCells& chunks, const grid::Affine& affine,
                                       SideFlags direct, base::Job& job);
 
-/// What became of a triangle in a strip where vertices of its mesh were joined.
+/// A triangle of a strip after vertices of its mesh were joined.
 struct StripLeft {
-  std::size_t strip = 0;  ///< its number in SeamedCut::strips
+  std::size_t strip = 0;  ///< its index in SeamedCut::strips
   Triangle triangle;      ///< in the mesh as it is now
 };
 
-/// The triangles in strips of `before` that have three vertices still, in order; `now` is a cut of
-/// the same base vertices.
+/// The triangles in strips of `before` that still have three distinct vertices, in order; `now` is
+/// a cut of the same uniform vertices.
 [[nodiscard]] std::vector<StripLeft> stripsLeft(const SeamedCut& before, const octree::Cut& now);
 
-/// The inside of a mesh with the lines of another one, `before`, which shared all but lines and
-/// strips with what became the mesh by joining vertices. Strips are what became of those of
-/// `before`; where that does not close the surface, as may be along a closed curve, they are made
-/// anew.
+/// The inside of `mesh` with the polylines of `before`, which shared all but polylines and strips
+/// with what became `mesh` by joining vertices. Strips are what remains of those of `before`; where
+/// that would use an edge more than twice, as may happen along a closed curve, they are built
+/// again.
 [[nodiscard]] SeamedCut withStripsOf(const SeamedCut& before, const SeamedCut& mesh,
                                      const Seams& seams, const SeamPolylines& lines,
                                      const ChunkCells& chunks);

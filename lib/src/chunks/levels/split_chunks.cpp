@@ -54,7 +54,7 @@ void ChunkSplitter::addLevel(const LevelMeshes& meshes, const SeamPolylines& lin
   countPairs(meshes, regular, transition);
 }
 
-// Pairs that both meshes have count once.
+// Counts the pairs of each chunk; those that both meshes have count once.
 void ChunkSplitter::countPairs(const LevelMeshes& meshes,
                                const std::vector<std::vector<Piece>>& regular,
                                const std::vector<std::vector<Piece>>& transition) {
@@ -89,7 +89,7 @@ std::vector<MadeChunk> ChunkSplitter::takeChunks() {
   return chunks;
 }
 
-// Every polygon has a cluster, and that lies in its chunk.
+// Assigns polygons to chunks: each has a vertex of a cluster, which lies in its chunk.
 void ChunkSplitter::sortPieces(const SeamedCut& mesh,
                                std::vector<std::vector<Piece>>& pieces) const {
   std::vector<std::int32_t> chunkOfCluster(mesh.clusterCount, ChunkCells::kNotOwn);

@@ -13,35 +13,37 @@
 
 namespace tufa::chunks {
 
-/// One level of a region: with the seams of its own, and with those of the next level, if any.
+/// The two meshes of one LOD of a region: with its own boundary polylines, and with those of the
+/// next LOD, if any.
 struct LevelMeshes {
   SeamedCut regular;
   SeamedCut transition;
   std::vector<float> regularErrors;                     ///< at each vertex, voxels
   std::vector<float> transitionErrors;                  ///< at each vertex, voxels
-  std::vector<intersect::PolygonPair> pairs;            ///< of the regular mesh that meet
-  std::vector<intersect::PolygonPair> transitionPairs;  ///< of the transition mesh that meet
+  std::vector<intersect::PolygonPair> pairs;            ///< of the regular mesh that intersect
+  std::vector<intersect::PolygonPair> transitionPairs;  ///< of the transition mesh that intersect
   std::vector<intersect::PolygonPair> mixedPairs;       ///< see findMixedPairs()
 };
 
-/// A chunk, and for each of its levels the number of pairs of its polygons that meet.
+/// A chunk, and for each of its LODs the number of intersecting pairs left.
 struct MadeChunk {
   Chunk chunk;
   std::vector<std::size_t> pairsLeft;
 };
 
-/// Hands the meshes of a region's levels out to its chunks.
+/// Divides the meshes of a region's LODs among its chunks.
 class ChunkSplitter {
  public:
-  /// The cell of each base vertex, the seams and where they are in the world; and what must outlive
-  /// this object.
+  /// `vertexCells` has the cell of each uniform vertex, `seamPositions` the seams' vertices in the
+  /// world. References must outlive this object.
   ChunkSplitter(const std::vector<Coord>& vertexCells, const Seams& seams,
                 const std::vector<Position>& seamPositions, const ChunkCells& chunks,
                 const grid::Affine& affine, bool singlePrecision);
 
-  /// Levels come finest first. `next` are the lines of the next level, null for the last.
+  /// Adds an LOD, finest first. `next` has the boundary polylines of the next LOD, null for the
+  /// last.
   void addLevel(const LevelMeshes& meshes, const SeamPolylines& lines, const SeamPolylines* next);
-  /// Chunks that the surface passes, by their indices.
+  /// The chunks that the surface passes, in the order of their indices.
   [[nodiscard]] std::vector<MadeChunk> takeChunks();
 
  private:
@@ -70,9 +72,9 @@ class ChunkSplitter {
   const ChunkCells& chunks_;
   const grid::Affine& affine_;
   bool singlePrecision_;
-  std::vector<std::int32_t> chunkOf_;  // of each base vertex
+  std::vector<std::int32_t> chunkOf_;  // of each uniform vertex
   std::vector<MadeChunk> made_;        // by chunk number
-  // The number that each cluster and each vertex on a seam has in the chunk at work.
+  // The index of each cluster and each vertex on a seam in the chunk at hand.
   std::vector<VertexIndex> clusterNumbers_, seamNumbers_;
   std::vector<VertexIndex> numberedClusters_, numberedSeams_;
 };

@@ -9,7 +9,7 @@
 namespace tufa::chunks {
 namespace {
 
-// A small mesh of vertices of a larger one, numbered in the order of their numbers there.
+// A small mesh of some polygons of a larger one, its vertices in the same order.
 class Extract {
  public:
   std::vector<std::array<VertexIndex, 3>> triangles;
@@ -90,7 +90,7 @@ FaceValidation StripValidation::ofFace(std::size_t begin, std::size_t end, bool 
 
 void StripValidation::lookAtSide(std::size_t begin, std::size_t end, bool above,
                                  const SeamPolylines& lines, Seen& seen, LineFaults& faults) const {
-  // Seam vertices are numbered behind those of the base mesh.
+  // Seam vertices are numbered behind the uniform ones.
   const auto baseCount = static_cast<VertexIndex>(positions_.size() - seams_.vertices.size());
   const auto note = [&](const std::array<VertexIndex, 3>& triangle, std::vector<SeamIndex>& found) {
     for (const VertexIndex vertex : triangle) {
@@ -120,7 +120,7 @@ void StripValidation::lookAtSide(std::size_t begin, std::size_t end, bool above,
   quads.erase(std::unique(quads.begin(), quads.end()), quads.end());
   for (const std::uint32_t quad : quads) extract.quads.push_back(quads_[quad].vertices);
   Mesh mesh = extract.mesh(positions_);
-  // Triangles that were there in the trial before meet what they met then, and new ones.
+  // A triangle of the validation before intersects what it did then; only new ones are searched.
   std::vector<intersect::PolygonIndex> candidates;
   const auto first = static_cast<intersect::PolygonIndex>(mesh.quads.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

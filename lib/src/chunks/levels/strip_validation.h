@@ -13,29 +13,30 @@
 
 namespace tufa::chunks {
 
-/// Tries lines with the finest strips there are: those between them and the base mesh's own
-/// vertices, as it was before the repair. Lines that are sound with these can be had without
-/// intersections, whatever else the chunks beside them are like, as their cells can be split down
-/// to such strips. Depends on what is near the face alone.
+/// Validates boundary polylines with the finest strips there are: those to the vertices of the
+/// uniform mesh itself, before its repair. Both chunks at a face must choose the same polyline
+/// without seeing each other, so it cannot be repaired later. If it is sound with these strips,
+/// every chunk can reach strips without intersections by splitting its cells down to them. Depends
+/// on what is near the face alone.
 class StripValidation {
  public:
-  /// `before` is the base mesh before its repair; it and the seams must outlive the trial.
+  /// `before` is the uniform mesh before its repair; it and the seams must outlive this object.
   /// `vertexCells` has the cell of each of its vertices.
   StripValidation(const Mesh& before, const Seams& seams, const std::vector<Coord>& vertexCells,
                   const ChunkCells& chunks, const grid::Affine& affine, base::Job& job);
 
-  /// A trial of the curves `begin` to `end`, which are those of one face. Where lines may be `far`
-  /// from the base mesh's own curves they meet polygons that larger cells will not have: then
-  /// triangles that meet others count as folded ones do.
+  /// A validation of the curves `begin` to `end`, which are those of one face. Polylines that may
+  /// be `far` from the uniform mesh's own curves intersect polygons that larger cells will not
+  /// have; then triangles that intersect others count as folded ones do.
   [[nodiscard]] FaceValidation ofFace(std::size_t begin, std::size_t end, bool far) const;
 
  private:
   using StripCorners = std::array<VertexIndex, 3>;
-  // What was seen of a side of a face in the trials before.
+  // What earlier validations found on one side of a face.
   struct Seen {
     std::vector<StripCorners> triangles;                     ///< sorted
-    std::vector<std::pair<StripCorners, StripCorners>> met;  ///< of pairs; a polygon that is not of
-                                                             ///< a strip is like the other one
+    std::vector<std::pair<StripCorners, StripCorners>> met;  ///< pairs; for a polygon that is not
+                                                             ///< of a strip, the other one again
   };
   void lookAtSide(std::size_t begin, std::size_t end, bool above, const SeamPolylines& lines,
                   Seen& seen, LineFaults& faults) const;
@@ -43,8 +44,9 @@ class StripValidation {
   const std::vector<Quad>& quads_;
   const Seams& seams_;
   base::Job& job_;
-  std::vector<Position> positions_;  ///< of the base vertices, then of those on seams
-  /// Base vertices beside faces, each with the base quads at it that lie in one chunk; sorted.
+  std::vector<Position> positions_;  ///< of the uniform vertices, then of those on seams
+  /// Uniform vertices beside faces, each with the uniform quads at it that lie in one chunk;
+  /// sorted.
   std::vector<std::pair<VertexIndex, std::uint32_t>> quadsAt_;
 };
 

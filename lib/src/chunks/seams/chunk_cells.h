@@ -28,8 +28,8 @@ struct ChunkCells {
     const Coord dim = own.size();
     return own.min + Coord(number / (dim[1] * dim[2]), number / dim[2] % dim[1], number % dim[2]);
   }
-  /// Lattice coordinates, counted from `from`, brought into the chunk of `cell` if they lie beyond
-  /// its faces or on them. Different points stay different.
+  /// Moves lattice coordinates, counted from `from`, into the chunk of `cell` if they lie beyond
+  /// its faces or on them. Strictly monotonic, so different points stay different.
   [[nodiscard]] Vec3 keepInside(Vec3 at, const Coord& from, const Coord& cell) const {
     const auto standOff = [](double distance) {
       return distance >= kOffFace ? distance : kOffFace / (1 + kOffFace - distance);

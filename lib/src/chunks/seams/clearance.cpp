@@ -11,7 +11,7 @@
 namespace tufa::chunks {
 namespace {
 
-// Arcs are looked at that lie in the same square of so many cells (log2), or in one beside it.
+// Arcs are searched in the same square of so many cells (log2) and in those around it.
 constexpr int kSquareLevel = 3;
 
 // The arcs of one face by squares of cells.

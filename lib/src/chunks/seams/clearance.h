@@ -5,7 +5,7 @@
 
 namespace tufa::chunks {
 
-/// Sets Arc::clearance of all arcs. What is looked at lies on their own faces.
+/// Sets Arc::clearance of all arcs, from arcs on their own faces alone.
 void measureClearance(const grid::Affine& affine, Seams& seams);
 
 }  // namespace tufa::chunks

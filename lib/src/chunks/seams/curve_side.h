@@ -9,8 +9,8 @@
 
 namespace tufa::chunks {
 
-/// One side of a curve as the chunk there sees it. tileOf(base vertex) and vertexOf(seam vertex)
-/// give the numbers that the side has for them.
+/// One side of a curve in the order of the chunk there. tileOf(uniform vertex) and vertexOf(seam
+/// vertex) give the indices that this side has for them.
 template <class TileOf, class VertexOf>
 [[nodiscard]] ChunkSeam sideOf(const SeamCurve& curve, bool above, const Seams& seams,
                                const SeamPolylines& lines, const TileOf& tileOf,

@@ -8,13 +8,14 @@
 
 namespace tufa::chunks {
 
-/// A straight stretch of a curve on its face.
+/// A straight segment of a curve on its face.
 struct FaceSegment {
   std::size_t line, from, to;  ///< its curve, and its ends there
   std::array<double, 2> a, b;  ///< where they are, along the axes of the face
 };
 
-/// Whether two segments meet elsewhere than in a common end.
+/// Whether two segments intersect elsewhere than in a common end. In floating point: nearly
+/// touching ones may count either way.
 [[nodiscard]] inline bool intersectElsewhere(const FaceSegment& s, const FaceSegment& t) {
   if (s.a == t.a || s.a == t.b || s.b == t.a || s.b == t.b) return false;
   const auto side = [](const auto& a, const auto& b, const auto& c) {
@@ -25,8 +26,8 @@ struct FaceSegment {
   return sa * sb <= 0 && ta * tb <= 0 && !(sa == 0 && sb == 0);
 }
 
-/// Sorts segments of one face from left to right, and calls body(i, j) for each two of them that
-/// meet elsewhere than in a common end.
+/// Sorts segments of one face from left to right, and calls body(i, j) for each two that intersect
+/// elsewhere than in a common end. Cost: a sweep that compares all that overlap from left to right.
 template <class Body>
 void forCrossings(std::vector<FaceSegment>& segments, const Body& body) {
   std::sort(segments.begin(), segments.end(), [](const FaceSegment& s, const FaceSegment& t) {

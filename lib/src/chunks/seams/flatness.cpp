@@ -7,12 +7,12 @@
 namespace tufa::chunks {
 namespace {
 
-// So many steps around an arc are looked at: no farther than the margin around the chunks is sound.
+// Steps around an arc that are searched: no more than the margin around the chunks allows.
 constexpr int kRings = 5;
 
 using Edge = std::pair<VertexIndex, VertexIndex>;
 
-// The edges of the base mesh that many steps around all arcs, in both directions, sorted.
+// The edges of the uniform mesh within kRings steps of any arc, in both directions, sorted.
 std::vector<Edge> edgesNear(const Mesh& base, const std::vector<Arc>& arcs) {
   std::vector<std::uint8_t> near(base.positions.size(), 0);
   for (const Arc& arc : arcs) near[arc.below] = near[arc.above] = 1;
@@ -62,7 +62,7 @@ void measureFlatness(const Mesh& base, const Mesh& before, const grid::Affine& a
       for (; begin < end; ++begin) {
         const VertexIndex from = found[begin];
         const Position& p = before.positions[from];
-        worst = std::max(worst, std::abs(normal.dot(Vec3(p.x, p.y, p.z) - point)));
+        worst = std::max(worst, std::abs(normal.dot(Vec3(p) - point)));
         if (ring == kRings) continue;
         auto edge = std::lower_bound(edges.begin(), edges.end(), Edge(from, 0));
         for (; edge != edges.end() && edge->first == from; ++edge) {

@@ -7,8 +7,8 @@
 
 namespace tufa::chunks {
 
-/// Sets Arc::flatness of all arcs. What is looked at lies within a few cells of their faces.
-/// `before` has the positions of `base` before its repair.
+/// Sets Arc::flatness of all arcs, from vertices within a few cells of their faces. `before` has
+/// the positions of `base` before its repair.
 void measureFlatness(const Mesh& base, const Mesh& before, const grid::Affine& affine,
                      Seams& seams);
 

@@ -14,16 +14,17 @@ namespace tufa::chunks {
 namespace {
 
 constexpr std::size_t kLeastOfLoop = 3;
-// A segment may be so many times longer than the limit, in arcs; where strips would be folded it is
-// split down to the limit.
+// A segment may be this many times longer than the limit, in arcs; where strips would be folded it
+// is split down to the limit.
 constexpr double kLongest = 4;
-// What an arc more adds to the length that a segment may have.
+// How much the limit grows from arc to arc.
 constexpr double kGrowth = 1;
-// How much of the way to a side that faces the other way a line may go.
+// Share of the clearance that a polyline may use.
 constexpr double kClearShare = 1.0 / 3;
 
-// One curve on its way to a polyline. Nodes are its points in order: the one on the chunk edge at
-// its begin, if any, the arcs, the one at its end.
+// One curve while it becomes a polyline. Nodes are its points in order: the one on the chunk edge
+// at its beginning, if any, the arcs, the one at its end. Chosen nodes are the vertices of the
+// polyline; they are only ever added.
 class Line {
  public:
   Line(const Seams& seams, const SeamCurve& curve, const grid::Affine& affine,
@@ -31,7 +32,7 @@ class Line {
       : seams_(seams), curve_(curve) {
     const auto add = [&](SeamIndex index) {
       const SeamVertex& vertex = seams.vertices[index];
-      // Counted from the chunk's corner: the same digits whatever is around.
+      // Counted from the first arc's cell: the same bits in every region.
       const Vec3 at = Vec3(vertex.cell - seams.vertices[curve.arcs[0]].cell) + vertex.offset;
       points_.push_back(affine.axis(0) * at[0] + affine.axis(1) * at[1] + affine.axis(2) * at[2]);
       budget_.push_back(budget(Vec3(vertex.cell) + vertex.offset));
@@ -52,7 +53,8 @@ class Line {
   [[nodiscard]] const SeamCurve& curve() const { return curve_; }
   [[nodiscard]] std::size_t nodeCount() const { return points_.size(); }
 
-  // Calls body(from, to) for each segment, by nodes; `to` may lie behind the last, once around.
+  // Calls body(from, to) for each segment, by nodes. On a closed curve `to` may lie behind the last
+  // node, once around.
   template <class Body>
   void forSegments(const Body& body) const {
     std::size_t first = points_.size(), last = points_.size();
@@ -73,12 +75,13 @@ class Line {
     return true;
   }
 
-  // The same for one that is long still.
+  // Splits a segment that is longer than its limit.
   bool splitLong(std::size_t from, std::size_t to) {
     return isLonger(from, to, 1) && split(from, to);
   }
 
-  // Names the vertex that stands for each arc.
+  // Sets the vertex that stands for each arc: an arc between two vertices belongs to the nearer one
+  // by number of arcs, or to the one in its quadrant.
   void assign(SeamPolylines& lines) const {
     const std::size_t count = points_.size();
     std::vector<std::size_t> nodes;
@@ -107,7 +110,7 @@ class Line {
   }
 
  private:
-  // The sides of a thin wall or gap keep apart.
+  // Keeps the two surfaces of a thin wall or gap apart.
   void keepClear() {
     for (std::size_t i = 0; i < curve_.arcs.size(); ++i) {
       const double clearance = static_cast<double>(seams_.arcs[curve_.arcs[i]].clearance);
@@ -116,9 +119,9 @@ class Line {
     }
   }
 
-  // Clusters are small where the surface is not flat, on the face or beside it. Segments are not
-  // much longer than clusters may be: long ones would make folded strips. Away from such places
-  // they grow with the distance.
+  // Limits the length of segments, in arcs. Clusters are small where the surface is not flat, on
+  // the face or beside it; strips between small clusters and long segments fold. Away from such
+  // places the limit grows with the distance.
   void limitRuns() {
     const std::size_t count = points_.size();
     limits_.assign(count, std::numeric_limits<double>::infinity());
@@ -142,7 +145,7 @@ class Line {
     }
   }
 
-  // What must be there whatever the tolerance.
+  // Chooses the nodes that are needed at any tolerance.
   void chooseFirst() {
     if (curve_.begin != kNoSeam) choose(0);
     if (curve_.end != kNoSeam) choose(points_.size() - 1);
@@ -154,13 +157,13 @@ class Line {
       while (chosenArcs() < std::min(kLeastOfLoop, curve_.arcs.size())) choose(mostRemote());
       return;
     }
-    // Where the data ends the curve does.
+    // The curve ends where the data ends.
     if (curve_.begin == kNoSeam) choose(firstArc_);
     if (curve_.end == kNoSeam) choose(firstArc_ + curve_.arcs.size() - 1);
   }
 
-  // Runs that lie in one quadrant, as clusters do, have no more than one stretch in common with
-  // one.
+  // Chooses a node in each stretch of a closed curve in one quadrant. Then runs lie in one
+  // quadrant, as clusters do, and a run and a cluster have at most one stretch in common.
   void chooseInQuadrants() {
     const std::size_t count = points_.size();
     quadrants_ = quadrantsOf(seams_, curve_);
@@ -178,7 +181,7 @@ class Line {
     }
   }
 
-  // The node farthest from all that are chosen; the first of several.
+  // The node farthest from all chosen ones; the first of several.
   [[nodiscard]] std::size_t mostRemote() const {
     std::size_t best = 0;
     double most = -1;
@@ -195,6 +198,8 @@ class Line {
     return best;
   }
 
+  // Splits segments at their farthest node (Douglas and Peucker 1973) while that is beyond its
+  // budget, and too long ones in the middle.
   void refineAll() {
     std::vector<std::pair<std::size_t, std::size_t>> open;
     forSegments([&](std::size_t from, std::size_t to) { open.emplace_back(from, to); });
@@ -213,14 +218,15 @@ class Line {
     }
   }
 
-  // Whether a segment is so many times longer than the least limit on it.
+  // Whether a segment is more than `times` as long as the least limit on it.
   [[nodiscard]] bool isLonger(std::size_t from, std::size_t to, double times) const {
     double limit = limits_[from % points_.size()];
     for (std::size_t i = from; i <= to; ++i) limit = std::min(limit, limits_[i % points_.size()]);
     return static_cast<double>(to - from) > times * limit;
   }
 
-  // The node between two whose distance to their segment is most beyond what is allowed there.
+  // The node between two that exceeds its budget most, by its distance to the segment, and the
+  // ratio of both.
   [[nodiscard]] std::pair<std::size_t, double> farthest(std::size_t from, std::size_t to) const {
     const std::size_t count = points_.size();
     const Vec3& a = points_[from % count];
@@ -239,7 +245,7 @@ class Line {
     return best;
   }
 
-  // Of the nodes between two chosen ones, the first that the second stands for.
+  // The first node between two chosen ones that the second stands for.
   [[nodiscard]] std::size_t runEnd(std::size_t from, std::size_t to) const {
     const std::size_t count = points_.size();
     if (!quadrants_.empty()) {
@@ -268,13 +274,13 @@ class Line {
   std::vector<std::uint8_t> quadrants_;  // of the nodes of a loop
 };
 
-// The polylines of one face, made finer until none cross and all are sound.
+// The polylines of one face. They are refined until none cross and validation finds no fault.
 class Face {
  public:
   explicit Face(const Seams& seams, std::vector<Line>& lines, std::size_t begin, std::size_t end)
       : seams_(seams), lines_(lines), begin_(begin), end_(end) {}
 
-  // Until nothing is at fault either.
+  // Ends, as each round chooses nodes, and there are finitely many.
   void makeSound(const PolylineValidation& validation, SeamPolylines& result) {
     const FaceValidation onFace = validation ? validation(begin_, end_) : nullptr;
     for (bool any = true; any;) {
@@ -285,8 +291,8 @@ class Face {
   }
 
  private:
-  // Where triangles meet cells cannot help; folds are better left to them than to very short
-  // segments.
+  // Splits the segments at faults. Intersections cannot be repaired by splitting cells; folds are
+  // better left to that than to very short segments.
   bool splitAt(const LineFaults& faults) {
     if (faults.meeting.empty() && faults.folded.empty()) return false;
     collect();

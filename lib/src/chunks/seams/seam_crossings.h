@@ -9,7 +9,7 @@
 
 namespace tufa::chunks {
 
-/// Where the surface crosses the lattice edge that a base quad stands around.
+/// Where the surface crosses the lattice edge that a uniform quad stands around.
 struct SeamCrossing {
   Coord start;               ///< lower end of the edge
   int axis = 0;              ///< along the edge
@@ -17,8 +17,8 @@ struct SeamCrossing {
   uniform::Vector normal{};  ///< outward covector of unit length in index space
 };
 
-/// The crossings of some base quads, sorted. Each is found from the samples near its edge alone, so
-/// that whoever asks for it gets the same bits.
+/// The crossings of some uniform quads, given in rising order. Each depends on the samples near its
+/// edge alone, so that all who compute it get the same bits.
 [[nodiscard]] std::vector<SeamCrossing> seamCrossings(const uniform::SurfaceView& context,
                                                       const std::vector<std::uint32_t>& quads,
                                                       base::Job& job);

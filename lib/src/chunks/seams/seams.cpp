@@ -21,7 +21,7 @@ namespace {
 // Seams' vertices keep this far from the ends of their lattice edge or the border of their cell
 // face, in voxels.
 constexpr double kMargin = 1e-3;
-// A curve's corner is worth a vertex if it is farther off than this, in voxels.
+// A corner of a curve gets a vertex if it is farther off than this, in voxels.
 constexpr double kCorner = 0.02;
 // Vertices nearer to each other than this, in voxels, may become one by rounding.
 constexpr double kClose = 4e-3;
@@ -36,7 +36,7 @@ class SeamFinder {
              const ChunkCells& chunks, const grid::Affine& affine)
       : base_(base), before_(before), cells_(cells), chunks_(chunks), affine_(affine) {}
 
-  // Base quads with vertices in several chunks, at least one of them to be made.
+  // Uniform quads with vertices in several chunks, at least one of them to be made.
   std::vector<std::uint32_t> findParted(base::Job& job) {
     std::vector<std::uint8_t> parted(base_.quads.size());
     job.forRanges(parted.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -63,14 +63,14 @@ class SeamFinder {
   }
 
  private:
-  // An arc as the side of a quad, between two of its corners.
+  // An arc as an edge of a quad, between two of its corners.
   struct Use {
     VertexIndex below, above;
     std::uint32_t quad;  // in quads_
     int corner;          // the first of the two
     auto key() const { return std::tie(below, above); }
   };
-  // What an arc is next to, seen from below.
+  // The neighbours of an arc on its curve, as the lower chunk orders them.
   struct Links {
     SeamIndex previous = kNoSeam, next = kNoSeam;  // arcs
     SeamIndex begin = kNoSeam, end = kNoSeam;      // points on chunk edges
@@ -118,12 +118,12 @@ class SeamFinder {
     }
   }
 
-  // A base vertex as it was before the repair, in lattice steps from a lattice point.
+  // A uniform vertex as it was before the repair, in lattice steps from a lattice point.
   [[nodiscard]] Vec3 latticePoint(VertexIndex vertex, const Coord& from) const {
     return affine_.latticePoint(before_.positions[vertex], from);
   }
 
-  // Where the line from vertex to vertex passes the face.
+  // Places the vertex of each arc where the line between its two uniform vertices passes the face.
   void placeArcs(const std::vector<SeamCrossing>& crossings) {
     seams_.vertices.resize(seams_.arcs.size());
     std::vector<std::tuple<Coord, int, SeamIndex>> faces;
@@ -152,7 +152,7 @@ class SeamFinder {
     }
   }
 
-  // Vertices that share a place go to the middles of their own stretches of curve.
+  // Moves vertices at the same place to the middles of their own stretches of curve.
   void partClose(const std::vector<SeamCrossing>& crossings) {
     const auto place = [&](SeamIndex i) {
       return Vec3(seams_.vertices[i].cell) + seams_.vertices[i].offset;
@@ -174,7 +174,7 @@ class SeamFinder {
     for (const SeamIndex arc : close) seams_.vertices[arc].offset = middleOf(arc, crossings);
   }
 
-  // The middle of an arc's own stretch of curve, between two crossings, seen from its cell.
+  // The middle of an arc's own stretch of curve, between two crossings, counted from its cell.
   [[nodiscard]] Vec3 middleOf(SeamIndex arc, const std::vector<SeamCrossing>& crossings) const {
     const Coord& cell = seams_.vertices[arc].cell;
     const auto [a, b] = quadsOf_[arc];
@@ -186,8 +186,8 @@ class SeamFinder {
     return at;
   }
 
-  // Where the vertex of each arc can go if curves cross: to the middle of its stretch, that of a
-  // corner to the crossing between two stretches.
+  // The fallback position of the vertex of each arc, if curves cross: the middle of its stretch;
+  // for a corner, the crossing between two stretches.
   [[nodiscard]] std::vector<Vec3> fallbacksOf(const std::vector<SeamCrossing>& crossings) const {
     std::vector<Vec3> fallbacks(seams_.arcs.size());
     for (SeamIndex i = 0; i < fallbacks.size(); ++i) {
@@ -215,7 +215,8 @@ class SeamFinder {
     return chunkOf(v[0]) != chunkOf(v[1]) && chunkOf(v[1]) != chunkOf(v[2]);
   }
 
-  // Where a lattice edge passes the quad around it; where it does not, the field's crossing.
+  // Where a lattice edge passes the quad around it, or the crossing of the field if it does not
+  // pass it.
   [[nodiscard]] double alongEdge(std::uint32_t quad, const SeamCrossing& crossing) const {
     const auto& v = before_.quads[quad].vertices;
     const auto [s, t] = uniform::otherAxes(crossing.axis);
@@ -250,7 +251,8 @@ class SeamFinder {
     }
   }
 
-  // A quad in two chunks leads from arc to arc, one in four begins and ends them.
+  // Links the arcs: a quad in two chunks leads from one arc to the next, one in four chunks begins
+  // and ends four of them.
   void linkArcs(const std::vector<SeamCrossing>& crossings) {
     links_.resize(seams_.arcs.size());
     for (std::uint32_t i = 0; i < quads_.size(); ++i) {
@@ -280,7 +282,8 @@ class SeamFinder {
     links_[to].previous = from;
   }
 
-  // Where the diagonal of a quad passes the face, if that is not on the way from arc to arc.
+  // Adds a corner where the diagonal of a quad passes the face, unless that is on the way from arc
+  // to arc.
   SeamIndex addCorner(std::uint32_t i, SeamIndex from, SeamIndex to, const SeamCrossing& crossing) {
     if (from == kNoSeam || to == kNoSeam) return kNoSeam;
     const int axis = axisOf(from);
@@ -303,7 +306,7 @@ class SeamFinder {
     return static_cast<SeamIndex>(links_.size() - 1);
   }
 
-  // Corners are numbered behind the arcs, before the points on chunk edges.
+  // Inserts the corners behind the arcs and before the points on chunk edges.
   void insertCorners() {
     const auto count = static_cast<SeamIndex>(corners_.size());
     const auto first = static_cast<SeamIndex>(seams_.arcs.size());
@@ -323,12 +326,13 @@ class SeamFinder {
     }
   }
 
-  // The axis across the face of an arc, which leads from a chunk to its neighbour.
+  // The axis across the face of an arc, along which its two chunks differ.
   [[nodiscard]] int axisOf(SeamIndex arc) const {
     return axisBetween(chunkOf(seams_.arcs[arc].below), chunkOf(seams_.arcs[arc].above));
   }
 
-  // Where the line between the vertices of an arc passes the face, seen from the upper one's cell.
+  // Where the line between the vertices of an arc passes the face, counted from the upper one's
+  // cell.
   [[nodiscard]] Vec3 passFace(const Arc& arc, int axis) const {
     const Coord& cell = cells_[arc.above];
     const Vec3 below = latticePoint(arc.below, cell), above = latticePoint(arc.above, cell);
@@ -337,6 +341,8 @@ class SeamFinder {
     return at;
   }
 
+  // Open curves first, from their beginnings, then closed ones, from their least arc; sorted by
+  // place.
   void traceCurves() {
     std::vector<std::uint8_t> seen(seams_.arcs.size(), 0);
     const auto trace = [&](SeamIndex first) {
@@ -414,7 +420,7 @@ class SeamFinder {
   const std::vector<Coord>& cells_;
   const ChunkCells& chunks_;
   const grid::Affine& affine_;
-  std::vector<std::uint32_t> quads_;  // base quads in several chunks, sorted
+  std::vector<std::uint32_t> quads_;  // uniform quads in several chunks, sorted
   Seams seams_;
   std::vector<std::array<SeamIndex, 4>> arcAt_;  // of each of quads_: between corners c, c + 1
   std::vector<std::array<std::uint32_t, 2>> quadsOf_;  // of each arc: its quads, in quads_

@@ -9,19 +9,20 @@
 namespace tufa::refine {
 namespace {
 
-// Edges are collapsed with this share of the freedom first: what would cost more waits. Then with
-// so many times more, up to all of it. Meshes of so few triangles go in smaller steps.
+// Edges are collapsed with this share of the error budget first, so that dear collapses do not come
+// before cheap ones beside them; then with so many times more, up to all of it. Meshes of few
+// triangles go in smaller steps.
 constexpr double kFirstBudget = 0.4, kMoreBudget = 2.5;
 constexpr std::size_t kFewTriangles = 30000;
 constexpr double kFirstBudgetOfFew = 0.3, kMoreBudgetOfFew = 1.5;
-// Freedom for a number of triangles grows by this factor at a time, by the larger one where that
-// gave less than this share of the triangles, up to so much.
+// For a number of triangles, the budget scale grows by this factor at a time, by the larger one
+// where that removed less than kLittle of the triangles, up to kWidestBudget.
 constexpr double kWiderBudget = 1.25;
 constexpr double kMuchWiderBudget = 2;
 constexpr double kLittle = 0.01;
 constexpr double kWidestBudget = 1e9;
 
-// Most vertices of a region: what is kept of them should fit a core's cache.
+// Vertices of a part at most: the data of a part should fit a core's cache.
 constexpr std::size_t kRegion = 4096;
 constexpr std::size_t kGrain = 4096;
 
@@ -44,7 +45,7 @@ class Collapse {
       state_.budgetScale = few ? kFirstBudgetOfFew : kFirstBudget;
     for (bool anew = bounds.before == nullptr;; anew = true) {
       const std::size_t start = state_.mesh.triangleCount();
-      // After a repeat, where something is not as in the result before.
+      // After a repeat, only where something differs from the result before.
       const bool tooFar =
           collapseAt(anew ? std::vector<std::uint8_t>() : state_.mesh.dilated(state_.changed));
       const std::size_t left = state_.mesh.triangleCount();
@@ -55,7 +56,7 @@ class Collapse {
         continue;
       }
       if (left <= bounds.triangles) return;
-      if (anew && !tooFar) return;  // more freedom is of no use
+      if (anew && !tooFar) return;  // a larger budget would not help
       const bool little = static_cast<double>(start - left) < kLittle * static_cast<double>(start);
       state_.budgetScale *= anew && little ? kMuchWiderBudget : kWiderBudget;
       if (state_.budgetScale > kWidestBudget) return;
@@ -115,8 +116,8 @@ class Collapse {
   }
 
  private:
-  // Turns edges of the result, and marks triangles that were turned. What is kept for a next
-  // collapse is of the mesh before.
+  // Flips edges of the result, and marks triangles that were flipped. What is kept for a next
+  // collapse is of the mesh before the flips.
   std::vector<std::uint8_t> turnThin() {
     if (state_.bounds.turning.empty())
       return std::vector<std::uint8_t>(state_.mesh.cornerCount() / 3, 0);
@@ -129,8 +130,8 @@ class Collapse {
     return flipSlivers(state_.mesh, state_.bounds, budget, state_.samples);
   }
 
-  // Whether the quad of two triangles is half of four that are a closed surface. Two quads would
-  // have the same corners.
+  // Whether the quad of two triangles is half of a closed surface of four triangles. As quads, both
+  // halves would have the same corners.
   [[nodiscard]] bool isOfFour(std::size_t t) const {
     return state_.mesh.degree(state_.mesh.corner(t)) == 3 &&
            state_.mesh.degree(state_.mesh.corner(t + 1)) == 3 &&
@@ -143,13 +144,13 @@ class Collapse {
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
   }
 
-  // Collapses again what was collapsed before, phase by phase. What is around that which is not may
-  // then be collapsed in another way.
+  // Repeats the collapses of an earlier result, phase by phase. Around those that are not repeated,
+  // edges may then be collapsed in another way.
   void repeat(const Collapsed& before) {
     state_.budgetScale = before.budgetScale;
     const std::size_t known = before.sampleTriangles.size();
     attachFrom(known);
-    // What was inside its region is so again.
+    // Steps of one group were inside one part then, and are now.
     const Regions whole = oneRegion(state_.mesh);
     const std::span<const Step> steps(before.steps);
     const std::span<const std::uint8_t> rolledBack(state_.bounds.rolledBack);
@@ -181,7 +182,7 @@ class Collapse {
     attach(0, places);
   }
 
-  // Puts the samples from `first` on onto their triangles.
+  // Attaches the samples from `first` on to the triangles nearest to them.
   void attachFrom(std::size_t first) {
     std::vector<std::uint32_t> places(state_.bounds.samples.size() - first);
     job_.forRanges(places.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -199,8 +200,9 @@ class Collapse {
     }
   }
 
-  // Collapses edges at the marked vertices and at all without marks: those inside regions, those
-  // left inside other regions, and what is left then. Whether one was refused for want of freedom.
+  // Collapses edges at the marked vertices, at all without marks: first those inside the parts of
+  // one partition, then those left that are inside the parts of another, and last the rest. Whether
+  // one was refused for want of budget.
   bool collapseAt(const std::vector<std::uint8_t>& marks) {
     const auto isMarked = [&](VertexIndex vertex) { return marks.empty() || marks[vertex] != 0; };
     const std::size_t count =
@@ -226,7 +228,7 @@ class Collapse {
     return tooFar;
   }
 
-  // Collapses what was postponed; `edges` becomes what is so again.
+  // Collapses what was postponed; `edges` receives what is postponed again.
   bool collapseEdges(const Regions& regions, std::vector<EdgeEnds>& edges) {
     const EdgeMesh& mesh = state_.mesh;
     std::sort(edges.begin(), edges.end(), [&](const EdgeEnds& one, const EdgeEnds& other) {
@@ -234,7 +236,7 @@ class Collapse {
                                       : mesh.isBefore(one.second, other.second);
     });
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    // Where an end went into another vertex, that one's edges were postponed, too.
+    // Where an end was joined to another vertex, that one's edges were postponed too.
     std::erase_if(edges, [&](const EdgeEnds& edge) {
       return !mesh.isRoot(edge.first) || !mesh.isRoot(edge.second);
     });
@@ -249,12 +251,12 @@ class Collapse {
         edges);
   }
 
-  // Collapses edges in all regions: propose(collapser, region) says which. `postponed` becomes what
-  // is in none.
+  // Collapses edges in all parts in parallel; propose(collapser, part) tells which. `postponed`
+  // receives edges that are inside no part.
   template <class Propose>
   bool collapsePhase(const Regions& regions, const Propose& propose,
                      std::vector<EdgeEnds>& postponed) {
-    // Each collapse takes two triangles away.
+    // Each collapse removes two triangles.
     const std::size_t wanted = state_.bounds.triangles, count = state_.mesh.triangleCount();
     const std::size_t most = count > wanted ? (count - wanted + 1) / 2 : 0;
     std::vector<Collapser> collapsers(regions.vertices.size(), Collapser(state_, regions));

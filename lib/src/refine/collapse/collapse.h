@@ -12,7 +12,7 @@
 
 namespace tufa::refine {
 
-/// A point of the surface that a mesh stands for.
+/// A point of the surface that a mesh stands for, to which the mesh must stay near.
 struct Sample {
   Position point;
   Normal normal;          ///< of the surface there
@@ -23,7 +23,7 @@ struct Sample {
 struct Step {
   VertexIndex keep, drop;  ///< of the input
   Vec3 point;              ///< of both from then on
-  float reach;             ///< how far the surface moved as far as was seen, world length
+  float reach;             ///< largest distance found when it was tested, world length
 };
 
 /// A mesh with fewer vertices.
@@ -32,49 +32,55 @@ struct Collapsed {
   std::vector<std::uint32_t> sources;  ///< polygon of the input of each polygon, quads first
   std::vector<VertexIndex> vertexOf;   ///< for each vertex of the input
   std::vector<std::uint32_t> members;  ///< number of input vertices of each vertex
-  std::vector<VertexIndex> turned;     ///< corners of triangles at an edge that was turned
-  double budgetScale = 1;              ///< what `allowed` was multiplied by to get so far
+  std::vector<VertexIndex> turned;     ///< corners of triangles at a flipped edge
+  double budgetScale = 1;              ///< what Bounds::budget was multiplied by in the end
   std::vector<std::uint32_t> sampleTriangles;  ///< for a next collapse
   std::vector<Step> steps;                     ///< in order, for a next collapse
-  /// Steps that may be made at the same time: of each phase, one after another, the ends of its
-  /// groups in `steps`.
+  /// The phases that the steps were made in: for each, the ends of its groups in `steps`. Groups of
+  /// one phase are independent and may be repeated in parallel.
   std::vector<std::vector<std::size_t>> phases;
 };
 
 /// What bounds a collapse.
 struct Bounds {
-  /// None may be farther from the mesh than is allowed there.
+  /// None may be farther from the mesh than the error budget there.
   std::vector<Sample> samples;
-  /// For each vertex, how far the surface may move there, world length; 0: the vertex stays as it
-  /// is.
+  /// Error budget of each vertex: how far the surface may move there, world length. 0: the vertex
+  /// stays as it is.
   std::vector<float> budget;
-  /// The distance to the surface from a point of the mesh with a normal; what is less than `enough`
-  /// may be more than it is. Asked where samples of several sides are near.
+  /// The distance to the surface from a point of the mesh with a normal. Exact above `enough`; a
+  /// result below that may be too large. Called where samples of several sheets are near.
   std::function<double(const Vec3& point, const Vec3& normal, double enough)> distance;
-  /// Stop at so many; `allowed` is multiplied by more and more until that is reached or nothing
-  /// helps. 0: as few as is allowed.
+  /// Stop at so many triangles; the error budgets are scaled up until that is reached or nothing
+  /// helps. 0: as few as the budgets allow.
   std::size_t triangles = 0;
-  /// A result for the same mesh, more freedom, and the first of the samples, or null: what it
-  /// collapsed is collapsed again where that is still allowed.
+  /// An earlier result for the same mesh, with budgets no smaller and with the first of the
+  /// samples, or null: its collapses are repeated where they are still allowed.
   const Collapsed* before = nullptr;
   std::vector<std::uint8_t> rolledBack;  ///< of its steps, those not to be made again; empty: none
   std::vector<std::uint8_t> locked;      ///< vertices that no new steps are made with; empty: none
   bool onlyRepeat = false;               ///< make no new steps
-  std::vector<float> turning;            ///< as `allowed`, where edges are turned; empty: none are
+  std::vector<float> turning;            ///< error budgets for edge flips; empty: none
   Rim rim;                               ///< which vertices may be joined
-  /// Whether a vertex may lie at a point; else the middle of the edge is taken. Null: anywhere.
+  /// Whether a vertex may lie at a point; else the edge's middle is taken. Null: anywhere.
   std::function<bool(VertexIndex vertex, const Vec3& point)> mayLie;
 };
 
-/// Collapses edges of a mesh with normals, the one of least error first, each to the point of least
-/// squared distance to the planes of both its vertices (`planes`, each seen from its vertex).
+/// Collapses edges of a mesh with normals, by rising error, each to the point of least squared
+/// distance to the planes of all that its ends stand for (Garland and Heckbert 1997). `planes` has
+/// those of each vertex, in coordinates counted from it.
 ///
 /// Keeps the mesh a manifold of the same topology (the link condition; vertices on a boundary
-/// stay). A collapse is not made if a triangle around it would turn over or become a needle, if a
-/// sample near those triangles would be farther from them than is allowed, or the new vertex from
-/// the surface at its nearest sample. Last, edges are turned that make needles, see turnNeedles().
-/// Quads of which nothing was changed stay quads.
-/// Large meshes are collapsed in regions; the result does not depend on the number of threads.
+/// stay). A collapse is refused if a triangle around it would turn over, fold back over a neighbour
+/// or become a sliver; if a sample near those triangles would be farther from them than the error
+/// budget; or if the new vertex would be farther from the surface, as its nearest sample tells.
+/// Last, long edges of slivers are flipped, see flipSlivers(). Quads of which nothing changed stay
+/// quads.
+///
+/// Distances are bounded at samples, not between them: the caller measures. Large meshes are
+/// collapsed in the parts of a partition, in parallel; the result does not depend on the number of
+/// threads. Cost: the same for each edge tried, whatever the size of the mesh: the queue takes
+/// constant time, and only the star of the edge and the samples on it are read.
 [[nodiscard]] Collapsed collapse(const Mesh& mesh, const std::vector<base::Quadric>& planes,
                                  const Bounds& bounds, base::Job& job);
 

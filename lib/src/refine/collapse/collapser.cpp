@@ -10,15 +10,16 @@ using base::FlatTriangle;
 
 namespace {
 
-// Weight of an edge's squared length beside its error, so that flat places are thinned evenly.
+// Weight of an edge's squared length beside its error, so that flat places, where all errors are 0,
+// are thinned evenly.
 constexpr double kLengthShare = 1e-4;
-// An edge whose root mean square error is above this share of the freedom is mostly refused by a
-// sample. It waits for more freedom.
+// An edge whose root mean square error is above this share of its budget is mostly refused by a
+// sample. It waits for a larger budget.
 constexpr double kHopeful = 0.6;
-// Cosine of the angle up to which a sample's normal and a triangle's belong to one side.
+// Cosine of the angle up to which a sample's normal and a triangle's belong to one sheet.
 constexpr double kOneSide = 0.9;
-// What lies above the triangle it was on, no farther than this share of the freedom, squared,
-// stays.
+// A sample above the triangle it was on, no farther than this share of the squared budget, stays on
+// it without a search.
 constexpr double kSurelyNear = 0.25;
 
 }  // namespace
@@ -56,7 +57,7 @@ void Collapser::propose(VertexIndex a, VertexIndex b) {
     return;
   }
   const Edge edge = solve(a, b);
-  // Without a number to come to, more freedom follows.
+  // Without a number of triangles to reach, a larger budget follows.
   const bool mayWait = state_.budgetScale < 1 && state_.bounds.triangles == 0;
   const double most = mayWait ? kHopeful * budget : budget;
   if (edge.error > most * most * edge.sum.count) {
@@ -97,6 +98,8 @@ void Collapser::repeat(std::span<const Step> steps, std::span<const std::uint8_t
   }
 }
 
+// Repeats one collapse, if its ends and all around them are as they were, and its distances are
+// within the budget. Only where samples are attached, which may be new, are distances tested again.
 bool Collapser::repeatStep(const Step& step) {
   const std::vector<std::uint8_t>& changed = state_.changed;
   if (changed[step.keep] != 0 || changed[step.drop] != 0) return false;
@@ -129,14 +132,15 @@ bool Collapser::isLocked(VertexIndex vertex) const {
   return !state_.bounds.locked.empty() && state_.bounds.locked[vertex] != 0;
 }
 
-// The planes of both, seen from `point`.
+// The planes of both ends, in coordinates counted from `point`.
 base::Quadric Collapser::joined(VertexIndex a, VertexIndex b, const Vec3& point) const {
   base::Quadric planes = state_.planes[a].translatedTo(point - state_.mesh.point(a));
   planes += state_.planes[b].translatedTo(point - state_.mesh.point(b));
   return planes;
 }
 
-// What would become of an edge; its sum is seen from the middle of the edge still.
+// What an edge would become. The least point is rejected if it lies farther from the middle than
+// the edge is long, as for nearly parallel planes; the sum keeps the middle as its origin.
 Collapser::Edge Collapser::solve(VertexIndex a, VertexIndex b) const {
   const Vec3 &pa = state_.mesh.point(a), &pb = state_.mesh.point(b);
   const Vec3 middle = (pa + pb) * 0.5;
@@ -148,6 +152,8 @@ Collapser::Edge Collapser::solve(VertexIndex a, VertexIndex b) const {
   return {a, b, middle + offset, offset, planes.at(offset), planes};
 }
 
+// All guards, the cheapest and most often failing first. `reach` receives the largest distance
+// found.
 bool Collapser::canCollapse(const Edge& edge, double& reach) {
   reach = edge.sum.count > 0 ? std::sqrt(edge.error / edge.sum.count) : 0;
   if (!state_.rim.mayJoin(edge.a, edge.b) || !link_.mayCollapse(state_.mesh, edge.a, edge.b) ||
@@ -161,11 +167,11 @@ bool Collapser::canCollapse(const Edge& edge, double& reach) {
   return near;
 }
 
-// Whether all samples of the triangles around the edge are near the ring; notes which triangle of
-// it each is nearest to, and where they are of several sides.
+// Whether all samples of the triangles around the edge are within budget of the ring. Notes for
+// each the nearest triangle of the ring, and which triangles have samples of several sheets.
 bool Collapser::samplesStayNear(const Edge& edge, double& reach) {
   const double budget = budgetAt(edge.a, edge.b), enough = budget * budget;
-  // What failed once lies at the front and mostly fails again.
+  // A sample that failed is moved to the front, as it mostly fails again.
   for (const std::uint32_t t : ring_.star()) {
     const std::uint32_t i = state_.samples.front(t);
     if (i != kNone && !ring_.isNear(Vec3(state_.bounds.samples[i].point), enough)) return false;
@@ -190,7 +196,7 @@ bool Collapser::samplesStayNear(const Edge& edge, double& reach) {
       farthest = std::max(farthest, squared);
       attached_.emplace_back(i, ring_.triangles()[triangle]);
       const Normal& n = state_.bounds.samples[i].normal;
-      const bool own = Vec3(n.x, n.y, n.z).dot(ring_.shapes()[triangle].normal()) > kOneSide;
+      const bool own = Vec3(n).dot(ring_.shapes()[triangle].normal()) > kOneSide;
       Sides& sheets = sheets_[triangle];
       sheets = own && sheets != Sides::Several ? Sides::One : Sides::Several;
       const double apart = (at - edge.point).squaredLength();
@@ -203,8 +209,9 @@ bool Collapser::samplesStayNear(const Edge& edge, double& reach) {
   return true;
 }
 
-// The way back, from the ring to the surface. Where all samples are of one side, the planes of
-// samples tell; beside a crease, the surface is asked.
+// The other direction, from the ring to the surface. Where all samples are of one sheet, the plane
+// of the nearest one tells the distance of the new vertex; beside a crease, where that plane ends,
+// the uniform mesh is measured at the new vertex and at the middles of triangles and edges.
 bool Collapser::ringStaysNear(const Edge& edge, double& reach) const {
   const double budget = budgetAt(edge.a, edge.b);
   const bool smooth = std::none_of(sheets_.begin(), sheets_.end(),
@@ -239,7 +246,7 @@ bool Collapser::ringStaysNear(const Edge& edge, double& reach) const {
   return true;
 }
 
-// Collapses the edge; `moved`: the samples go where samplesStayNear() said.
+// Collapses the edge. `moved`: samples go where samplesStayNear() found.
 void Collapser::join(const Edge& edge, double reach, bool moved) {
   steps_.push_back({edge.a, edge.b, edge.point, static_cast<float>(reach)});
   state_.planes[edge.a] = edge.sum.translatedTo(edge.offset);

@@ -15,7 +15,7 @@ EdgeMesh::EdgeMesh(const Mesh& mesh)
   points_.reserve(mesh.positions.size());
   for (const Position& p : mesh.positions) points_.emplace_back(p.x, p.y, p.z);
   std::iota(vertexOf_.begin(), vertexOf_.end(), VertexIndex{0});
-  // By place: a grid that is moved has its vertices in another order.
+  // By place: a grid that is translated has its vertices in another order.
   std::iota(order_.begin(), order_.end(), VertexIndex{0});
   std::sort(order_.begin(), order_.end(), [&](VertexIndex a, VertexIndex b) {
     const Position& p = mesh.positions[a];
@@ -41,7 +41,8 @@ EdgeMesh::EdgeMesh(const Mesh& mesh)
 }
 
 bool EdgeMesh::isOnBoundary(VertexIndex vertex) const {
-  // Around an inner vertex each neighbour follows once and leads once.
+  // In a closed fan each neighbour is once the first and once the second corner behind the vertex,
+  // so the sums are equal. In an open fan the two ends differ.
   std::int64_t balance = 0;
   std::size_t triangles = 0;
   forTriangles(vertex, [&](std::uint32_t, VertexIndex x, VertexIndex y) {
@@ -80,7 +81,7 @@ bool LinkCheck::mayCollapse(const EdgeMesh& mesh, VertexIndex a, VertexIndex b) 
     around.clear();
     mesh.forTriangles(own, [&](std::uint32_t, VertexIndex x, VertexIndex) { around.push_back(x); });
     std::sort(around.begin(), around.end());
-    // A neighbour met twice is at an edge of four triangles, as a quad's diagonal may be.
+    // A neighbour listed twice is at an edge of four triangles, as a quad's diagonal may be.
     return std::adjacent_find(around.begin(), around.end()) == around.end();
   };
   if (!collect(a, aroundA_) || !collect(b, aroundB_)) return false;
@@ -115,7 +116,7 @@ void EdgeMesh::collapse(VertexIndex keep, VertexIndex drop, const Vec3& point) {
   next_[last] = first_[keep];
   first_[keep] = first_[drop];
   vertexOf_[drop] = keep;
-  for (std::uint32_t* link = &first_[keep]; *link != kNone;) {  // takes what is gone out
+  for (std::uint32_t* link = &first_[keep]; *link != kNone;) {  // drops removed corners
     if (corners_[*link] == keep) {
       link = &next_[*link];
     } else {

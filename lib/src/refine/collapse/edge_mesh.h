@@ -10,22 +10,22 @@ namespace tufa::refine {
 
 inline constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// The triangles of a mesh while its edges are collapsed, with what each vertex went into. Quads
-/// are two triangles each. A triangle is known by the place of its first corner.
+/// The triangles of a mesh while its edges are collapsed, with the vertex that each was joined to.
+/// Quads are two triangles each. A triangle is identified by the place of its first corner.
 class EdgeMesh {
  public:
   explicit EdgeMesh(const Mesh& mesh);
 
   [[nodiscard]] std::size_t triangleCount() const { return alive_; }
-  /// Vertices, and corners of triangles, of the mesh as it was given.
+  /// Number of vertices, and of corners of triangles, of the mesh as it was given.
   [[nodiscard]] std::size_t vertexCount() const { return points_.size(); }
   [[nodiscard]] std::size_t cornerCount() const { return corners_.size(); }
   [[nodiscard]] const Vec3& point(VertexIndex vertex) const { return points_[vertex]; }
   [[nodiscard]] VertexIndex corner(std::size_t place) const { return corners_[place]; }
   [[nodiscard]] bool isAlive(std::size_t triangle) const { return corners_[triangle] != kNone; }
-  /// Whether the vertex went into no other.
+  /// Whether the vertex was joined to no other.
   [[nodiscard]] bool isRoot(VertexIndex vertex) const { return vertexOf_[vertex] == vertex; }
-  /// What the vertex went into.
+  /// The vertex that this one was joined to in the end; itself if to none.
   [[nodiscard]] VertexIndex rootOf(VertexIndex vertex) const {
     while (vertexOf_[vertex] != vertex) vertex = vertexOf_[vertex];
     return vertex;
@@ -38,26 +38,27 @@ class EdgeMesh {
   template <class Visit>
   void forTriangles(VertexIndex vertex, const Visit& visit) const {
     for (std::uint32_t place = first_[vertex]; place != kNone; place = next_[place]) {
-      if (corners_[place] != vertex) continue;  // of a triangle that is gone
+      if (corners_[place] != vertex) continue;  // of a removed triangle
       const std::uint32_t turn = place % 3, t = place - turn;
       visit(t, corners_[turn == 2 ? t : place + 1], corners_[turn == 0 ? t + 2 : place - 1]);
     }
   }
+  /// Whether the triangles around a vertex do not form a closed fan.
   [[nodiscard]] bool isOnBoundary(VertexIndex vertex) const;
   /// Number of triangles around a vertex.
   [[nodiscard]] std::size_t degree(VertexIndex vertex) const;
   /// Neighbours of a vertex off the boundary, by place.
   void collectNeighbours(VertexIndex vertex, std::vector<VertexIndex>& out) const;
 
-  /// The marks of vertices, and of all that share a triangle with a marked one.
+  /// Adds one ring of neighbours to the marks of vertices.
   [[nodiscard]] std::vector<std::uint8_t> dilated(const std::vector<std::uint8_t>& marks) const;
 
-  /// Lets `drop` go into its neighbour `keep`, and that to `point`. Does not count: collapses of
-  /// edges without a common neighbour may be made at the same time.
+  /// Joins `drop` to its neighbour `keep` and moves that to `point`. Does not count triangles, as
+  /// collapses of edges without a common neighbour may run at the same time.
   void collapse(VertexIndex keep, VertexIndex drop, const Vec3& point);
-  /// Takes the triangles of so many collapses, two each, from their number.
+  /// Subtracts the triangles of so many collapses, two each, from their number.
   void countCollapses(std::size_t count) { alive_ -= 2 * count; }
-  /// Makes the triangles t = (a, b, c) and u = (b, a, d) into (a, d, c) and (b, c, d).
+  /// Flips an edge: the triangles t = (a, b, c) and u = (b, a, d) become (a, d, c) and (b, c, d).
   void turn(std::uint32_t t, std::uint32_t u, VertexIndex a, VertexIndex b, VertexIndex c,
             VertexIndex d);
 
@@ -67,17 +68,19 @@ class EdgeMesh {
   std::vector<Vec3> points_;
   std::vector<std::uint32_t> ranks_;         // of each vertex by its place
   std::vector<VertexIndex> order_;           // the vertices by rank
-  std::vector<VertexIndex> corners_;         // three for each triangle; kNone once it is gone
+  std::vector<VertexIndex> corners_;         // three for each triangle; kNone once it is removed
   std::vector<std::uint32_t> first_, next_;  // the corners at each vertex, as lists
-  std::vector<VertexIndex> vertexOf_;        // what a vertex went into
+  std::vector<VertexIndex> vertexOf_;        // what a vertex was joined to
   std::size_t alive_ = 0;
 };
 
-/// Whether edges may be collapsed.
+/// Tests whether edges may be collapsed without changing the topology.
 class LinkCheck {
  public:
-  /// Whether the topology stays the same without the edge: the link condition for an edge off the
-  /// boundary, and no vertex left with two triangles.
+  /// Whether the topology stays the same: the link condition (Dey, Edelsbrunner, Guha and Nekhayev
+  /// 1999) for an edge off the boundary. On a surface it says that the ends have exactly two common
+  /// neighbours, those of the two triangles at the edge. These must also keep more than two
+  /// triangles. Cost: sorts the neighbours of both ends.
   [[nodiscard]] bool mayCollapse(const EdgeMesh& mesh, VertexIndex a, VertexIndex b);
 
  private:

@@ -8,9 +8,9 @@
 
 namespace tufa::refine {
 
-/// Edges by rising cost, told apart by its power of two only; among equals the one that came first.
-/// Constant time, and kind to the cache: edges proposed one after another, which are near each
-/// other, mostly come back so.
+/// Edges by rising cost, compared by its power of two only; among equals first come, first served.
+/// Constant time instead of logarithmic, and kind to the cache: edges pushed one after another,
+/// which are near each other, mostly come back so.
 class EdgeQueue {
  public:
   struct Entry {

@@ -11,12 +11,13 @@ namespace {
 
 using base::FlatTriangle;
 
-// Triangles less round than this are turned, if the worse of the two becomes so many times rounder.
+// An edge is flipped for a triangle less round than this, if the worse of the two becomes so many
+// times rounder.
 constexpr double kThin = 0.15;
 constexpr double kBetter = 1.5;
-// Least cosine between the new triangles and what they take the place of.
+// Least cosine between the normals of the new triangles and the mean normal of those they replace.
 constexpr double kLeastTurn = 0.9;
-// Least cosine to the triangles around, or so much less than there was.
+// Least cosine to the normals of the triangles around, or this much less than the least one before.
 constexpr double kFold = 0;
 constexpr double kSharper = 0.02;
 constexpr int kSweeps = 3;
@@ -77,8 +78,8 @@ class Turner {
     return true;
   }
 
-  // The vertices are apart, the new edge is not there yet, and no vertex is left with two
-  // triangles.
+  // Topology: the four vertices are distinct, the new edge does not exist yet, and no vertex is
+  // left with two triangles.
   [[nodiscard]] bool mayFlip(const Pair& pair) const {
     if (pair.c == pair.d || !(budgetAt(pair) > 0)) return false;
     bool joined = false;

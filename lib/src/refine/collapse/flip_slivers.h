@@ -9,12 +9,10 @@
 
 namespace tufa::refine {
 
-/// Turns the longest edge of flat triangles where that makes both triangles at it rounder, and
-/// neither the topology, nor a direction, nor what is near a sample suffers. Looks at triangles as
-/// they lie in the mesh, a few times over.
-///
-/// `allowed` tells for each vertex how far the surface may move there, 0: not at all. Returns a
-/// mark for each triangle, 1 if it was turned.
+/// Flips the longest edge of slivers if that makes the worse of the two triangles at it rounder,
+/// turns neither over, sharpens no fold, and keeps all samples and the middle of the new edge
+/// within `budget`, world length for each vertex. Takes the triangles in the order of the mesh, a
+/// few times over, on one thread. Returns a mark for each triangle, 1 if it was flipped.
 [[nodiscard]] std::vector<std::uint8_t> flipSlivers(EdgeMesh& mesh, const Bounds& bounds,
                                                     const std::vector<double>& budget,
                                                     SampleLists samples);

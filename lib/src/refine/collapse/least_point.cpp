@@ -4,7 +4,8 @@ namespace tufa::refine {
 
 namespace {
 
-// Added to the diagonal, as a share of its sum: directions with less than this are free.
+// Added to the diagonal, as a share of its sum: a weak pull to the origin, which decides only in
+// directions that the planes leave free, and keeps the matrix positive definite (Tikhonov).
 constexpr double kFree = 1e-3;
 
 }  // namespace

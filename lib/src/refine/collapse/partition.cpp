@@ -8,7 +8,8 @@
 namespace tufa::refine {
 namespace {
 
-// An extent counts as longer if it is by so much: a mesh that is moved is parted alike.
+// An extent counts as longer if it is so by this factor: a mesh that is translated, and so rounded
+// otherwise, is divided alike.
 constexpr double kLonger = 1.0625;
 // Parts with fewer vertices are not worth a thread.
 constexpr std::size_t kWorthAThread = std::size_t{1} << 15;

@@ -8,24 +8,25 @@
 
 namespace tufa::refine {
 
-/// The vertices of a mesh in regions of about one size. What is done inside one is not seen in
-/// another, so regions are worked on at the same time.
+/// The vertices of a mesh in k-d parts of about one size. What changes inside one part is not
+/// visible in another, so parts are processed in parallel.
 struct Regions {
-  std::vector<std::vector<VertexIndex>> vertices;  ///< of each region, by place
-  std::vector<std::uint32_t> of;                   ///< region of each vertex
-  std::vector<std::uint8_t> inner;  ///< vertices all of whose neighbours are in their region
+  std::vector<std::vector<VertexIndex>> vertices;  ///< of each part, by place
+  std::vector<std::uint32_t> of;                   ///< part of each vertex
+  std::vector<std::uint8_t> inner;  ///< vertices all of whose neighbours are in their part
 };
 
-/// Where the vertices are parted: at the middle of their number, or a third behind the first. The
-/// borders of one are mostly inside the regions of the other.
+/// Where the vertices are divided: at the median, or behind the first third. So the borders of one
+/// partition lie mostly inside the parts of the other.
 enum class Parting : std::uint8_t { Halves, Thirds };
 
-/// Parts the vertices that went into no other across their longest extent, again and again, until
-/// there are at most `most` in a region. Depends on the mesh alone, not on the number of threads.
+/// Divides the vertices that were joined to no other across their longest extent, recursively,
+/// until a part has at most `most`. Depends on the mesh alone, not on the number of threads. Cost:
+/// n log n, as a k-d tree.
 [[nodiscard]] Regions makeRegions(const EdgeMesh& mesh, std::size_t most, Parting parting,
                                   base::Job& job);
 
-/// All vertices as one region.
+/// All vertices as one part.
 [[nodiscard]] Regions oneRegion(const EdgeMesh& mesh);
 
 }  // namespace tufa::refine

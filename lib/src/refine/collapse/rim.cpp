@@ -29,7 +29,7 @@ const std::vector<Rim::Stretch>* Rim::find(VertexIndex vertex) const {
 bool Rim::mayJoin(VertexIndex a, VertexIndex b) const {
   const std::vector<Stretch>*of = find(a), *other = find(b);
   if (of == nullptr || other == nullptr) return true;
-  // Without a curve in common they are at opposite borders of the surface.
+  // Without a common curve they are at different borders of the surface.
   bool common = false;
   for (const Stretch& stretch : *of) {
     for (const Stretch& beside : *other) {

@@ -7,21 +7,22 @@
 
 namespace tufa::refine {
 
-/// Curves beside a mesh that its vertices stand for, each vertex for a stretch. Vertices may be
-/// joined as long as each still stands for one stretch of every curve, inside one of its parts; two
-/// with stretches of different curves alone may not.
+/// Curves on chunk faces beside a mesh, and the stretch of them that each vertex stands for. Two
+/// vertices may be joined if their stretches follow each other on every curve that both touch,
+/// inside one part of a closed curve; so each vertex keeps one stretch per curve, and strips never
+/// use an edge twice. Vertices with stretches of different curves only may not be joined.
 class Rim {
  public:
-  /// Places on a curve, from `first` to `last`.
+  /// Arcs of a curve, from `first` to `last`, both included.
   struct Stretch {
     std::uint32_t curve, part, first, last;
   };
 
-  /// Says what a vertex stands for. Stretches of one vertex are of different curves.
+  /// Adds a stretch that a vertex stands for; at most one of each curve.
   void add(VertexIndex vertex, const Stretch& stretch);
   [[nodiscard]] bool empty() const { return stretches_.empty(); }
   [[nodiscard]] bool mayJoin(VertexIndex a, VertexIndex b) const;
-  /// `keep` stands for what `drop` stood for, too.
+  /// Adds the stretches of `drop` to those of `keep`.
   void join(VertexIndex keep, VertexIndex drop);
 
  private:

@@ -8,15 +8,16 @@ namespace tufa::refine {
 
 namespace {
 
-// Least cosine between the normals of a triangle before and after.
+// Least cosine between the normals of a triangle before and after: 60 degrees.
 constexpr double kLeastTurn = 0.5;
-// A triangle no rounder than this has no direction to speak of: what counts then is the least
-// cosine between its normal and that of the surface.
+// A triangle no rounder than this has no meaningful normal: then the least cosine between its new
+// normal and that of the surface counts.
 constexpr double kSliver = 0.05;
 constexpr double kLeastFacing = 0.3;
 // Least cosine between the normals of two triangles at an edge.
 constexpr double kFold = -0.3;
-// Triangles are kept this round (1: equilateral), or no worse than this share of what they were.
+// Triangles must be this round (1: equilateral), or not worse than this share of the worst one
+// before.
 constexpr double kRound = 0.1;
 constexpr double kWorse = 0.5;
 

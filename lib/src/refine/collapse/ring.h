@@ -13,20 +13,22 @@ namespace tufa::refine {
 /// 1 for an equilateral triangle, 0 for three points on a line.
 [[nodiscard]] double roundness(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// The triangles around an edge, and what becomes of them if it is collapsed.
+/// The triangles around an edge, what becomes of them if it is collapsed, and the tests of their
+/// shape.
 class Ring {
  public:
-  /// Those around the edge from `a` to `b`, which would become `point`, where the surface faces
-  /// `facing`, of any length. False if one would turn over or become a needle.
+  /// Collects the triangles around the edge from `a` to `b`, both of which would become `point`,
+  /// where the surface faces `facing`, of any length. False if one would turn over or become a
+  /// sliver.
   [[nodiscard]] bool collect(const EdgeMesh& mesh, VertexIndex a, VertexIndex b, const Vec3& point,
                              const Vec3& facing);
-  /// No triangle is folded back over a neighbour, in the ring or outside, or none further than one
-  /// is now.
+  /// Whether no triangle would fold back over a neighbour, in the ring or outside, or none more
+  /// sharply than one does now.
   [[nodiscard]] bool staysUnfolded(const EdgeMesh& mesh) const;
-  /// Whether the squared distance of the point is at most `enough`.
+  /// Whether the squared distance from the point to the ring is at most `enough`.
   [[nodiscard]] bool isNear(const Vec3& point, double enough) const;
-  /// The number of the triangle that is nearest to the point, and its squared distance. The one
-  /// looked at `first` is as good if the point lies above it and within `enough`, squared.
+  /// The triangle of the ring nearest to the point, and its squared distance. `first` is tried
+  /// first, and taken if the point lies above it and within `enough`, squared.
   [[nodiscard]] std::pair<std::size_t, double> nearest(const Vec3& point, std::size_t first,
                                                        double enough) const;
 
@@ -44,7 +46,7 @@ class Ring {
   [[nodiscard]] double sharpest(const EdgeMesh& mesh) const;
 
   std::vector<std::uint32_t> star_, triangles_;
-  std::vector<std::array<VertexIndex, 2>> edges_;  ///< opposite to the new vertex
+  std::vector<std::array<VertexIndex, 2>> edges_;  ///< opposite the new vertex
   std::vector<base::FlatTriangle> shapes_;
 };
 

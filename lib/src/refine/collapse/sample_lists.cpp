@@ -9,8 +9,8 @@ namespace tufa::refine {
 
 namespace {
 
-// A sample whose squared distance to a triangle is at most this share of that to the corner belongs
-// there.
+// A sample is taken as found if its squared distance to a triangle is at most this share of that to
+// the nearest corner.
 constexpr double kNearShare = 0.05;
 
 }  // namespace
@@ -33,7 +33,7 @@ std::uint32_t locateSample(const EdgeMesh& mesh, const Mesh& given, const Sample
                       [&](std::uint32_t t, VertexIndex, VertexIndex) { look(t); });
   };
   const auto lookFrom = [&](const auto& vertices) {
-    // Mostly it is at the corner that is nearest.
+    // Mostly the triangle is one around the nearest corner.
     const auto squaredTo = [&](VertexIndex v) {
       return (mesh.point(mesh.rootOf(v)) - at).squaredLength();
     };

@@ -8,8 +8,7 @@
 
 namespace tufa::refine {
 
-/// Which samples lie on each triangle of an EdgeMesh. A triangle is known by the place of its first
-/// corner.
+/// Which samples belong to each triangle of an EdgeMesh, as linked lists in two arrays.
 class SampleLists {
  public:
   SampleLists(std::size_t triangles, std::size_t samples)
@@ -21,17 +20,18 @@ class SampleLists {
   /// The triangle that each sample was attached to last.
   [[nodiscard]] const std::vector<std::uint32_t>& triangles() const { return triangles_; }
 
-  /// Puts a sample that lies on no triangle in front on this one.
+  /// Attaches a sample that belongs to no triangle to the front of this one's list.
   void attach(std::uint32_t sample, std::uint32_t t) {
     triangles_[sample] = t;
     next_[sample] = first_[t / 3];
     first_[t / 3] = sample;
   }
+  /// Moves a sample of triangle `t`, which follows `before`, to the front.
   void moveToFront(std::uint32_t sample, std::uint32_t before, std::uint32_t t) {
     next_[before] = next_[sample];
     attach(sample, t);
   }
-  /// Takes all samples from a triangle.
+  /// Removes all samples from a triangle.
   void clear(std::uint32_t t) { first_[t / 3] = kNone; }
 
  private:

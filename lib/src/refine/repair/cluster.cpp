@@ -12,11 +12,11 @@ namespace {
 // Shares of the way to the mass point, and to a neighbour, that are tried.
 constexpr std::array kToMassPoint = {0.25, 0.5, 0.75, 1.0};
 constexpr std::array kToNeighbour = {0.15, 0.3, 0.5};
-// Harm of a fan, in voxels: it moves nothing, but adds triangles.
+// Harm of a fan, in voxels: it moves no vertex, but adds triangles.
 constexpr double kFanHarm = 0.1;
-// Harm of a voxel's move along the surface: it makes triangles uneven.
+// Harm of moving along the surface, per voxel: it makes triangles uneven.
 constexpr double kSlideHarm = 0.02;
-// Changes made for each pair before giving up.
+// Edits tried in a cluster for each of its pairs, before giving up.
 constexpr std::size_t kMostChanges = 20;
 
 template <class T>
@@ -39,7 +39,7 @@ Changes Cluster::repairIntersections(bool lastResort) {
   const std::size_t most = kMostChanges * (pairs_.size() + 1);
   std::vector<Pair> stuck;
   for (std::size_t i = 0; i < most; ++i) {
-    // The next one by place: numbers are other ones where a grid is moved.
+    // The next one by place: a grid that is translated has other indices.
     const Pair* next = nullptr;
     for (const Pair& pair : pairs_) {
       if (std::find(stuck.begin(), stuck.end(), pair) != stuck.end()) continue;
@@ -83,8 +83,8 @@ std::vector<Cluster::Edit> Cluster::editsFor(const Pair& pair) const {
   return edits;
 }
 
-// Harm: the gap between the diagonals.
-// Whether an edge joins two vertices already, apart from those of one polygon.
+// Whether an edge between two vertices exists already, apart from those of one polygon. A flip
+// would use it twice.
 bool Cluster::isEdge(Local a, Local b, Local apart) const {
   const auto& around = patch_.around(a);
   return std::any_of(around.begin(), around.end(), [&](Local polygon) {
@@ -99,6 +99,8 @@ bool Cluster::isEdge(Local a, Local b, Local apart) const {
   });
 }
 
+// Harm: the gap between the diagonals, seen as lines. Quads whose vertices are all fixed keep
+// theirs.
 void Cluster::addFlip(Local polygon, std::vector<Edit>& edits) const {
   const intersect::Corners v = patch_.corners(polygon);
   if (v.size() != 4 || std::none_of(v.begin(), v.end(), [&](Local i) { return canMove(i); }) ||
@@ -130,8 +132,8 @@ void Cluster::addFan(Local polygon, std::vector<Edit>& edits) const {
   edits.push_back(std::move(edit));
 }
 
-// Towards the mass point and towards each neighbour. Harm: how far that is off the planes of the
-// triangles around, the root of the mean of the squares, weighted by area (Garland and Heckbert
+// Proposes moves towards the mass point and towards each neighbour. Harm: how far the vertex leaves
+// the planes of the triangles around it, root mean square weighted by area (Garland and Heckbert
 // 1997).
 void Cluster::addMoves(Local vertex, std::vector<Edit>& edits) const {
   if (patch_.isNew(vertex)) return;
@@ -139,7 +141,7 @@ void Cluster::addMoves(Local vertex, std::vector<Edit>& edits) const {
   if (fallback == fallbacks_.massPoints.end()) return;
   const Vec3 from = Vec3(patch_.point(vertex));
   std::vector<Local> neighbours;
-  std::vector<Vec3> normals;  // of the length of the area, twice
+  std::vector<Vec3> normals;  // of twice the length of the area
   double area = 0;
   for (const Local polygon : patch_.around(vertex)) {
     std::array<Triangle, 2> triangles;
@@ -179,7 +181,7 @@ void Cluster::addMoves(Local vertex, std::vector<Edit>& edits) const {
   }
 }
 
-// All vertices of both polygons at their mass points.
+// Moves all vertices of both polygons to their mass points.
 Cluster::Edit Cluster::retreat(const Pair& pair) const {
   Edit edit;
   for (const Local polygon : pair) {
@@ -219,6 +221,8 @@ bool Cluster::takeLastResort(const Pair& pair) {
   return true;
 }
 
+// The pair itself is tested first, as most edits do not separate it. Pairs of untouched polygons do
+// not change, so those of touched ones are counted before and after.
 bool Cluster::attempt(const Edit& edit, const Pair& pair) {
   apply(edit);
   if (edit.fans.empty() && patch_.meet(pair[0], pair[1])) {

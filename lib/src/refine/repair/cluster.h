@@ -10,7 +10,7 @@
 
 namespace tufa::refine {
 
-/// Where what may move can go, for the polygons of all pairs. Vertices without a mass point stay.
+/// Fallback positions for the polygons of all pairs. Vertices without a mass point stay.
 struct FallbackPositions {
   std::unordered_map<VertexIndex, Position> massPoints;
   std::unordered_map<intersect::PolygonIndex, Position> crossings;
@@ -18,7 +18,7 @@ struct FallbackPositions {
   bool singlePrecision = false;
 };
 
-/// What became of a cluster: the last word on each element that changed.
+/// The changes to a cluster; of each element the final state.
 struct Changes {
   std::vector<std::pair<VertexIndex, Position>> moves;
   std::vector<intersect::PolygonIndex> turns;
@@ -27,15 +27,17 @@ struct Changes {
       polygons;  ///< all that are not as they were, but for fans' triangles
 };
 
-/// Mends the pairs of one patch, each by the change of least harm that leaves fewer pairs than
-/// there were. Harm is how far the surface moves off itself, in voxels.
+/// Repairs the pairs of one patch, each by the change of least harm that leaves fewer pairs than
+/// before. Harm is how far the surface moves off itself, in voxels; so a vertex on a crease slides
+/// along it before it leaves it. Cost: each trial tests the polygons it touches against all of the
+/// patch, boxes first.
 class Cluster {
  public:
   Cluster(Patch patch, const std::vector<intersect::PolygonPair>& pairs,
           const FallbackPositions& fallbacks);
 
-  /// If `toTheFloor`, polygons of a pair that no such change helps go back to their mass points,
-  /// and are then fanned, whatever that does to others.
+  /// If `lastResort`, polygons of a pair that no such change helps go to their mass points, and if
+  /// they are there already they are fanned, whatever that does to others.
   Changes repairIntersections(bool lastResort);
 
  private:
@@ -61,7 +63,7 @@ class Cluster {
 
   bool improve(const Pair& pair);
   bool takeLastResort(const Pair& pair);
-  // Applies an edit and counts; takes it back unless it leaves fewer pairs.
+  // Applies an edit, and undoes it unless it leaves fewer pairs and no triangle without area.
   bool attempt(const Edit& edit, const Pair& pair);
   void apply(const Edit& edit);
   void undo(const Edit& edit);

@@ -42,7 +42,7 @@ void Patch::updateBox(Local polygon) {
   base::Box box = base::Box::empty();
   for (const Local vertex : corners(polygon)) {
     const Position& p = points_[vertex];
-    box.add(Vec3(p.x, p.y, p.z));
+    box.add(Vec3(p));
   }
   boxes_[polygon] = box;
 }

@@ -10,11 +10,11 @@
 
 namespace tufa::refine {
 
-/// A piece of the mesh, copied out to be changed and looked at many times. Vertices and polygons
-/// have numbers of their own here.
+/// A copy of a part of the mesh, to be changed and tested many times. Vertices and polygons have
+/// indices of their own here.
 class Patch {
  public:
-  /// Names a vertex or polygon of the patch.
+  /// Index of a vertex or polygon of the patch.
   using Local = VertexIndex;
 
   /// Takes a copy of these polygons, sorted, and their vertices.
@@ -34,10 +34,10 @@ class Patch {
   [[nodiscard]] const std::vector<Local>& around(Local vertex) const { return around_[vertex]; }
 
   void move(Local vertex, const Position& to);
-  /// Splits a quad along its other diagonal. Done twice it starts where its second vertex was.
+  /// Flips the diagonal of a quad, by starting it at its next vertex; four times restores it.
   void turn(Local quad);
 
-  /// Whether two polygons, or the triangles of one, meet elsewhere than in what they share.
+  /// Whether two polygons, or the triangles of one, intersect elsewhere than in what they share.
   [[nodiscard]] bool meet(Local a, Local b) const {
     return boxes_[a].meets(boxes_[b]) &&
            intersect::intersectElsewhere(points_, corners(a), corners(b), a == b);
@@ -45,10 +45,10 @@ class Patch {
   /// Whether the corners of a triangle of the polygon lie on a line.
   [[nodiscard]] bool isFlat(Local polygon) const;
 
-  /// Puts four triangles around a new vertex in place of a quad; the first gets the quad's number,
+  /// Replaces a quad by four triangles around a new vertex; the first gets the index of the quad,
   /// the others the last ones.
   void fan(Local quad, const Position& centre);
-  /// Takes the last fan back.
+  /// Undoes the last fan.
   void unfan(Local quad, const Quad& was);
 
  private:

@@ -14,14 +14,14 @@ namespace {
 
 using base::Box;
 
-// Most rounds of small changes, and again of changes down to the floor.
+// Rounds of small changes at most, and again of last resorts.
 constexpr int kMostRounds = 40;
-// Where more than one in so many polygons meets another, there is no fine shape to spare: all that
-// are involved go to their mass points at once.
+// Where more than one in so many polygons intersects another, as in white noise, there is no fine
+// shape to preserve: all vertices involved go to their mass points at once.
 constexpr std::size_t kCrowded = 20;
 constexpr int kCrowdedRounds = 2;
-// What is seen around a pair: so much of the pair's size on each side, and no less than this in
-// voxels.
+// The box of a pair's surroundings reaches beyond it by this share of its size, and by no less than
+// this in voxels.
 constexpr double kSight = 0.75;
 constexpr double kLeastSight = 1.0;
 
@@ -127,7 +127,7 @@ class Repairer {
     });
     std::vector<intersect::PolygonIndex> changed;
     for (std::size_t i = 0; i < clusters.size(); ++i) {
-      // What stays as it is will not go better next time, unless something changes around it.
+      // A pair that nothing helped is not tried again unless something changes around it.
       if (changes[i].polygons.empty() && changes[i].fans.empty()) {
         stuck_.insert(clusters[i].begin(), clusters[i].end());
       }
@@ -138,7 +138,7 @@ class Repairer {
     return changed;
   }
 
-  // What a pair's changes may touch and meet.
+  // The surroundings of a pair: what its changes may touch, fallback positions included.
   [[nodiscard]] Box sightOf(const intersect::PolygonPair& pair) const {
     Box box = surface_.box(pair.a);
     box.add(surface_.box(pair.b));
@@ -159,13 +159,15 @@ class Repairer {
     Vec3 sum(0);
     for (const VertexIndex vertex : surface_.corners(polygon)) {
       const Position& p = surface_.mesh().positions[vertex];
-      sum += Vec3(p.x, p.y, p.z);
+      sum += Vec3(p);
     }
     return sum;
   }
 
-  // Pairs that do not see each other, each with those that lie in its sight: what one does to its
-  // surroundings, no other looks at. The rest waits for a later round.
+  // Chooses pairs whose surroundings do not overlap, each with all pairs inside its own: they are
+  // repaired at the same time, and the others wait for a later round. Greedy by place, so the
+  // choice does not depend on threads or on the order of polygons. A polygon may reach into two
+  // surroundings; what its two changes make together is found by the search after the round.
   std::vector<std::vector<intersect::PolygonPair>> findClusters() {
     std::vector<Box> all;
     for (const intersect::PolygonPair& pair : pairs_) all.push_back(sightOf(pair));
@@ -177,7 +179,7 @@ class Repairer {
         seen[j].push_back(i);
       });
     }
-    // By place, as a grid that is moved has its polygons in another order.
+    // By place: a grid that is translated has its polygons in another order.
     std::vector<Vec3> places;
     for (const intersect::PolygonPair& pair : pairs_)
       places.push_back(sumOf(pair.a) + sumOf(pair.b));
@@ -210,7 +212,7 @@ class Repairer {
     return own.lower == sight.lower && own.upper == sight.upper;
   }
 
-  // The polygons that each cluster sees, sorted.
+  // The polygons in the surroundings of each cluster, sorted.
   std::vector<std::vector<intersect::PolygonIndex>> findPolygons(std::size_t clusters) {
     using Entry = std::pair<std::uint32_t, intersect::PolygonIndex>;  // a cluster and a polygon
     const base::Bvh tree(sights_, job_);
@@ -252,6 +254,7 @@ class Repairer {
     report_.fannedQuads += changes.fans.size();
   }
 
+  // Searches for the pairs of changed polygons again; all others are as before.
   void lookAgain(const std::vector<intersect::PolygonIndex>& changed) {
     std::erase_if(pairs_, [&](const intersect::PolygonPair& pair) {
       return surface_.corners(pair.a).empty() || surface_.corners(pair.b).empty() ||
@@ -273,8 +276,8 @@ class Repairer {
   VertexIndex ownVertices_;  // those behind are centres of fans
   std::vector<intersect::PolygonPair> pairs_;
   FallbackPositions fallbacks_;
-  std::set<intersect::PolygonPair> stuck_;  // pairs that the present phase cannot help
-  std::vector<Box> sights_;                 // of the clusters
+  std::set<intersect::PolygonPair> stuck_;  // pairs that nothing in this phase helps
+  std::vector<Box> sights_;                 // surroundings of the clusters
   RepairReport report_;
 };
 

@@ -11,7 +11,7 @@
 namespace tufa::chunks {
 namespace {
 
-// Cosine of the angle between two segments of which one leads back.
+// A segment leads back if the cosines of the turns at both its ends are less than this.
 constexpr double kBack = -0.5;
 
 // The vertices of a curve in order.
@@ -26,7 +26,7 @@ std::vector<SeamIndex> verticesOf(const SeamCurve& curve) {
 
 using Point = std::array<double, 2>;
 
-// Whether the way from b to c leads back on those before and behind it.
+// Whether the segment from b to c leads back along those before and behind it.
 bool leadsBack(const Point& a, const Point& b, const Point& c, const Point& d) {
   const auto cosine = [](const Point& from, const Point& at, const Point& to) {
     const double x = at[0] - from[0], y = at[1] - from[1], u = to[0] - at[0], v = to[1] - at[1];
@@ -35,7 +35,7 @@ bool leadsBack(const Point& a, const Point& b, const Point& c, const Point& d) {
   return cosine(a, b, c) < kBack && cosine(b, c, d) < kBack;
 }
 
-// The segments of curves on one face, seen from its first vertex.
+// The segments of curves on one face, counted from its first vertex.
 std::vector<FaceSegment> segmentsOf(const Seams& seams, const std::vector<SeamCurve>& curves,
                                     std::size_t begin, std::size_t end) {
   const auto axes = uniform::otherAxes(curves[begin].axis);
@@ -71,7 +71,8 @@ void untangle(const std::vector<Vec3>& fallbacks, Seams& seams) {
         if (leadsBack(before.a, at.a, at.b, behind.b)) back.insert(back.end(), {at.from, at.to});
       }
       const auto move = [&](std::size_t vertex) {
-        // A point on a chunk edge lies on several faces, and not every chunk sees all of them.
+        // A point on a chunk edge lies on several faces, not all of which every chunk has; it
+        // stays.
         if (vertex >= seams.arcs.size()) return;
         Vec3& offset = seams.vertices[vertex].offset;
         any |= offset != fallbacks[vertex];

@@ -13,13 +13,14 @@ namespace {
 
 // More than all edges of a strip together: no fold is worth a short edge.
 constexpr double kFold = 1e6;
-// A triangle whose normal and the mean of those of its corners have a smaller cosine is folded.
+// A triangle is folded if the cosine between its normal and the mean of those of its corners is
+// smaller.
 constexpr double kLeastCosine = 0.1;
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// Costs that differ by less are sums of the same in another order.
+// Costs that differ by less are equal but for the order of summation.
 constexpr double kSlack = 1 + 1e-9;
-// What an edge across between vertices that stand for no common arc costs more.
+// Factor on the cost of an edge across between vertices that have no arc in common.
 constexpr double kAstray = 3;
 
 // A vertex of one side, and the first of the arcs that it stands for.
@@ -28,7 +29,7 @@ struct Link {
   std::size_t arc;
 };
 
-// The vertices of a side, each run of equal ones once; a closed side starts with a fresh one.
+// The vertices of a side, each run of equal ones once; a closed side starts with a new run.
 std::vector<Link> chainOf(const std::vector<VertexIndex>& vertices, bool closed) {
   std::vector<Link> chain;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -47,8 +48,8 @@ class Stitcher {
            std::span<const Normal> normals, const MayJoin& mayJoin)
       : seam_(seam), positions_(positions), normals_(normals), mayJoin_(mayJoin) {}
 
-  // As the arcs run. Where both sides go on at once there are two ways; around a loop one of them
-  // may be an edge across that is there already.
+  // Triangles as the arcs run. Where both sides advance at once there are two ways; around a loop
+  // one of them may repeat an edge across.
   std::vector<StripTriangle> direct() {
     const std::size_t count = seam_.tiles.size();
     std::set<std::pair<VertexIndex, VertexIndex>> across;
@@ -77,7 +78,7 @@ class Stitcher {
     return std::move(strip_);
   }
 
-  // The best of all ways. Empty if it uses an edge across twice.
+  // The cheapest sequence of steps. Empty if it uses an edge across twice.
   std::vector<StripTriangle> best() {
     for (std::size_t i = 0; i < seam_.tiles.size(); ++i) {
       paired_.emplace_back(seam_.tiles[i], seam_.polyline[i]);
@@ -113,7 +114,8 @@ class Stitcher {
       add(seam_.polyline[last], seam_.tiles[last], seam_.end, last);
   }
 
-  // What a triangle costs but for its edges; its squared size makes folds comparable to them.
+  // The cost of a triangle without its edges: nothing unless it is folded; its squared size then,
+  // to be comparable with edges.
   [[nodiscard]] double stepCost(VertexIndex a, VertexIndex b, VertexIndex c) const {
     if (!isFolded({a, b, c}, positions_, normals_)) return 0;
     return kFold * ((at(c) - at(b)).squaredLength() + (at(b) - at(a)).squaredLength() +
@@ -125,7 +127,7 @@ class Stitcher {
     return (paired ? 1 : kAstray) * (at(pair.first) - at(pair.second)).squaredLength();
   }
 
-  // Turns both sides of a loop to a short edge across that the arcs have.
+  // Rotates both sides of a loop to start at a short edge across that the arcs have.
   void startNearest() {
     std::size_t best = 0;
     double least = std::numeric_limits<double>::max();
@@ -144,8 +146,7 @@ class Stitcher {
     turn(line_, seam_.polyline[best]);
   }
 
-  // Cuts off a vertex of the chunk beside a fold that stands back behind its neighbours, the one
-  // that helps most. Returns whether one helps.
+  // Cuts off the vertex of the chunk, beside a fold, that helps most. Whether one helps.
   bool cutEar() {
     double best = costs_.back();
     std::size_t ear = 0;
@@ -168,7 +169,8 @@ class Stitcher {
     return true;
   }
 
-  // The least cost of all ways without one of the tiles in between.
+  // The least cost of all sequences without one of the inner tiles: a way up to the tile before,
+  // and one on from the tile behind.
   [[nodiscard]] double costWithout(std::size_t i) {
     double least = kNever;
     for (std::size_t j = 0; j < line_.size(); ++j) {
@@ -182,7 +184,7 @@ class Stitcher {
     return least;
   }
 
-  // Whether two vertices follow each other on the chunk's side already, as in a loop of three.
+  // Whether two vertices are neighbours on the chunk's side already, as in a loop of three.
   static bool areJoined(const std::vector<Link>& tiles, VertexIndex a, VertexIndex b) {
     for (std::size_t i = 0; i + 1 < tiles.size(); ++i) {
       const VertexIndex from = tiles[i].vertex, to = tiles[i + 1].vertex;
@@ -191,7 +193,7 @@ class Stitcher {
     return false;
   }
 
-  // Places in tiles_, but for the ends, next to folded triangles of the best way; sorted.
+  // Places in tiles_, without the ends, next to folded triangles of the cheapest sequence; sorted.
   [[nodiscard]] std::vector<std::size_t> besideFolds() {
     std::vector<std::size_t> places;
     const auto note = [&](std::size_t i) {
@@ -218,7 +220,7 @@ class Stitcher {
     return costs_[i * line_.size() + j];
   }
 
-  // The pairs that a way around a loop must not come through.
+  // Pairs that a sequence around a loop must not pass: they would repeat the first edge across.
   [[nodiscard]] bool isRound(std::size_t i, std::size_t j) const {
     return seam_.closed && ((i == 0 && j == lineCount_) || (i + 1 == tiles_.size() && j == 0));
   }
@@ -229,8 +231,8 @@ class Stitcher {
     return stepCost(line_[j - 1].vertex, tiles_[i].vertex, line_[j].vertex);
   }
 
-  // What the way costs that takes the vertices as the arcs have them: no better one goes through a
-  // pair that costs more.
+  // The cost of the sequence that follows the arcs, an upper bound: no cheaper one passes a pair
+  // that costs more.
   [[nodiscard]] double costAlongArcs() const {
     const std::size_t arcs = seam_.tiles.size();
     const auto place = [&](const std::vector<Link>& chain, std::size_t k) {
@@ -248,8 +250,8 @@ class Stitcher {
     return cost;
   }
 
-  // Least costs of ways from the first pair to each other one, of those that may be on the best
-  // way.
+  // The least cost from the first pair to each other one; kNever for pairs that cannot be on the
+  // cheapest sequence. Row by row, as each pair is reached from the pair before it on one side.
   void findCosts() {
     const double most = kSlack * costAlongArcs();
     costs_.assign(tiles_.size() * line_.size(), kNever);
@@ -277,7 +279,7 @@ class Stitcher {
     }
   }
 
-  // Least costs of ways from each pair to the last, of those that findCosts() reached.
+  // The least cost from each pair to the last, of those that findCosts() reached.
   void findOnward() {
     const std::size_t width = line_.size();
     onward_.assign(costs_.size(), kNever);
@@ -324,8 +326,8 @@ class Stitcher {
   std::size_t lineCount_ = 0;       // without that
   const MayJoin& mayJoin_;
   std::vector<std::pair<VertexIndex, VertexIndex>> paired_;  // that stand for one arc; sorted
-  // Of the pairs (tile, line): the least cost of a way from the first to each, whether its last
-  // step is one from tile to tile, and the least cost of a way on to the last.
+  // For each pair of a tile and a vertex of the polyline: the least cost from the first pair,
+  // whether the last step is one between tiles, and the least cost to the last pair.
   std::vector<double> costs_;
   std::vector<std::uint8_t> byTile_;
   std::vector<double> onward_;

@@ -1,0 +1,102 @@
+#include "grid/volume.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "grid/vdb_coord.h"
+#include "support/expect_error.h"
+#include "support/fields.h"
+#include "support/print.h"
+
+namespace tufa::grid {
+namespace {
+
+using openvdb::FloatGrid;
+
+FloatGrid::Ptr ball(double radius, const openvdb::Coord& centre) {
+  const int reach = static_cast<int>(radius) + 5;
+  return test::levelSet<FloatGrid>(
+      {centre.offsetBy(-reach), centre.offsetBy(reach)}, 3,
+      [&](const openvdb::Coord& at) { return (at - centre).asVec3d().length() - radius; }, 0.5);
+}
+
+TEST(Volume, RefusesGridsWithoutAnIsosurface) {
+  const auto integers = openvdb::Int32Grid::create(1);
+  integers->setName("counts");
+  test::expectError(ErrorCode::UnsupportedGrid, "\"counts\"", [&] { requireMeshable(*integers); });
+  EXPECT_NO_THROW(requireMeshable(*FloatGrid::create(1)));
+  EXPECT_NO_THROW(requireMeshable(*openvdb::DoubleGrid::create(1)));
+}
+
+TEST(Volume, RefusesFrustums) {
+  const auto grid = FloatGrid::create(1);
+  grid->setTransform(openvdb::math::Transform::createFrustumTransform(
+      openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(10)), 0.5, 1.0));
+  test::expectError(ErrorCode::UnsupportedGrid, "only linear", [&] { requireMeshable(*grid); });
+}
+
+TEST(Volume, RefusesCoordinatesNearTheEndsOfIntegers) {
+  for (const std::int32_t at :
+       {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}) {
+    const auto grid = FloatGrid::create(1);
+    grid->tree().setValue(openvdb::Coord(0, at, 0), -1);
+    test::expectError(ErrorCode::LimitExceeded, "coordinates", [&] { requireMeshable(*grid); });
+  }
+}
+
+TEST(Volume, CountsPositionsFromItsLowestBlock) {
+  base::Job job(1, {});
+  const Volume volume = openVolume(*ball(9.3, openvdb::Coord(100, -50, 3)), {}, job);
+  Coord lowest(std::numeric_limits<std::int32_t>::max());
+  for (std::size_t i = 0; i < volume.blocks.count(); ++i) {
+    lowest = minCoord(lowest, volume.blocks.origin(static_cast<BlockRef>(i)));
+  }
+  EXPECT_EQ(volume.affine.origin(), lowest);
+  EXPECT_EQ(volume.affine.position(lowest, 0, 0, 0), Position(0, 0, 0));
+  EXPECT_DOUBLE_EQ(volume.affine.voxelSize(), 0.5);
+}
+
+TEST(Volume, ScalesALevelSetToVoxels) {
+  base::Job job(1, {});
+  const auto grid = ball(9.3, openvdb::Coord(0));
+  const Volume volume = openVolume(*grid, {}, job);
+  EXPECT_TRUE(volume.scale.distance);
+  EXPECT_TRUE(volume.scale.narrowBand);
+  EXPECT_DOUBLE_EQ(volume.scale.factor, 2);
+  EXPECT_EQ(volume.scale.isovalue, 0);
+  EXPECT_EQ(nameOf(*grid), "");
+  grid->setName("ball");
+  EXPECT_EQ(nameOf(*grid), "ball");
+}
+
+TEST(Volume, OfABoxHasTheBlocksInItAndCountsFromTheSamePoint) {
+  base::Job job(1, {});
+  const auto grid = ball(20.3, openvdb::Coord(0));
+  const Volume whole = openVolume(*grid, {}, job);
+  const base::IndexBox box{Coord(-8, -32, 0), Coord(23, 7, 31)};
+  const Volume part = partOf(whole, box);
+  EXPECT_TRUE(part.blocks.isPart());
+  EXPECT_FALSE(whole.blocks.isPart());
+  EXPECT_EQ(part.affine.origin(), whole.affine.origin());
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < whole.blocks.count(); ++i) {
+    inside += box.contains(whole.blocks.origin(static_cast<BlockRef>(i))) ? 1 : 0;
+  }
+  ASSERT_GT(inside, 0U);
+  ASSERT_LT(inside, whole.blocks.count());
+  ASSERT_EQ(part.blocks.count(), inside);
+  const auto accessor = whole.blocks.accessor(), own = part.blocks.accessor();
+  for (std::size_t i = 0; i < part.blocks.count(); ++i) {
+    const auto block = static_cast<BlockRef>(i);
+    const Coord& origin = part.blocks.origin(block);
+    EXPECT_TRUE(box.contains(origin)) << origin;
+    EXPECT_EQ(part.blocks.find(origin, *own), block);
+    const BlockRef there = whole.blocks.find(origin, *accessor);
+    ASSERT_GE(there, 0) << origin;
+    EXPECT_EQ(part.blocks.inside(block).slabs, whole.blocks.inside(there).slabs) << origin;
+  }
+}
+
+}  // namespace
+}  // namespace tufa::grid
