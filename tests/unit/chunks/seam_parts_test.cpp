@@ -110,11 +110,11 @@ TEST(FaceSegments, AreFoundInAllPairsThatMeet) {
   std::set<std::pair<std::size_t, std::size_t>> expected, found;
   for (const FaceSegment& s : segments) {
     for (const FaceSegment& t : segments) {
-      if (s.line < t.line && intersectElsewhere(s, t)) expected.emplace(s.line, t.line);
+      if (s.polyline < t.polyline && intersectElsewhere(s, t)) expected.emplace(s.polyline, t.polyline);
     }
   }
   forCrossings(segments, [&](std::size_t i, std::size_t j) {
-    const auto [low, high] = std::minmax(segments[i].line, segments[j].line);
+    const auto [low, high] = std::minmax(segments[i].polyline, segments[j].polyline);
     EXPECT_TRUE(found.emplace(low, high).second) << "twice";
   });
   EXPECT_GT(expected.size(), 100U);
@@ -145,7 +145,7 @@ struct ThreeArcs {
 TEST(CurveSide, RunsAsTheCurveDoesSeenFromBelow) {
   const ChunkSeam below = ThreeArcs().side(false);
   EXPECT_EQ(below.tiles, (std::vector<VertexIndex>{110, 111, 112}));
-  EXPECT_EQ(below.line, (std::vector<VertexIndex>{1000, 1000, 1002}));
+  EXPECT_EQ(below.polyline, (std::vector<VertexIndex>{1000, 1000, 1002}));
   EXPECT_EQ(below.begin, 1003U);
   EXPECT_EQ(below.end, 1004U);
   EXPECT_FALSE(below.closed);
@@ -154,7 +154,7 @@ TEST(CurveSide, RunsAsTheCurveDoesSeenFromBelow) {
 TEST(CurveSide, RunsTheOtherWaySeenFromAbove) {
   const ChunkSeam above = ThreeArcs().side(true);
   EXPECT_EQ(above.tiles, (std::vector<VertexIndex>{122, 121, 120}));
-  EXPECT_EQ(above.line, (std::vector<VertexIndex>{1002, 1000, 1000}));
+  EXPECT_EQ(above.polyline, (std::vector<VertexIndex>{1002, 1000, 1000}));
   EXPECT_EQ(above.begin, 1004U);
   EXPECT_EQ(above.end, 1003U);
 }

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/polygons.h"
-#include "chunks/levels/stitch.h"
+#include "chunks/seams/stitch.h"
 #include "chunks/seams/curve_side.h"
 
 namespace tufa::chunks {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "chunks/levels/stitch.h"
+#include "chunks/seams/stitch.h"
 #include "chunks/seams/curve_side.h"
 #include "intersect/surface.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "base/vertex_welder.h"
-#include "chunks/levels/stitch.h"
+#include "chunks/seams/stitch.h"
 
 namespace tufa {
 namespace {

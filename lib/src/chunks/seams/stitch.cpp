@@ -1,4 +1,4 @@
-#include "chunks/levels/stitch.h"
+#include "chunks/seams/stitch.h"
 
 #include <algorithm>
 #include <functional>
