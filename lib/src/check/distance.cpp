@@ -164,7 +164,7 @@ DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
 
 std::vector<double> distancesTo(const Mesh& mesh, const std::vector<Position>& points,
                                 const DistanceOptions& options) {
-  // A grid without a transform of its own makes voxels of the world's units.
+  // A default frame: voxels are world units.
   const grid::VoxelFrame frame;
   base::Job job(options.threads, options.progress);
   std::vector<double> distances(points.size());
