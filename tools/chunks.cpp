@@ -207,7 +207,7 @@ int runBuild(const ChunksArguments& arguments) {
   requireWritableFolder(arguments.output);
   const ChunksRun run = build(arguments);
   ContourReport contour = run.contour;
-  contour.openEdges = 0;  // has those in it where the regions end that chunks are made in
+  contour.openEdges = 0;  // would count those at the borders of regions
   noteData(contour);
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -51,7 +51,7 @@ struct Tally {
   }
 };
 
-/// The triangle's centre, and a lattice of `perEdge` points a side without the corners.
+/// The triangle's centre, and a lattice of `perEdge` points along an edge, without the corners.
 template <class Measure>
 void sampleTriangle(const checks::TriangleSoup& soup, const Triangle& triangle, int perEdge,
                     const Measure& measure) {
