@@ -159,7 +159,7 @@ std::string summary(const MeshRun& run, const MeshArguments& arguments) {
 }
 
 int runMesh(const MeshArguments& arguments) {
-  // What is plain now need not wait for the work to be done.
+  // Errors that are certain now are reported before the work is done.
   requireMeshEnding(arguments.output);
   requireWritable(arguments.output);
   const MeshRun run = runStages(arguments);
