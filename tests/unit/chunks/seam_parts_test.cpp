@@ -110,11 +110,11 @@ TEST(FaceSegments, AreFoundInAllPairsThatMeet) {
   std::set<std::pair<std::size_t, std::size_t>> expected, found;
   for (const FaceSegment& s : segments) {
     for (const FaceSegment& t : segments) {
-      if (s.polyline < t.polyline && intersectElsewhere(s, t)) expected.emplace(s.polyline, t.polyline);
+      if (s.line < t.line && intersectElsewhere(s, t)) expected.emplace(s.line, t.line);
     }
   }
   forCrossings(segments, [&](std::size_t i, std::size_t j) {
-    const auto [low, high] = std::minmax(segments[i].polyline, segments[j].polyline);
+    const auto [low, high] = std::minmax(segments[i].line, segments[j].line);
     EXPECT_TRUE(found.emplace(low, high).second) << "twice";
   });
   EXPECT_GT(expected.size(), 100U);

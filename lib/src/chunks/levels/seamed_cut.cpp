@@ -4,8 +4,8 @@
 #include <array>
 
 #include "base/polygons.h"
-#include "chunks/seams/stitch.h"
 #include "chunks/seams/curve_side.h"
+#include "chunks/seams/stitch.h"
 
 namespace tufa::chunks {
 namespace {

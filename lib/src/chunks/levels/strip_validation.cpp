@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "chunks/seams/stitch.h"
 #include "chunks/seams/curve_side.h"
+#include "chunks/seams/stitch.h"
 #include "intersect/surface.h"
 
 namespace tufa::chunks {
