@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "checker.h"
 #include "commands.h"
 #include "console.h"
 #include "number.h"
@@ -160,6 +161,7 @@ std::string summary(const AssembleRun& run, const AssembleArguments& arguments) 
 }  // namespace
 
 int runAssemble(const AssembleArguments& arguments) {
+  if (arguments.check) requireChecker();
   requireMeshEnding(arguments.output);
   requireWritable(arguments.output);
   const AssembleRun run = runStages(arguments);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "checker.h"
 #include "commands.h"
 #include "console.h"
 #include "progress_bar.h"
@@ -47,9 +48,10 @@ DistanceReport measureDistance(const Mesh& mesh, const openvdb::GridBase& grid,
 }
 
 int runCheck(const CheckArguments& arguments) {
+  requireChecker();
   // Both files are read before the work begins: a wrong name should not show minutes later.
   const Mesh mesh = readMesh(arguments.input);
-  openvdb::GridBase::Ptr grid;
+  std::shared_ptr<openvdb::GridBase> grid;
   if (arguments.against) grid = readVolume(*arguments.against, arguments.grid);
 
   const CheckReport report = checkMesh(mesh, arguments);
@@ -72,8 +74,8 @@ int runCheck(const CheckArguments& arguments) {
 
 void addCheckCommand(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* const check =
-      app.add_subcommand("check", "Say whether a mesh is watertight; exit code 1 if it is not");
+  CLI::App* const check = app.add_subcommand(
+      "check", checkerHelp("Say whether a mesh is watertight; exit code 1 if it is not"));
   check->add_option("MESH", arguments->input, "a .ply, .obj, .stl, .off or .glb file")->required();
   CLI::Option* const against =
       check->add_option("--against", arguments->against,

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "assemble.h"
+#include "checker.h"
 #include "commands.h"
 #include "console.h"
 #include "number.h"
@@ -105,7 +106,7 @@ void keepOthers(ChunkIndex& index, const std::string& folder) {
 ChunksRun build(const ChunksArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   ChunksRun run;
-  openvdb::GridBase::Ptr grid;
+  std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
   requireVoxels(*grid, arguments.input);
   const ChunkOptions options = chunkOptions(arguments, *grid, bar);
@@ -271,7 +272,8 @@ void addAssembleOptions(CLI::App& app, AssembleArguments& arguments) {
                  "with camera: pixels of error, of 1080 in height and 45 degrees")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_flag("--check", arguments.check, "check the mesh; exit 1 if it is not watertight");
+  app.add_flag("--check", arguments.check,
+               checkerHelp("check the mesh; exit 1 if it is not watertight"));
 }
 
 }  // namespace

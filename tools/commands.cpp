@@ -3,9 +3,27 @@
 #include <CLI/CLI.hpp>
 
 #include <tufa/version.h>
+#include <map>
 #include <string>
+#include <vector>
+
+#include "volume.h"
 
 namespace tufa::tools {
+namespace {
+
+/// An option whose value is one of some names.
+template <class Enum>
+void addChoice(CLI::App& app, const std::string& name, Enum& value,
+               const std::map<std::string, Enum>& choices, const std::string& help) {
+  std::vector<std::string> names;
+  for (const auto& [choice, number] : choices) names.push_back(choice);
+  app.add_option_function<std::string>(
+         name, [&value, choices](const std::string& choice) { value = choices.at(choice); }, help)
+      ->check(CLI::IsMember(names));
+}
+
+}  // namespace
 
 void declareCommand(CLI::App& app, Command& chosen) {
   app.name("tufa");
@@ -26,6 +44,33 @@ void addThreadsOption(CLI::App& app, int& threads) {
   app.add_option("--threads", threads, "most threads, 0: all")
       ->check(CLI::Range(0, kMost))
       ->capture_default_str();
+}
+
+void addContourOptions(CLI::App& app, ContourOptions& options) {
+  app.add_option("--iso", options.isovalue,
+                 "value on the surface; default: 0 for level sets, else half way between the "
+                 "least and the greatest value");
+  addChoice<Inside>(app, "--inside", options.inside,
+                    {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
+                    "which side of the isovalue is solid (default auto)");
+  addChoice<Ambiguity>(app, "--ambiguity", options.ambiguity,
+                       {{"separate", Ambiguity::Separate},
+                        {"join", Ambiguity::Join},
+                        {"asymptotic", Ambiguity::Asymptotic},
+                        {"chord", Ambiguity::Chord}},
+                       "rule for ambiguous cell faces (default separate)");
+  addChoice<Normals>(
+      app, "--normals", options.normals,
+      {{"gradient", Normals::Gradient}, {"faces", Normals::Faces}, {"none", Normals::None}},
+      "where the normals come from (default gradient)");
+  addChoice<NonFinite>(app, "--nan", options.nonFinite,
+                       {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
+                       "what to do with NaN and infinite values (default refuse)");
+  app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
+  app.add_flag("--simplify,!--no-simplify", options.simplify,
+               "collapse edges of an adaptive mesh as far as the tolerance allows (default)");
+  app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
+  addThreadsOption(app, options.threads);
 }
 
 }  // namespace tufa::tools

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "base/vec3.h"
+#include "checker.h"
 #include "commands.h"
 #include "console.h"
 #include "lod_page.h"
@@ -66,10 +68,9 @@ double smallestAngle(const Mesh& mesh) {
   for (const Triangle& t : triangulate(mesh)) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto point = [&](std::size_t k) {
-        const Position& p = mesh.positions[t.vertices[(i + k) % 3]];
-        return openvdb::Vec3d(p.x, p.y, p.z);
+        return Vec3(mesh.positions[t.vertices[(i + k) % 3]]);
       };
-      const openvdb::Vec3d a = point(1) - point(0), b = point(2) - point(0);
+      const Vec3 a = point(1) - point(0), b = point(2) - point(0);
       smallest = std::min(smallest, kDegrees * std::atan2(a.cross(b).length(), a.dot(b)));
     }
   }
@@ -90,9 +91,9 @@ LodOptions chainOptions(const LodArguments& arguments, const openvdb::GridBase& 
 LodRun runStages(const LodArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   LodRun run;
-  openvdb::GridBase::Ptr grid;
+  std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
-  run.gridName = grid->getName();
+  run.gridName = nameOf(*grid);
   requireVoxels(*grid, arguments.input);
   const LodOptions options = chainOptions(arguments, *grid, bar);
   run.dropping = options.allowTopologyChange;
@@ -285,6 +286,7 @@ void settle(LodArguments& arguments, const CLI::App& command) {
           arguments.output + ": only .glb holds several levels; --separate makes one file a level");
     }
   }
+  if (arguments.check || arguments.report) requireChecker();
   requireWritable(lodFile(arguments.output, 0));
   if (arguments.report) requireWritable(*arguments.report);
   arguments.writing.name = assetName(arguments.output);
@@ -384,8 +386,10 @@ void addLodCommand(CLI::App& app, Command& chosen) {
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);
   addContourOptions(*lod, arguments->lod.contour);
-  lod->add_option("--report", arguments->report, "a page of HTML with pictures of all levels");
-  lod->add_flag("--check", arguments->check, "check every level; exit 1 if one is not watertight");
+  lod->add_option("--report", arguments->report,
+                  checkerHelp("a page of HTML with pictures of all levels"));
+  lod->add_flag("--check", arguments->check,
+                checkerHelp("check every level; exit 1 if one is not watertight"));
   lod->add_flag("--json", arguments->json, "one JSON object on standard output");
   lod->add_flag("--quiet", arguments->quiet, "no table and no progress bar");
   lod->callback([arguments, lod, &chosen] {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "checker.h"
 #include "commands.h"
 #include "console.h"
 #include "progress_bar.h"
@@ -45,22 +46,12 @@ struct MeshRun {
   double writeSeconds = 0;
 };
 
-openvdb::FloatGrid::ConstPtr readToleranceGrid(const std::string& file, const std::string& name) {
-  const openvdb::GridBase::Ptr grid = readVolume(file, name);
-  if (!grid->isType<openvdb::FloatGrid>()) {
-    throw Error(ErrorCode::UnsupportedGrid, "the tolerance grid \"" + name + "\" in " + file +
-                                                " holds " + grid->valueType() +
-                                                " values; it must be a float grid");
-  }
-  return openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-}
-
 MeshRun runStages(const MeshArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   MeshRun run;
-  openvdb::GridBase::Ptr grid;
+  std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
-  run.gridName = grid->getName();
+  run.gridName = nameOf(*grid);
   requireVoxels(*grid, arguments.input);
 
   ContourOptions contourOptions = arguments.contour;
@@ -160,6 +151,7 @@ std::string summary(const MeshRun& run, const MeshArguments& arguments) {
 
 int runMesh(const MeshArguments& arguments) {
   // Errors that are certain now are reported before the work is done.
+  if (arguments.check) requireChecker();
   requireMeshEnding(arguments.output);
   requireWritable(arguments.output);
   const MeshRun run = runStages(arguments);
@@ -204,7 +196,8 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
   mesh->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
   addAdaptiveOptions(*mesh, *arguments);
   addContourOptions(*mesh, arguments->contour);
-  mesh->add_flag("--check", arguments->check, "check the mesh; exit 1 if it is not watertight");
+  mesh->add_flag("--check", arguments->check,
+                 checkerHelp("check the mesh; exit 1 if it is not watertight"));
   mesh->add_flag("--json", arguments->json, "one JSON object on standard output");
   mesh->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   mesh->callback([arguments, &chosen] { chosen = [arguments] { return runMesh(*arguments); }; });

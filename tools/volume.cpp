@@ -1,13 +1,11 @@
 #include "volume.h"
 
-#include <CLI/CLI.hpp>
+#include <openvdb/openvdb.h>
 
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <cmath>
-#include <map>
 
-#include "commands.h"
 #include "console.h"
 #include "crash_guard.h"
 #include "number.h"
@@ -35,23 +33,24 @@ bool openOnlyWhereDataEnds(const CheckReport& check, const ContourReport& report
          check.invalidFaces + check.duplicateFaces == 0;
 }
 
-/// An option whose value is one of some names.
-template <class Enum>
-void addChoice(CLI::App& app, const std::string& name, Enum& value,
-               const std::map<std::string, Enum>& choices, const std::string& help) {
-  std::vector<std::string> names;
-  for (const auto& [choice, number] : choices) names.push_back(choice);
-  app.add_option_function<std::string>(
-         name, [&value, choices](const std::string& choice) { value = choices.at(choice); }, help)
-      ->check(CLI::IsMember(names));
-}
-
 }  // namespace
 
-openvdb::GridBase::Ptr readVolume(const std::string& file, const std::optional<std::string>& name) {
+std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
+                                              const std::optional<std::string>& name) {
   const CrashGuard guard(file);
   return readGrid(file, name);
 }
+
+std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
+                                                           const std::string& name) {
+  const openvdb::GridBase::Ptr grid = readVolume(file, name);
+  if (grid->isType<openvdb::FloatGrid>()) return grid;
+  throw Error(ErrorCode::UnsupportedGrid, "the tolerance grid \"" + name + "\" in " + file +
+                                              " holds " + grid->valueType() +
+                                              " values; it must be a float grid");
+}
+
+std::string nameOf(const openvdb::GridBase& grid) { return grid.getName(); }
 
 void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
   if (!grid.empty()) return;
@@ -85,33 +84,6 @@ double readTolerance(const std::string& option, const std::string& text,
                     text + "\"");
   }
   return world ? *value / std::cbrt(grid.transform().voxelVolume()) : *value;
-}
-
-void addContourOptions(CLI::App& app, ContourOptions& options) {
-  app.add_option("--iso", options.isovalue,
-                 "value on the surface; default: 0 for level sets, else half way between the "
-                 "least and the greatest value");
-  addChoice<Inside>(app, "--inside", options.inside,
-                    {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
-                    "which side of the isovalue is solid (default auto)");
-  addChoice<Ambiguity>(app, "--ambiguity", options.ambiguity,
-                       {{"separate", Ambiguity::Separate},
-                        {"join", Ambiguity::Join},
-                        {"asymptotic", Ambiguity::Asymptotic},
-                        {"chord", Ambiguity::Chord}},
-                       "rule for ambiguous cell faces (default separate)");
-  addChoice<Normals>(
-      app, "--normals", options.normals,
-      {{"gradient", Normals::Gradient}, {"faces", Normals::Faces}, {"none", Normals::None}},
-      "where the normals come from (default gradient)");
-  addChoice<NonFinite>(app, "--nan", options.nonFinite,
-                       {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
-                       "what to do with NaN and infinite values (default refuse)");
-  app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
-  app.add_flag("--simplify,!--no-simplify", options.simplify,
-               "collapse edges of an adaptive mesh as far as the tolerance allows (default)");
-  app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
-  addThreadsOption(app, options.threads);
 }
 
 void noteData(const ContourReport& report) {

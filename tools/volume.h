@@ -1,10 +1,10 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
 #include <tufa/check.h>
 #include <tufa/contour.h>
+#include <tufa/openvdb_fwd.h>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -24,8 +24,16 @@ void addContourOptions(CLI::App& app, ContourOptions& options);
                                    const openvdb::GridBase& grid);
 
 /// readGrid(), under a CrashGuard.
-[[nodiscard]] openvdb::GridBase::Ptr readVolume(const std::string& file,
-                                                const std::optional<std::string>& name);
+[[nodiscard]] std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
+                                                            const std::optional<std::string>& name);
+
+/// The same for a grid that multiplies the tolerance. Throws Error(UnsupportedGrid) if its values
+/// are no floats: contour() would find that only after much work.
+[[nodiscard]] std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
+                                                                         const std::string& name);
+
+/// The grid's name, empty if it has none.
+[[nodiscard]] std::string nameOf(const openvdb::GridBase& grid);
 
 /// Throws Error(UnsupportedGrid) if the grid has no active voxels.
 void requireVoxels(const openvdb::GridBase& grid, const std::string& file);

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
-
-#include <array>
+#include "base/vec3.h"
 
 namespace tufa::render {
-
-using Vec3 = openvdb::Vec3d;
 
 /// An orthographic view: x to the right, y down, in pixels; depth grows away from the eye.
 struct Camera {

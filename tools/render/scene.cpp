@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -59,7 +60,7 @@ class CornerNormals {
     }
   }
 
-  [[nodiscard]] Vec3 flat(std::size_t facet) const { return normals_[facet].unitSafe(); }
+  [[nodiscard]] Vec3 flat(std::size_t facet) const { return normals_[facet].unitOrX(); }
 
   [[nodiscard]] Vec3 smooth(std::size_t facet, VertexIndex vertex) const {
     const Vec3 own = flat(facet);
@@ -67,13 +68,10 @@ class CornerNormals {
     for (std::size_t i = begin_[vertex]; i < begin_[vertex + 1]; ++i) {
       if (flat(around_[i]).dot(own) > kSmoothCosine) sum += normals_[around_[i]];
     }
-    return sum.unitSafe();
+    return sum.unitOrX();
   }
 
-  static Vec3 point(const Mesh& mesh, VertexIndex vertex) {
-    const Position& p = mesh.positions[vertex];
-    return {p.x, p.y, p.z};
-  }
+  static Vec3 point(const Mesh& mesh, VertexIndex vertex) { return mesh.positions[vertex]; }
 
  private:
   std::vector<Vec3> normals_;  ///< twice the area long
@@ -93,10 +91,9 @@ Camera aim(const Mesh& mesh, const View& view, int width, int height) {
   const double infinity = std::numeric_limits<double>::infinity();
   Vec3 low(infinity), high(-infinity);
   for (const Position& p : mesh.positions) {
-    const Vec3 q(p.x, p.y, p.z);
-    const Vec3 seen(camera.right.dot(q), camera.up.dot(q), camera.toEye.dot(q));
-    low = openvdb::math::minComponent(low, seen);
-    high = openvdb::math::maxComponent(high, seen);
+    const Vec3 seen(camera.right.dot(p), camera.up.dot(p), camera.toEye.dot(p));
+    low = minVec3(low, seen);
+    high = maxVec3(high, seen);
   }
   if (mesh.positions.empty()) return camera;
   const Vec3 middle = 0.5 * (low + high);
@@ -119,8 +116,8 @@ class Painter {
       : mesh_(mesh), view_(view), camera_(aim(mesh, view, width, height)), layer_() {
     layer_.color = Image(width, height, kGround);
     layer_.depth.assign(layer_.color.pixels.size(), std::numeric_limits<float>::infinity());
-    key_ = (0.75 * camera_.toEye + 0.8 * camera_.up - 0.75 * camera_.right).unit();
-    fill_ = (camera_.toEye + 0.1 * camera_.up + 1.1 * camera_.right).unit();
+    key_ = (0.75 * camera_.toEye + 0.8 * camera_.up - 0.75 * camera_.right).unitOrX();
+    fill_ = (camera_.toEye + 0.1 * camera_.up + 1.1 * camera_.right).unitOrX();
   }
 
   Layer paint() {
@@ -160,7 +157,7 @@ class Painter {
         const std::size_t pixel = layer_.color.index(x, y);
         if (depth >= layer_.depth[pixel]) continue;
         layer_.depth[pixel] = depth;
-        Color color = shade((share[0] * n[0] + share[1] * n[1] + share[2] * n[2]).unitSafe(), back);
+        Color color = shade((share[0] * n[0] + share[1] * n[1] + share[2] * n[2]).unitOrX(), back);
         if (view_.edges) drawEdges(facet, p, share, area, color);
         layer_.color.pixels[pixel] = color;
       }
@@ -203,7 +200,7 @@ class Painter {
     const double sky = 0.5 + 0.5 * normal.dot(camera_.up);
     const double key = std::max(0.0, normal.dot(key_)), fill = std::max(0.0, normal.dot(fill_));
     const auto light = static_cast<float>(0.14 + 0.34 * sky + 0.62 * key + 0.22 * fill);
-    const double gloss = std::pow(std::max(0.0, normal.dot((key_ + camera_.toEye).unit())), 40);
+    const double gloss = std::pow(std::max(0.0, normal.dot((key_ + camera_.toEye).unitOrX())), 40);
     Color color = view_.colors ? kBare : back ? kBackFace : kSurface;
     for (float& c : color) c = c * light + 0.07F * static_cast<float>(gloss);
     return color;

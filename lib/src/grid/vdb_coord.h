@@ -1,7 +1,6 @@
 #pragma once
 
-#include <openvdb/math/Coord.h>
-#include <openvdb/math/Vec3.h>
+#include <openvdb/Types.h>
 
 #include "base/vec3.h"
 

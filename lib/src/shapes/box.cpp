@@ -1,3 +1,5 @@
+#include <openvdb/math/Mat3.h>
+
 #include <algorithm>
 #include <cmath>
 

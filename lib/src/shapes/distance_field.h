@@ -1,6 +1,7 @@
 #pragma once
 
-#include <openvdb/openvdb.h>
+// OpenVDB's vectors alone: its grids would cost seconds in each file.
+#include <openvdb/Types.h>
 
 #include <array>
 

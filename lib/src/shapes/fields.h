@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tufa/shapes.h>
+#include <tufa/mesh.h>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -28,8 +28,5 @@ namespace tufa::shapes {
 
 /// Points from `a` to `b`, both included, at most `spacing` apart, in world space.
 void appendSegment(const Vec3& a, const Vec3& b, double spacing, std::vector<Position>& points);
-
-[[nodiscard]] openvdb::FloatGrid::Ptr makeNoise(const ShapeOptions& options);
-[[nodiscard]] openvdb::FloatGrid::Ptr makeFog(const ShapeOptions& options);
 
 }  // namespace tufa::shapes

@@ -1,12 +1,13 @@
 // Noise and fog: volumes that are not distance fields.
 
+#include "shapes/random_volumes.h"
+
 #include <tufa/error.h>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "base/number_text.h"
-#include "shapes/fields.h"
 #include "shapes/hash.h"
 #include "shapes/sampler.h"
 

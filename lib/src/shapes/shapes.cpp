@@ -7,6 +7,7 @@
 
 #include "base/number_text.h"
 #include "shapes/fields.h"
+#include "shapes/random_volumes.h"
 #include "shapes/sampler.h"
 
 namespace tufa {

@@ -29,7 +29,7 @@ std::size_t partNamed(const std::string& name) {
 
 std::string chunkName(const Coord& index, std::size_t level) {
   std::string name = "chunk";
-  for (int axis = 0; axis < 3; ++axis) name += "_" + std::to_string(index[axis]);
+  for (int axis = 0; axis < 3; ++axis) name.append("_").append(std::to_string(index[axis]));
   return name + "_LOD" + std::to_string(level);
 }
 
