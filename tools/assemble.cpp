@@ -88,7 +88,7 @@ Lods chooseLods(const ChunkIndex& index, const AssembleArguments& arguments) {
   return Lods(index.chunks.size(), level);
 }
 
-/// All chunks, each with the mesh of its own level alone.
+/// All chunks, each with the mesh of its own LOD only.
 std::vector<Chunk> readChunks(const ChunkIndex& index, const Lods& lods, const std::string& folder,
                               ProgressBar& bar) {
   const Progress progress = bar.callback();

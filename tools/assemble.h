@@ -16,7 +16,7 @@ struct AssembleArguments {
   bool quiet = false;
 };
 
-/// Reads the chunks, writes the mesh, says what it found; gives the exit code.
+/// Reads the chunks, writes the mesh, reports what it found; returns the exit code.
 int runAssemble(const AssembleArguments& arguments);
 
 }  // namespace tufa::tools

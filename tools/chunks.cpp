@@ -70,7 +70,8 @@ ChunkOptions chunkOptions(const ChunksArguments& arguments, const openvdb::GridB
   return options;
 }
 
-/// Throws Error(UnwritableFile) if it is plain now that the folder could not be made or written to.
+/// Throws Error(UnwritableFile) if it is certain already that the folder could not be made or
+/// written to.
 void requireWritableFolder(const std::filesystem::path& folder) {
   requireWritable(std::filesystem::is_directory(folder) ? folder / "chunks.json" : folder);
 }
@@ -84,7 +85,7 @@ void makeFolder(const std::string& folder) {
               "cannot make the folder " + folder + ": " + error.message());
 }
 
-/// Adds the chunks of an earlier run that this one has not made anew.
+/// Adds the chunks of an earlier run that this one has not built again.
 void keepOthers(ChunkIndex& index, const std::string& folder) {
   if (!std::filesystem::exists(std::filesystem::path(folder) / "chunks.json")) return;
   const ChunkIndex before = readChunkIndex(folder);
@@ -133,7 +134,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   return run;
 }
 
-/// What all chunks have at one level together.
+/// The sums over all chunks at one LOD.
 struct LevelSum {
   std::size_t interior = 0;
   std::size_t regular = 0;
@@ -207,7 +208,7 @@ int runBuild(const ChunksArguments& arguments) {
   requireWritableFolder(arguments.output);
   const ChunksRun run = build(arguments);
   ContourReport contour = run.contour;
-  contour.openEdges = 0;  // has those in it where the regions end that chunks are made in
+  contour.openEdges = 0;  // would count those at the borders of regions
   noteData(contour);
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -8,10 +8,10 @@ class App;
 
 namespace tufa::tools {
 
-/// What a subcommand does once the command line is read; gives the exit code.
+/// The work of a subcommand once the command line is read; returns the exit code.
 using Command = std::function<int()>;
 
-/// Declares the whole command: what it is, and its subcommands.
+/// Declares the whole command and its subcommands.
 void declareCommand(CLI::App& app, Command& chosen);
 
 // Each declares one subcommand with its options, and puts its work into `chosen` when the command

@@ -6,8 +6,8 @@
 
 namespace tufa::tools {
 
-/// Turns Ctrl-C and SIGTERM into a flag, and a broken pipe or a file over the limit of its size
-/// into an error of the write.
+/// Makes Ctrl-C and SIGTERM set a flag, and a broken pipe or a file over its size limit an error of
+/// the write.
 void installSignalHandlers();
 
 /// Whether the user asked to stop.

@@ -15,7 +15,7 @@ constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 std::string message;  // made beforehand: a signal handler may not
 
 void refuse(int /*signal*/) {
-  // Nothing is left to be done if that fails.
+  // If that fails, nothing more can be done.
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
   ::_exit(kUnusableFile);
 }

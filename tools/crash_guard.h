@@ -4,9 +4,9 @@
 
 namespace tufa::tools {
 
-/// While it lives, a crash ends the program as a damaged file does: with one line that names the
-/// file, and exit code 3. OpenVDB's reader trusts what it reads, so damage can make it crash;
-/// nothing is being written at that time. One at a time.
+/// While an object exists, a crash ends the program as a damaged file does: with one line that
+/// names the file, and exit code 3. OpenVDB's reader trusts what it reads, so damage can make it
+/// crash; nothing is being written at that time. One object at a time.
 class CrashGuard {
  public:
   explicit CrashGuard(const std::string& file);

@@ -53,7 +53,7 @@ struct LodRun {
   ContourReport contour;
   LodWriteReport written;
   std::vector<double> smallestAngles;  ///< degrees
-  std::vector<CheckReport> checks;     ///< empty, or one for each level
+  std::vector<CheckReport> checks;     ///< empty, or one for each LOD
   double readSeconds = 0;
   double chainSeconds = 0;
   double checkSeconds = 0;
@@ -200,7 +200,7 @@ std::string layOut(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-/// Headings and one row a level.
+/// Headings and one row for each LOD.
 std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
   std::vector<std::vector<std::string>> rows = {{"level", "triangles", "error (voxels)",
                                                  "error (world)", "smallest angle", "coverage",
@@ -231,7 +231,7 @@ std::string summary(const LodRun& run) {
   return text + "write " + shortNumber(run.writeSeconds) + " s\n";
 }
 
-/// Says on standard error what the user should know; gives the exit code.
+/// Prints what the user should know to standard error; returns the exit code.
 int judge(const LodRun& run) {
   noteData(run.contour);
   if (!run.chain.stopped.empty()) printNote("note: " + run.chain.stopped);
@@ -255,13 +255,13 @@ bool isGlb(const std::filesystem::path& path) {
   return ending == ".glb";
 }
 
-/// The output with braces where the level's number goes, if there is to be a file for each.
+/// The output with braces for the LOD's number, if there is to be a file for each.
 std::filesystem::path withBraces(const std::filesystem::path& path) {
   if (lodFile(path, 0) != path) return path;
   return path.parent_path() / (path.stem().string() + "_LOD{}" + path.extension().string());
 }
 
-/// The name of the asset: that of the file, without what stands for the level.
+/// The name of the asset: that of the file, without the place of the LOD.
 std::string assetName(const std::filesystem::path& path) {
   std::string name = path.stem().string();
   for (const char* part : {"_LOD{}", "{}"}) {
@@ -271,7 +271,7 @@ std::string assetName(const std::filesystem::path& path) {
   return name.empty() ? "mesh" : name;
 }
 
-/// Reads what several options say together. Throws Error(InvalidArgument).
+/// Reads options that depend on each other. Throws Error(InvalidArgument).
 void settle(LodArguments& arguments, const CLI::App& command) {
   if (arguments.separate) arguments.output = withBraces(arguments.output).string();
   requireMeshEnding(arguments.output);

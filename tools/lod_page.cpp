@@ -123,7 +123,7 @@ constexpr const char* kStyle =
     ".legend span{display:inline-block;width:9rem;height:.7rem;vertical-align:middle;"
     "border-radius:2px}";
 
-/// Rendering has no progress of its own: between pictures the user may still stop it.
+/// Rendering has no progress of its own: checks for cancellation between pictures.
 void report(const LodPage& page, std::size_t done, std::size_t all) {
   if (!page.progress) return;
   if (!page.progress("pictures", static_cast<double>(done) / static_cast<double>(all))) {

@@ -23,7 +23,7 @@ int exitCodeOf(const tufa::Error& error) {
   }
 }
 
-/// Runs the subcommand; whatever goes wrong becomes one line and an exit code.
+/// Runs the subcommand; every error becomes one line and an exit code.
 int runGuarded(const Command& command) {
   try {
     return command();

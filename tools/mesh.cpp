@@ -150,8 +150,8 @@ std::string summary(const MeshRun& run, const MeshArguments& arguments) {
 }
 
 int runMesh(const MeshArguments& arguments) {
+  // Errors that are certain now are reported before the work is done.
   if (arguments.check) requireChecker();
-  // What is plain now need not wait for the work to be done.
   requireMeshEnding(arguments.output);
   requireWritable(arguments.output);
   const MeshRun run = runStages(arguments);

@@ -23,7 +23,7 @@ Options optionsOf(const CLI::App& app, bool positional) {
 
 Apps subcommandsOf(const CLI::App& app) { return app.get_subcommands({}); }
 
-/// Text for troff: a dash that may be copied, and no line that looks like a request.
+/// Text for troff: dashes that can be copied, and no line that troff would read as a request.
 std::string troff(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

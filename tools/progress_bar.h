@@ -6,8 +6,8 @@
 
 namespace tufa::tools {
 
-/// A line on standard error that shows how far the work is: only where standard error is a
-/// terminal, and only from the second second on. Vanishes at the end.
+/// A line on standard error that shows the progress: only if standard error is a terminal, and only
+/// from the second second on. Removed at the end.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);

@@ -7,8 +7,8 @@
 
 namespace tufa::tools {
 
-/// What check() found, for programs. Lists at most the first 100 pieces and says so; figures that
-/// are not finite become null.
+/// What check() found, for programs. Lists at most the first 100 components and says so; figures
+/// that are not finite become null.
 [[nodiscard]] nlohmann::ordered_json toJson(const CheckReport& report);
 
 /// What checkAgainst() measured, for programs.

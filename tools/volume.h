@@ -16,7 +16,7 @@ namespace tufa::tools {
 
 // What the commands that mesh a volume share.
 
-/// Declares the options that say where the surface of a volume lies and how level 0 is made.
+/// Declares the options for where the surface of a volume lies and how its finest mesh is made.
 void addContourOptions(CLI::App& app, ContourOptions& options);
 
 /// "0.1" is in voxels, "0.1w" in world units; gives voxels. `option` is for the message.
@@ -42,13 +42,13 @@ void requireVoxels(const openvdb::GridBase& grid, const std::string& file);
 void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
                     const std::string& file);
 
-/// Says on standard error what the user should know about the data.
+/// Prints what the user should know about the data to standard error.
 void noteData(const ContourReport& report);
 
-/// Says on standard error in what a mesh, named by `what`, is not watertight.
+/// Prints to standard error in what a mesh, named by `what`, is not watertight.
 void noteBroken(const CheckReport& check, const ContourReport& report, const std::string& what);
 
-/// Seconds that a piece of work takes.
+/// Seconds that some work takes.
 template <class Work>
 double timed(Work&& work) {
   const auto start = std::chrono::steady_clock::now();

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "grid/openvdb_templates.h"
 #include "fuzz.h"
+#include "grid/openvdb_templates.h"
 #include "support/mesh_oracle.h"
 
 namespace {

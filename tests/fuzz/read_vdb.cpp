@@ -5,8 +5,8 @@
 #include <tufa/io.h>
 #include <new>
 
-#include "grid/openvdb_templates.h"
 #include "fuzz.h"
+#include "grid/openvdb_templates.h"
 #include "memory_file.h"
 
 namespace {

@@ -12,8 +12,8 @@ struct Camera {
   double halfWidth = 0;   ///< of the picture, in pixels
   double halfHeight = 0;
 
-  /// `azimuth` turns about z, from the x axis; `elevation` is over the xy plane; both in degrees.
-  /// If `yUp`, y takes the place of z, z that of x, and x that of y.
+  /// `azimuth` is the angle about z from the x axis; `elevation` is over the xy plane; both in
+  /// degrees. If `yUp`, y takes the place of z, z that of x, and x that of y.
   static Camera looking(double azimuth, double elevation, bool yUp);
 
   [[nodiscard]] Vec3 project(const Vec3& p) const {

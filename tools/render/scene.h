@@ -26,8 +26,8 @@ struct View {
   SurfaceColors colors;  ///< of the surface in place of its plain one; asked once a picture
 };
 
-/// The same view with a place and a width of its own, in which a mesh fits a picture: other meshes
-/// are then seen from the same place.
+/// The same view with the centre and width that fit a mesh into a picture: other meshes can then be
+/// shown in the same view.
 [[nodiscard]] View fitted(const Mesh& mesh, const View& view, int width, int height);
 
 /// Takes a picture of a mesh on a light ground.

@@ -11,20 +11,21 @@
 
 namespace tufa {
 
-/// One connected piece of the surface: vertices that a chain of faces joins, be it at a vertex.
+/// One connected component of the surface: vertices that a chain of faces joins, if only at a
+/// vertex.
 struct CheckComponent {
   std::size_t vertices = 0;           ///< that its faces use
   std::size_t triangles = 0;          ///< quads count as two
   long long eulerCharacteristic = 0;  ///< V - E + F
-  /// Handles: (2 - eulerCharacteristic) / 2; unset unless the piece is a closed, oriented
+  /// Handles: (2 - eulerCharacteristic) / 2; unset unless the component is a closed, oriented
   /// 2-manifold.
   std::optional<long long> genus;
 };
 
 /// What check() found. Everything counts triangles, quads being split from vertex 0 to vertex 2.
 ///
-/// Invalid and collapsed faces are counted and then left out: edges, vertices, boundaries, pieces,
-/// area and volume are those of the other faces.
+/// Invalid and collapsed faces are counted and then left out: edges, vertices, boundaries,
+/// components, area and volume are those of the other faces.
 struct CheckReport {
   std::size_t vertices = 0;        ///< used by a face
   std::size_t triangles = 0;       ///< all of them, the faces that are left out included
@@ -40,9 +41,9 @@ struct CheckReport {
   std::size_t collapsedFaces = 0;    ///< of these, the faces with a repeated index
   std::size_t duplicateFaces = 0;    ///< triangles with the vertex set of an earlier one
   std::size_t invalidFaces = 0;      ///< an index out of range, or a position that is not finite
-  /// Pairs of triangles that meet elsewhere than in the vertices or the edge whose indices they
-  /// share (exact predicates). Degenerate faces are in no pair; duplicates are pairs. Unset if it
-  /// was not asked for.
+  /// Pairs of triangles that intersect elsewhere than in the vertices or the edge whose indices
+  /// they share (exact predicates). Degenerate faces are in no pair; duplicates are pairs. Unset if
+  /// it was not asked for.
   std::optional<std::size_t> selfIntersectingPairs;
   std::vector<CheckComponent> components;  ///< largest first
   long long eulerCharacteristic = 0;       ///< of the whole mesh
@@ -56,15 +57,15 @@ struct CheckReport {
   bool closed = false;    ///< no boundary edge, at least one face
   bool manifold = false;  ///< no non-manifold edge or vertex
   bool oriented = false;  ///< no misoriented edge
-  /// Closed, oriented, and normals point away from the solid: out on outermost pieces, into the
-  /// cavity on pieces inside those, and so on. A piece that intersects others lies where most of
-  /// its vertices do.
+  /// Closed, oriented, and normals point away from the solid: out on outermost components, into the
+  /// cavity on components inside those, and so on. A component that intersects others lies where
+  /// most of its vertices do.
   bool outward = false;
-  /// CGAL's does_bound_a_volume: the directions of nested pieces alternate; a mesh turned inside
-  /// out as a whole bounds a volume too. False unless the mesh is closed, manifold, oriented and
-  /// was searched for intersecting pairs and has none: CGAL promises nothing for other meshes.
-  /// Meshes of more than 1000 pieces are answered by the test behind `outward`, as CGAL compares
-  /// pieces in pairs.
+  /// CGAL's does_bound_a_volume: the directions of nested components alternate; a mesh turned
+  /// inside out as a whole bounds a volume too. False unless the mesh is closed, manifold, oriented
+  /// and was searched for intersecting pairs and has none: CGAL promises nothing for other meshes.
+  /// For meshes of more than 1000 components the test behind `outward` answers, as CGAL compares
+  /// components in pairs.
   bool boundsVolume = false;
   double seconds = 0;  ///< wall clock
 
@@ -82,12 +83,11 @@ struct CheckOptions {
   Progress progress = {};  ///< called from the calling thread; may cancel
 };
 
-/// Answers whether a mesh is closed, 2-manifold, oriented, free of self-intersections, and what its
-/// topology is. Takes any mesh, broken ones too: what is wrong is counted, never thrown. Throws
-/// Error only for the call itself: InvalidArgument (threads), LimitExceeded (2^32 triangles),
-/// Cancelled.
+/// Checks whether a mesh is closed, 2-manifold, oriented and free of self-intersections, and finds
+/// its topology. Takes any mesh: faults are counted, never thrown. Throws Error only for the call
+/// itself: InvalidArgument (threads), LimitExceeded (2^32 triangles), Cancelled.
 ///
-/// Uses CGAL (GPL): lives in the target Tufa::check, apart from Tufa::tufa.
+/// Uses CGAL (GPL): it is in a target of its own, Tufa::check.
 [[nodiscard]] TUFA_API CheckReport check(const Mesh& mesh, const CheckOptions& options = {});
 
 /// Distances in voxels, where a voxel is the cube root of its world volume. Infinite where there
@@ -111,7 +111,7 @@ struct DistanceReport {
 /// Options of checkAgainst().
 struct DistanceOptions {
   std::optional<double> isovalue = {};  ///< unset: as contour() chooses
-  int samplesPerEdge = 3;  ///< each triangle is sampled on a lattice with that many a side
+  int samplesPerEdge = 3;  ///< each triangle is sampled on a lattice with that many along an edge
   int threads = 0;         ///< as in CheckOptions
   Progress progress = {};  ///< called from the calling thread; may cancel
 };

@@ -20,21 +20,21 @@ inline constexpr int kChunkFaces = 6;
 
 /// Options of buildChunks().
 struct ChunkOptions {
-  /// How the surface is read. `tolerance` is that of level 0. `simplify` collapses edges of the
-  /// chunks but for those on their faces. Not looked at: `uniform`, `normals` (always of the
-  /// gradient), `keepLeaves`; no cell is larger than a chunk.
+  /// How the surface is read. `tolerance` is that of LOD 0. `simplify` collapses edges inside
+  /// chunks, not those on their faces. Ignored: `uniform`, `normals` (always the gradient's),
+  /// `keepLeaves`; no cell is larger than a chunk.
   ContourOptions contour;
   int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
-  int levels = 4;      ///< of each chunk, 1 to 16
-  double factor = 4;   ///< each level's tolerance over that of the level before; above 1
-  /// The chunks to make; empty: all. A chunk is the same bytes whichever are made with it.
+  int levels = 4;      ///< LODs of each chunk, 1 to 16
+  double factor = 4;   ///< each LOD's tolerance over that of the LOD before; above 1
+  /// The chunks to make; empty: all. A chunk has the same bytes whichever are made with it.
   std::vector<Coord> only;
 };
 
-/// A curve in which the surface passes a face of a chunk, as one level of the chunk has it. The
-/// uniform mesh divides it into short arcs, the same on both sides of the face and at every level.
+/// A curve along which the surface passes a face of a chunk, at one LOD of the chunk. The uniform
+/// mesh divides it into short arcs, the same on both sides of the face and at every LOD.
 struct ChunkSeam {
-  /// What `begin` and `end` are where there is no such vertex.
+  /// The value of `begin` and `end` if there is no such vertex.
   static constexpr VertexIndex kNone = std::numeric_limits<VertexIndex>::max();
 
   /// For each arc the vertex inside the chunk that stands for it. From arc to arc the chunk's
@@ -46,17 +46,17 @@ struct ChunkSeam {
   bool closed = false;                ///< the last arc is followed by the first
 };
 
-/// A chunk at one level: an interior, and for each face two strips of which one is drawn. All
-/// triangles name the same vertices.
+/// A chunk at one LOD: an interior, and for each face two strips, one of which is drawn. All
+/// triangles index the same vertices.
 struct ChunkLevel {
   std::vector<Position> positions;  ///< world space
   std::vector<Normal> normals;      ///< one for each position
   std::vector<Triangle> interior;   ///< always drawn
-  /// Towards a neighbour of the same level or a finer one.
+  /// To a neighbour of the same LOD or a finer one.
   std::array<std::vector<Triangle>, kChunkFaces> regular;
-  /// Towards a neighbour that is coarser by one level; none at the last level.
+  /// To a neighbour that is coarser by one LOD; none at the last LOD.
   std::array<std::vector<Triangle>, kChunkFaces> transition;
-  /// What the strips were made of: for strips to neighbours that are coarser by more.
+  /// The curves of the strips, for strips to neighbours that are coarser by more.
   std::array<std::vector<ChunkSeam>, kChunkFaces> seams;
   double maxErrorVoxels = 0;         ///< certified, with the regular strips
   double transitionErrorVoxels = 0;  ///< certified, with the transition strips
@@ -68,7 +68,7 @@ struct Chunk {
   std::vector<ChunkLevel> levels;  ///< the finest first
 };
 
-/// What is known of one level of a chunk without its mesh.
+/// What is known of one LOD of a chunk without its mesh.
 struct ChunkLevelEntry {
   std::string file;                     ///< relative to the folder; empty if not written
   std::size_t vertices = 0;             ///< with those of both kinds of strips
@@ -79,7 +79,7 @@ struct ChunkLevelEntry {
   Position greatest;                    ///< corner of the bounding box, world space
   double maxErrorVoxels = 0;            ///< as ChunkLevel has it
   double transitionErrorVoxels = 0;     ///< as ChunkLevel has it
-  std::size_t intersectionsLeft = 0;    ///< pairs of its triangles that meet
+  std::size_t intersectionsLeft = 0;    ///< pairs of its triangles that intersect
 };
 
 /// What is known of a chunk without its meshes.
@@ -92,7 +92,7 @@ struct ChunkEntry {
 struct ChunkIndex {
   std::string grid;                ///< name of the grid
   int chunkSize = 64;              ///< voxels
-  std::vector<double> tolerances;  ///< of each level, voxels
+  std::vector<double> tolerances;  ///< of each LOD, voxels
   double voxelSize = 1;            ///< world units: the cube root of a voxel's volume
   /// From index to world space: rows of a matrix that a row vector (x, y, z, 1) is multiplied with.
   std::array<std::array<double, 4>, 4> transform{};
@@ -106,43 +106,44 @@ struct ChunkIndex {
   [[nodiscard]] TUFA_API std::ptrdiff_t neighbour(std::size_t chunk, int face) const;
 };
 
-/// Takes the chunks, one at a time, from the calling thread, in an order that is always the same.
+/// Receives the chunks, one at a time, on the calling thread, in an order that is always the same.
 /// The index has everything but its `chunks`.
 using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
 
-/// Divides the surface of `grid` into chunks, each at several levels of detail. Whatever level each
-/// chunk is drawn at, the surface is closed where neighbours differ by at most one level and the
+/// Divides the surface of `grid` into chunks, each at several levels of detail. Whatever LOD each
+/// chunk is drawn at, the surface is closed where neighbours differ by at most one LOD and the
 /// strips are chosen by transitionMask(): vertices on common faces are the same bits, positions and
 /// normals. See contour() for what is kept and for the errors thrown; throws Error(InvalidArgument)
-/// for options out of their range, too.
+/// for options out of their range too.
 ///
-/// Memory holds the grid, and for each thread a region of 128 voxels and the chunks of some more.
+/// Memory holds the grid and, for each thread, one region (a box of chunks of at least 128 voxels)
+/// and the chunks of a few more.
 TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                                 const ChunkSink& sink, ContourReport* report = nullptr);
 
 /// The triangles of a chunk to draw: its interior, and for each face the transition strip if the
 /// face's bit in `mask` is set, else the regular one. Only the vertices that they use. Throws
-/// Error(InvalidArgument) where there are no such strips: a mask other than 0 at the last level.
+/// Error(InvalidArgument) where there are no such strips: a mask other than 0 at the last LOD.
 [[nodiscard]] TUFA_API Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask);
 
-/// A bit for each face of a chunk whose neighbour is drawn at a coarser level. `lods` has a level
-/// for each of the index's chunks.
+/// A bit for each face of a chunk whose neighbour is drawn at a coarser LOD. `lods` has an LOD for
+/// each of the index's chunks.
 [[nodiscard]] TUFA_API unsigned transitionMask(const ChunkIndex& index, std::size_t chunk,
                                                const std::vector<std::size_t>& lods);
 
-/// Lowers levels (to finer ones) until neighbours differ by at most one.
+/// Makes LODs finer until neighbours differ by at most one.
 TUFA_API void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods);
 
-/// For each chunk the coarsest level whose certified error is seen under at most `pixelError`
-/// pixels, made finer where neighbours would differ by more than one level.
+/// For each chunk the coarsest LOD whose certified error covers at most `pixelError` pixels, made
+/// finer where neighbours would differ by more than one LOD.
 [[nodiscard]] TUFA_API std::vector<std::size_t> selectLods(const ChunkIndex& index,
                                                            const Camera& camera,
                                                            double pixelError = 1);
 
-/// One mesh of all chunks, each at its own level; vertices at equal positions become one. Levels of
-/// neighbours may differ by more than one if the chunks have their seams. Chunks that are not there
-/// leave their neighbours open. Throws Error(InvalidArgument) if `lods` does not fit, or where
-/// seams are needed and missing.
+/// One mesh of all chunks, each at its own LOD; vertices at equal positions become one. LODs of
+/// neighbours may differ by more than one if the chunks have their seams. Missing chunks leave
+/// their neighbours open. Throws Error(InvalidArgument) if `lods` does not fit, or where seams are
+/// needed and missing.
 [[nodiscard]] TUFA_API Mesh assembleChunks(const std::vector<Chunk>& chunks,
                                            const std::vector<std::size_t>& lods);
 
@@ -152,8 +153,8 @@ enum class ChunkFormat {
   Ply,  ///< a face property `part`: 0 the interior, 1 to 6 regular strips, 7 to 12 transition ones
 };
 
-/// Writes the meshes of a chunk into a folder, one file a level, and gives their names, relative to
-/// it. Each file appears whole or not at all. Throws Error(UnwritableFile).
+/// Writes the meshes of a chunk into a folder, one file for each LOD, and returns their names,
+/// relative to it. Each file appears whole or not at all. Throws Error(UnwritableFile).
 TUFA_API std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
                                              const std::string& folder, ChunkFormat format);
 

@@ -27,7 +27,7 @@ enum class Ambiguity {
   Separate,    ///< inside corners are kept apart
   Join,        ///< inside corners are joined
   Asymptotic,  ///< by the bilinear interpolant's saddle value (Nielson and Hamann 1991)
-  Chord,       ///< by the value where the chords between opposite crossings meet
+  Chord,       ///< by the value where the chords between opposite crossings cross
 };
 
 /// Where the normals of the vertices come from.
@@ -65,7 +65,7 @@ struct ContourOptions {
   /// follows curvature. 180: no bound.
   double maxAngle = 180;
   /// Size in voxels, a power of two, up to which cells are merged whatever the tolerance, as long
-  /// as topology allows. The certificate then tells the error that came of it. 1: none.
+  /// as topology allows. The certificate then tells the resulting error. 1: none.
   int minCell = 1;
   /// Size in voxels, a power of two, of the largest cells.
   int maxCell = 1 << 20;
@@ -77,8 +77,8 @@ struct ContourOptions {
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
   /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
   std::shared_ptr<const openvdb::GridBase> toleranceGrid;
-  /// Look for polygons that pass through each other and mend them: by small moves of vertices,
-  /// other diagonals, smaller cells and, rarely, four triangles in place of a quad.
+  /// Find polygons that intersect and repair them: by small moves of vertices, other diagonals,
+  /// smaller cells and, rarely, four triangles in place of a quad.
   bool repair = true;
   /// Most threads to use; 0: as many as the caller's TBB arena allows. Never changes the result.
   int threads = 0;
@@ -91,14 +91,14 @@ struct StageTime {
   double seconds = 0;  ///< wall clock
 };
 
-/// What is promised of an adaptive mesh.
+/// What was measured of an adaptive mesh: its distance to the uniform mesh, and counts.
 struct Certificate {
   double maxErrorVoxels = 0;             ///< largest distance found, both ways, to the uniform mesh
   double meanErrorVoxels = 0;            ///< mean over the vertices and quads of the uniform mesh
   double maxErrorWorld = 0;              ///< maxErrorVoxels in world units
   std::int64_t eulerCharacteristic = 0;  ///< vertices - edges + faces
-  /// Number of leaf cells of each level that the surface passes; a cell of level l has 2^l voxels
-  /// along its edge.
+  /// Number of leaf cells of each octree level that the surface passes; a cell of level l has 2^l
+  /// voxels along its edge.
   std::vector<std::size_t> leafLevels;
   std::vector<LeafCell> leaves;  ///< if ContourOptions::keepLeaves, in the order of their levels
   int rounds = 0;                ///< meshes made and measured until the tolerance held
@@ -114,10 +114,10 @@ struct ContourReport {
   std::size_t surfaceCells = 0;     ///< cells of eight samples that the surface passes
   std::size_t creaseCells = 0;  ///< of these, cells whose vertex was placed on a crease or corner
   std::size_t faceFlips = 0;    ///< ambiguous faces joined against the rule to stay manifold
-  std::size_t openEdges = 0;    ///< sign changes at the edge of the data, left open
+  std::size_t openEdges = 0;    ///< sign changes where the data ends, left open
   std::optional<Certificate> certificate;  ///< of an adaptive mesh
-  std::size_t intersectionsFound = 0;      ///< pairs of polygons that met where they should not
-  std::size_t intersectionsLeft = 0;       ///< of these or their like, pairs that still do
+  std::size_t intersectionsFound = 0;      ///< pairs of intersecting polygons
+  std::size_t intersectionsLeft = 0;       ///< pairs that still intersect
   std::size_t movedVertices = 0;           ///< by the repair
   std::size_t flippedDiagonals = 0;        ///< split along their other diagonal by the repair
   std::size_t fannedQuads = 0;             ///< replaced by four triangles around a new vertex
@@ -131,8 +131,8 @@ struct ContourReport {
 /// flat: each leaf has one vertex for each disk of surface in it, and the mesh keeps the topology
 /// of the uniform one.
 ///
-/// The mesh is a closed, consistently oriented 2-manifold whenever the surface does not meet the
-/// edge of the data, in world space, outward by the right-hand rule under any affine transform. A
+/// The mesh is a closed, consistently oriented 2-manifold whenever the surface does not reach the
+/// end of the data, in world space, outward by the right-hand rule under any affine transform. A
 /// grid without surface gives an empty mesh. The result is the same, byte for byte, for any number
 /// of threads. FloatGrid and DoubleGrid are supported.
 ///

@@ -53,12 +53,12 @@ class Coord {
   std::array<std::int32_t, 3> at_{};
 };
 
-/// The lesser of the coordinates along each axis.
+/// The smaller coordinate along each axis.
 [[nodiscard]] constexpr Coord minCoord(const Coord& a, const Coord& b) {
   return {std::min(a[0], b[0]), std::min(a[1], b[1]), std::min(a[2], b[2])};
 }
 
-/// The greater of the coordinates along each axis.
+/// The larger coordinate along each axis.
 [[nodiscard]] constexpr Coord maxCoord(const Coord& a, const Coord& b) {
   return {std::max(a[0], b[0]), std::max(a[1], b[1]), std::max(a[2], b[2])};
 }

@@ -6,7 +6,7 @@
 
 namespace tufa {
 
-/// What kind of thing went wrong. Bad topology is never an error: it is data in a CheckReport.
+/// The kind of an error. Bad topology is never an error: it is data in a CheckReport.
 enum class ErrorCode {
   InvalidArgument,  ///< an option is out of its range
   UnsupportedGrid,  ///< the grid's type or transform cannot be meshed (points, frustum, ...)

@@ -36,8 +36,8 @@ TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
 /// Throws Error(InvalidArgument) if write() knows no format of this ending.
 TUFA_API void requireMeshEnding(const std::filesystem::path& path);
 
-/// Throws Error(UnwritableFile) if it is plain now that write() or writeGrids() could not write
-/// there: for programs that work long before they do. A full disk shows only later.
+/// Throws Error(UnwritableFile) if it is certain already that write() or writeGrids() could not
+/// write there: for programs that work for long before they write. A full disk shows only later.
 TUFA_API void requireWritable(const std::filesystem::path& path);
 
 /// Reads a mesh: .ply (text or binary), .obj, .stl (text or binary), .off or .glb. Polygons with
@@ -47,7 +47,7 @@ TUFA_API void requireWritable(const std::filesystem::path& path);
 /// (unknown ending).
 [[nodiscard]] TUFA_API Mesh readMesh(const std::filesystem::path& path);
 
-/// What a .vdb file says of one grid.
+/// What a .vdb file tells about one grid.
 struct GridInfo {
   std::string name;                 ///< empty if it has none
   std::string valueType;            ///< "float", "double", "vec3s", ...

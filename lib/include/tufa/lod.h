@@ -14,28 +14,27 @@ namespace tufa {
 
 /// Options of buildLods().
 struct LodOptions {
-  /// How the surface is read and level 0 is made. `tolerance` is that of level 0; `uniform` is not
-  /// looked at.
+  /// How the surface is read and LOD 0 is made. `tolerance` is that of LOD 0; `uniform` is ignored.
   ContourOptions contour;
-  int levels = 5;     ///< most levels, at least 1
-  double factor = 4;  ///< each level's tolerance over that of the level before; above 1
-  /// Tolerances of all levels in voxels, rising, in place of `levels` and `factor`.
+  int levels = 5;     ///< LODs at most, at least 1
+  double factor = 4;  ///< each LOD's tolerance over that of the LOD before; above 1
+  /// Tolerances of all LODs in voxels, rising, in place of `levels` and `factor`.
   std::vector<double> tolerances;
-  /// Most triangles of each level, falling, in place of tolerances: each level has as many, or up
-  /// to 5 % fewer, and tells what error came of it. Level 0 has no more than the uniform mesh.
-  /// Needs edges to be collapsed: `contour.simplify`, and no bounds on cells or angles.
+  /// Most triangles of each LOD, falling, in place of tolerances: each LOD has as many, or up to 5
+  /// % fewer, and reports the resulting error. LOD 0 has no more than the uniform mesh. Needs edge
+  /// collapse: `contour.simplify`, and no bounds on cells or angles.
   std::vector<std::size_t> triangles;
-  /// A level may be made without connected components of the surface, closed cavities among them,
+  /// An LOD may be made without connected components of the surface, closed cavities among them,
   /// that fit into a box whose diagonal is its tolerance, but never without the one of most
-  /// vertices. Handles and tunnels stay. For a number of triangles that is out of reach else,
-  /// larger components are left out, too, the smallest first, and the level's tolerance says so.
+  /// vertices. Handles and tunnels stay. For a number of triangles that is otherwise out of reach,
+  /// larger components are left out too, the smallest first; the LOD's tolerance shows it.
   bool allowTopologyChange = false;
-  /// The projected error, in pixels, at which a level comes in; see Lod::screenCoverage.
+  /// The projected error, in pixels, at which an LOD may be drawn; see Lod::screenCoverage.
   double pixelError = 1;
   int screenHeight = 1080;  ///< pixels, for Lod::screenCoverage
 };
 
-/// A connected component of the surface that a level was made without.
+/// A connected component of the surface that an LOD was made without.
 struct DroppedComponent {
   Position centre;        ///< of its bounding box, world space
   double sizeVoxels = 0;  ///< diagonal of that box
@@ -43,32 +42,32 @@ struct DroppedComponent {
 
 /// One level of detail.
 struct Lod {
-  Mesh mesh;             ///< world space
-  double tolerance = 0;  ///< voxels; if triangles were asked for, the largest error that came of it
+  Mesh mesh;                ///< world space
+  double tolerance = 0;     ///< voxels; if triangles were asked for, the resulting largest error
   Certificate certificate;  ///< distance to the uniform mesh of the grid, without what was dropped
-  /// What the level before still has, see LodOptions::allowTopologyChange.
+  /// Components that the LOD before still has, see LodOptions::allowTopologyChange.
   std::vector<DroppedComponent> dropped;
-  /// Draw this level while the model's bounding sphere takes at least this share of the screen's
-  /// height: below, the next level's error is no more than LodOptions::pixelError. 0 for the last.
+  /// Draw this LOD while the model's bounding sphere covers at least this share of the screen's
+  /// height; below, the next LOD's error is no more than LodOptions::pixelError. 0 for the last.
   double screenCoverage = 0;
-  std::size_t intersectionsLeft = 0;  ///< pairs of polygons that meet and could not be mended
-  double seconds = 0;                 ///< wall clock, without what all levels share
+  std::size_t intersectionsLeft = 0;  ///< pairs of polygons that intersect
+  double seconds = 0;                 ///< wall clock, without what all LODs share
 };
 
-/// Levels of detail of one surface, the finest first. All have the topology of the uniform mesh,
-/// but for components that were dropped; errors rise and triangles fall from level to level.
+/// Levels of detail of one surface. All have the topology of the uniform mesh, apart from
+/// components that were dropped; errors rise and triangles fall from LOD to LOD.
 struct LodChain {
   std::vector<Lod> levels;   ///< the finest first; none without a surface
   double voxelSize = 1;      ///< world units: the cube root of a voxel's volume
-  Position centre;           ///< of the bounding sphere of level 0
+  Position centre;           ///< of the bounding sphere of LOD 0
   double radius = 0;         ///< of that sphere, world units
-  double sharedSeconds = 0;  ///< wall clock of what all levels share: reading, level 0, forest
-  /// Why there are fewer levels than asked for; empty if there are not. A number of triangles that
-  /// is out of reach ends the chain with the level before.
+  double sharedSeconds = 0;  ///< wall clock of what all LODs share: reading, uniform mesh, clusters
+  /// Why there are fewer LODs than asked for; empty if there are not. A number of triangles that is
+  /// out of reach ends the chain with the LOD before.
   std::string stopped;
 };
 
-/// Where a model is seen from.
+/// A camera that looks at a model.
 struct Camera {
   Position eye;                     ///< world space
   double verticalAngle = 0.785398;  ///< of view, radians
@@ -77,19 +76,18 @@ struct Camera {
 
 /// Makes levels of detail of the surface of `grid`, which is read once: the first is the mesh of
 /// contour(), each other one comes from the one before by collapsing edges or, where
-/// `contour.simplify` and the bounds on cells rule that out, is another cut of the same forest. See
-/// contour() for what each mesh keeps, and for the errors thrown; throws Error(InvalidArgument) for
-/// options out of their range, too.
+/// `contour.simplify` and the bounds on cells rule that out, is another cut of the same cluster
+/// forest. See contour() for what each mesh keeps, and for the errors thrown; throws
+/// Error(InvalidArgument) for options out of their range too.
 [[nodiscard]] TUFA_API LodChain buildLods(const openvdb::GridBase& grid,
                                           const LodOptions& options = {},
                                           ContourReport* report = nullptr);
 
-/// The coarsest level whose certified error is seen under at most `pixelError` pixels; 0 if there
-/// is none.
+/// The coarsest LOD whose certified error covers at most `pixelError` pixels; 0 if there is none.
 [[nodiscard]] TUFA_API std::size_t selectLod(const LodChain& chain, const Camera& camera,
                                              double pixelError = 1);
 
-/// The axis of the volume that points up. glTF's is y: a volume with z up is turned.
+/// The axis of the volume that points up. In glTF it is y: a volume with z up is rotated.
 enum class UpAxis {
   Y,  ///< as in Houdini and glTF
   Z,  ///< as in Blender
@@ -105,13 +103,13 @@ enum class LodCompression {
 /// Options of writeLods(). All but `name`, `threads` and `progress` are for .glb only.
 struct LodWriteOptions {
   std::string name = "mesh";  ///< of nodes and meshes: NAME_LOD0, NAME_LOD1, ...
-  /// Vertices are split where the normals of two faces at an edge differ by more than that:
+  /// Vertices are split where the normals of two faces at an edge differ by more than this angle:
   /// degrees, 0 to 180; 180 splits none.
   double creaseAngle = 40;
   UpAxis up = UpAxis::Y;  ///< of the volume
   double scale = 1;       ///< metres in a world unit; above 0
-  /// Vertices keep their places relative to each other: a level in which rounding to 16 bits would
-  /// bring two together, or three on a line, is stored in floats.
+  /// No vertices are joined: an LOD in which rounding to 16 bits would bring two to one place, or
+  /// three on a line, is stored in floats.
   LodCompression compression = LodCompression::None;
   int threads = 0;    ///< most threads; 0: as many as the TBB arena allows. Never changes the file.
   Progress progress;  ///< called from the calling thread; may cancel
@@ -119,28 +117,28 @@ struct LodWriteOptions {
 
 /// What writeLods() wrote.
 struct LodWriteReport {
-  std::vector<std::filesystem::path> files;  ///< one, or one for each level
-  /// Of each level; in a .glb those of vertices that were split at creases count for themselves.
+  std::vector<std::filesystem::path> files;  ///< one, or one for each LOD
+  /// Vertices of each LOD; in a .glb, with those that creases add.
   std::vector<std::size_t> vertices;
-  std::vector<std::size_t> floatLevels;  ///< levels that could not be quantized
+  std::vector<std::size_t> floatLevels;  ///< LODs that could not be quantized
 };
 
-/// The file of a level: `path` with braces {} in its file name replaced by the level's number, or
+/// The file of an LOD: `path` with braces {} in its file name replaced by the LOD's number, or
 /// `path` itself if it has none.
 [[nodiscard]] TUFA_API std::filesystem::path lodFile(const std::filesystem::path& path,
                                                      std::size_t level);
 
-/// Writes all levels to one .glb: nodes and meshes NAME_LOD0, NAME_LOD1, ..., of which the first
-/// has the extension MSFT_lod and alone stands in the default scene, so that programs that know
-/// nothing of levels show the finest. Each node's `extras` hold its errors and counts. Triangles
-/// are ordered for the vertex cache, vertices by their first use.
+/// Writes all LODs to one .glb: nodes and meshes NAME_LOD0, NAME_LOD1, ..., of which the first has
+/// the extension MSFT_lod and alone stands in the default scene, so that programs that know nothing
+/// of LODs show the finest. Each node's `extras` hold its errors and counts. Triangles are ordered
+/// for the vertex cache, vertices by their first use.
 ///
-/// A file name with braces makes one file for each level, see lodFile(), of any format that write()
+/// A file name with braces makes one file for each LOD, see lodFile(), of any format that write()
 /// has; other than .glb, they are in world units as write() makes them.
 ///
 /// Each file appears whole or not at all. Throws Error: UnwritableFile, InvalidArgument (an option
-/// out of its range, one file of a format without levels), LimitExceeded (more than the format can
-/// hold, or vertices nearer to each other than single precision tells apart), Cancelled.
+/// out of its range, one file of a format without LODs), LimitExceeded (more than the format can
+/// hold, or vertices too near to each other for single precision), Cancelled.
 TUFA_API void writeLods(const LodChain& chain, const std::filesystem::path& path,
                         const LodWriteOptions& options = {}, LodWriteReport* report = nullptr);
 

@@ -33,7 +33,7 @@ struct Normal {
   friend bool operator==(const Normal&, const Normal&) = default;
 };
 
-/// Names an element of Mesh::positions.
+/// Index into Mesh::positions.
 using VertexIndex = std::uint32_t;
 
 /// Three vertices, counter-clockwise seen from outside.
@@ -48,7 +48,7 @@ struct Triangle {
 
 /// Four vertices, counter-clockwise seen from outside. The better of the two ways to split it is
 /// always the diagonal from vertices[0] to vertices[2], so a program that fans polygons from their
-/// first vertex shows the surface as it was meant.
+/// first vertex shows the surface as intended.
 struct Quad {
   std::array<VertexIndex, 4> vertices;  ///< the corners
   Quad() {}                             // NOLINT(modernize-use-equals-default)

@@ -7,7 +7,7 @@
 
 namespace tufa {
 
-/// A leaf of the octree behind an adaptive mesh that the surface passes: a cube of 2^level lattice
+/// A leaf of the octree of an adaptive mesh that the surface passes: a cube of 2^level lattice
 /// steps along each edge, aligned to multiples of its size.
 struct LeafCell {
   Coord corner;   ///< lowest lattice point

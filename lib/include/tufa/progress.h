@@ -6,10 +6,9 @@
 
 namespace tufa {
 
-/// Called now and then during long work, from the calling thread only, never at the same time
-/// twice.
+/// Called at times during long work, on the calling thread only, never by two calls at once.
 ///
-/// `stage` names the stage at work ("signs", "vertices", ...), `fraction` is the share of the whole
+/// `stage` names the present stage ("signs", "vertices", ...), `fraction` is the share of the whole
 /// call that is done, from 0 to 1, never falling. Return false to cancel: the call then throws
 /// Error with ErrorCode::Cancelled and frees everything it holds.
 using Progress = std::function<bool(std::string_view stage, double fraction)>;

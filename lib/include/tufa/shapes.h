@@ -13,7 +13,8 @@
 
 namespace tufa {
 
-/// Demonstration volumes with a known truth. All but Noise and Fog are signed distance fields.
+/// Demonstration volumes, most of which have an exact surface to compare with. All but Noise and
+/// Fog are signed distance fields.
 enum class Shape {
   Sphere,   ///< radius 1
   Torus,    ///< radii 1 and 0.35, tilted
@@ -47,8 +48,8 @@ struct ShapeOptions {
                                                          const ShapeOptions& options = {});
 
 /// Exact signed distance from a world point to the true shape, negative inside; for Gyroid and
-/// Terrain the field that defines them, whose zero set is the shape. Throws
-/// Error(InvalidArgument) for Noise and Fog, which have no such truth.
+/// Terrain the field that defines them, whose zero set is the shape. Throws Error(InvalidArgument)
+/// for Noise and Fog, which have no such surface.
 [[nodiscard]] TUFA_API double shapeDistance(Shape shape, const Position& point);
 
 /// Points along the true creases of Box and Bracket, at most `spacing` apart; empty for the others.

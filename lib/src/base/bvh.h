@@ -33,7 +33,7 @@ class Bvh {
     return (items_.size() + kLeafSize - 1) / kLeafSize;
   }
 
-  /// Calls visit(a, b) for items whose boxes meet, a being in leaf `leaf`. Over all leaves, each
+  /// Calls visit(a, b) for items whose boxes overlap, a being in leaf `leaf`. Over all leaves, each
   /// pair of items is visited once.
   template <class Visit>
   void pairsOfLeaf(std::size_t leaf, const Visit& visit) const {
@@ -51,7 +51,7 @@ class Bvh {
     });
   }
 
-  /// Calls visit(item, its box) for each item whose box meets `box`.
+  /// Calls visit(item, its box) for each item whose box overlaps `box`.
   template <class Visit>
   void itemsMeeting(const Box& box, const Visit& visit) const {
     walk([&](const Node& node) { return boxOf(node).meets(box); },
@@ -60,7 +60,7 @@ class Bvh {
          });
   }
 
-  /// Calls visit(item) for each item whose box is met by the ray from `point` towards +z.
+  /// Calls visit(item) for each item whose box the ray from `point` towards +z passes.
   template <class Visit>
   void itemsAbove(const Vec3& point, const Visit& visit) const {
     const auto met = [&](const Box& box) {
@@ -116,7 +116,7 @@ class Bvh {
     std::size_t firstLeaf;
     std::size_t leaves;
   };
-  /// A node to look into, no item of which is nearer than the root of `bound`.
+  /// A node still to be searched; no item in it is nearer than the root of `bound`.
   struct Candidate {
     Node node;
     double bound;

@@ -9,16 +9,16 @@
 
 namespace tufa::base {
 
-/// From coordinates of cells, blocks or regions to their numbers. One array, so that it is built
-/// and freed in no time.
+/// A hash table from coordinates of cells, blocks or regions to indices, in one array: cheap to
+/// build and to free.
 class CoordTable {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   CoordTable() { reserve(0); }
-  /// Forgets all, and makes room for so many coordinates and no more.
+  /// Empties the table and makes room for exactly so many coordinates.
   void reserve(std::size_t count);
-  /// Numbers coordinates that have no number yet. Returns the number that they have then.
+  /// Assigns `number` to coordinates that have none yet. Returns the number that they have then.
   std::uint32_t tryEmplace(const Coord& at, std::uint32_t number);
   [[nodiscard]] std::uint32_t find(const Coord& at) const { return entries_[slotOf(at)].number; }
 

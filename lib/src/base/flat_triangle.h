@@ -9,8 +9,8 @@
 
 namespace tufa::base {
 
-/// A triangle taken apart for many distance questions: most points lie above its inside, where the
-/// distance is the one to its plane.
+/// A triangle prepared for many distance queries: most points lie above its inside, where the
+/// distance is that to its plane.
 class FlatTriangle {
  public:
   FlatTriangle(const Vec3& a, const Vec3& b, const Vec3& c)
@@ -45,7 +45,7 @@ class FlatTriangle {
   [[nodiscard]] double squaredDistance(const Vec3& point) const {
     double squared = 0;
     if (isAbove(point, squared)) return squared;
-    // The nearest point lies on a side that the point is beyond.
+    // The nearest point lies on an edge that the point is beyond.
     squared = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i) {
       const Vec3 from = point - corners_[i];
@@ -61,11 +61,11 @@ class FlatTriangle {
  private:
   std::array<Vec3, 3> corners_;
   Vec3 normal_;
-  std::array<Vec3, 3> inward_;  ///< across each side, of any length
+  std::array<Vec3, 3> inward_;  ///< across each edge, of any length
 };
 
-/// Squared distance of a point to a triangle that is asked one question: to the side, the corner or
-/// the inside that the point is nearest to (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
+/// Squared distance of a point to a triangle, for a single query: to the edge, the corner or the
+/// inside that is nearest (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
 [[nodiscard]] inline double squaredDistanceTo(const Vec3& point, const Vec3& a, const Vec3& b,
                                               const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = point - a, bp = point - b, cp = point - c;
@@ -76,8 +76,8 @@ class FlatTriangle {
   };
   const double abAtA = ab.dot(ap), acAtA = ac.dot(ap), abAtB = ab.dot(bp), acAtB = ac.dot(bp),
                abAtC = ab.dot(cp), acAtC = ac.dot(cp);
-  // Shares of the corners a, b and c in the foot of the point, times one area. Those of a triangle
-  // without an area are but rounding.
+  // Barycentric coordinates of the foot of the point, up to a common factor. For a triangle without
+  // area they are only rounding errors.
   constexpr double kThin = 1e-12;
   const double ofC = abAtA * acAtB - abAtB * acAtA, ofB = abAtC * acAtA - abAtA * acAtC,
                ofA = abAtB * acAtC - abAtC * acAtB, sum = ofA + ofB + ofC;
@@ -85,7 +85,7 @@ class FlatTriangle {
   if (!isThin && ofA > 0 && ofB > 0 && ofC > 0) {
     return (ap - ab * (ofB / sum) - ac * (ofC / sum)).squaredLength();
   }
-  // The nearest point lies on a side that the foot is beyond.
+  // The nearest point lies on an edge that the foot is beyond.
   double squared = std::numeric_limits<double>::infinity();
   if (isThin || ofC <= 0) squared = std::min(squared, toSide(ap, ab, abAtA));
   if (isThin || ofB <= 0) squared = std::min(squared, toSide(ap, ac, acAtA));

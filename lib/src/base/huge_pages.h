@@ -13,7 +13,7 @@ namespace tufa::base {
 /// request.
 void adviseHugePages(void* begin, std::size_t bytes);
 
-/// Room for so many elements, written for the first time one after another.
+/// Reserves room for so many elements, which will be written for the first time one after another.
 template <class T>
 void reserveLarge(std::vector<T>& vector, std::size_t count) {
   vector.reserve(count);
@@ -21,7 +21,7 @@ void reserveLarge(std::vector<T>& vector, std::size_t count) {
 }
 
 /// Sizes a vector whose elements a parallel loop will write for the first time. Clearing much
-/// memory takes long: looks in between whether to stop.
+/// memory takes long, so it is done in steps with checks for cancellation between them.
 template <class T>
 void resizeLarge(std::vector<T>& vector, std::size_t count, Job& job) {
   constexpr std::size_t kAtOnce = (std::size_t{4} << 20) / sizeof(T) + 1;

@@ -27,7 +27,7 @@ struct IndexBox {
     min = minCoord(min, at);
     max = maxCoord(max, at);
   }
-  /// Wider by so much on all sides.
+  /// The box extended by so much on all sides.
   [[nodiscard]] IndexBox grownBy(std::int32_t by) const {
     return {min.offsetBy(-by), max.offsetBy(by)};
   }

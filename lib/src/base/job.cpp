@@ -49,7 +49,8 @@ void Job::report(std::size_t done, std::size_t count) {
   tell(stage, static_cast<double>(done) / static_cast<double>(count));
 }
 
-// Parts tell from the thread they run on how far they are, and from the caller's all that is known.
+// Reports progress. Parts record theirs on the thread they run on; only the caller's thread passes
+// the sum on.
 void Job::tell(std::string_view stage, double inStage) {
   lastFraction_ = std::max(lastFraction_, stageBegin_ + (stageEnd_ - stageBegin_) * inStage);
   if (whole_ != nullptr) {
@@ -72,7 +73,7 @@ void Job::checkCancelled(std::size_t done, std::size_t count) {
 }
 
 void Job::forRanges(std::size_t count, std::size_t grain, const RangeBody& body) {
-  // TBB would hand out a few large ranges, and nobody would ask in between whether to stop.
+  // TBB would make a few large ranges, with no check for cancellation in between.
   constexpr std::size_t kMostRanges = 2048;
   const std::size_t size = std::max(grain, (count + kMostRanges - 1) / kMostRanges);
   std::atomic<std::size_t> done{0};

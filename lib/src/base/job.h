@@ -30,7 +30,7 @@ class Job {
   /// Ends the stage before and begins one that reaches to `endFraction` of the whole call.
   void beginStage(std::string name, double endFraction);
 
-  /// Ends the last stage and hands out all times.
+  /// Ends the last stage and returns the times of all.
   std::vector<StageTime> finish();
 
   /// Calls body(begin, end) over disjoint ranges that cover [0, count), in parallel, each of at
@@ -46,8 +46,8 @@ class Job {
   /// Throws Error(Cancelled) when asked to stop.
   void checkCancelled(std::size_t done, std::size_t count);
 
-  /// For short loops on one thread: looks once in many indices, without telling how far the loop
-  /// is.
+  /// For short loops on one thread: checks for cancellation once in many indices, without reporting
+  /// progress.
   void pollCancelled(std::size_t index) {
     constexpr std::size_t kBetween = std::size_t{1} << 14;
     if (index % kBetween == 0) checkCancelled(0, 1);

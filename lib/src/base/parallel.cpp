@@ -20,9 +20,9 @@ namespace {
 
 #ifdef TUFA_THREAD_SANITIZER
 
-/// One call that hands tasks out. ThreadSanitizer does not see into TBB, whose library is built
-/// without it; so this file is as well, and this class tells it what TBB promises. It tells no
-/// more: two tasks of one call stay without any order.
+/// One call that runs tasks. ThreadSanitizer does not see into TBB, whose library is built without
+/// it; so this file is built without it as well, and this class tells it the order that TBB
+/// promises, and no more: two tasks of one call remain unordered.
 class HandOver {
  public:
   HandOver() { __tsan_release(&begun_); }

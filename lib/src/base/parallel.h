@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <functional>
 
-// The only door to TBB. What the functions promise of memory: a task sees what its caller did
-// before, and after the call the caller sees what the tasks did.
+// The only use of TBB. Memory order: a task sees what its caller wrote before, and after the call
+// the caller sees what the tasks wrote.
 
 namespace tufa::base {
 
@@ -28,7 +28,7 @@ void runParts(std::size_t count, const std::function<void(std::size_t index)>& b
 /// The most threads that loops have here.
 [[nodiscard]] std::size_t threadCount();
 
-/// Runs both, at the same time where there is a thread to spare.
+/// Runs both, in parallel if a thread is free.
 void runBoth(const std::function<void()>& first, const std::function<void()>& second);
 
 /// Sorts a random access range. No two elements may be equivalent, else their order could depend on
@@ -36,7 +36,7 @@ void runBoth(const std::function<void()>& first, const std::function<void()>& se
 template <class Iterator, class Less>
 void parallelSort(Iterator begin, Iterator end, const Less& less) {
 #ifdef TUFA_THREAD_SANITIZER
-  // It would see half of TBB's sort, the half in headers.
+  // ThreadSanitizer would see only the half of TBB's sort that is in headers.
   std::sort(begin, end, less);
 #else
   tbb::parallel_sort(begin, end, less);

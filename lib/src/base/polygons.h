@@ -7,7 +7,7 @@
 
 namespace tufa::base {
 
-/// Names a polygon of a mesh: its quads come first, then its triangles.
+/// Index of a polygon of a mesh: quads come first, then triangles.
 using PolygonIndex = std::uint32_t;
 
 /// The vertices of a polygon in order.

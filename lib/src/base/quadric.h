@@ -8,8 +8,8 @@
 namespace tufa::base {
 
 /// A quadric error function: the sum of squared distances to the planes gathered so far (Garland
-/// and Heckbert 1997). Additive. In double and seen from a point near the planes, so that the error
-/// at the solution does not drown in the sums.
+/// and Heckbert 1997). Additive. In double precision, and with an origin near the planes, so that
+/// the error at the solution is not lost in rounding.
 struct Quadric {
   std::array<double, 6> a{};  ///< sum of n n^T: xx, xy, xz, yy, yz, zz
   Vec3 b{0.0};                ///< sum of n (n . p)

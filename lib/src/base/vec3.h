@@ -92,12 +92,12 @@ class Vec3 {
   double at_[3];
 };
 
-/// The lesser of the coordinates along each axis.
+/// The smaller coordinate along each axis.
 [[nodiscard]] inline Vec3 minVec3(const Vec3& a, const Vec3& b) {
   return {std::min(a[0], b[0]), std::min(a[1], b[1]), std::min(a[2], b[2])};
 }
 
-/// The greater of the coordinates along each axis.
+/// The larger coordinate along each axis.
 [[nodiscard]] inline Vec3 maxVec3(const Vec3& a, const Vec3& b) {
   return {std::max(a[0], b[0]), std::max(a[1], b[1]), std::max(a[2], b[2])};
 }

@@ -20,7 +20,7 @@ std::size_t VertexWelder::slotOf(const Position& position) const {
 }
 
 VertexIndex VertexWelder::indexOf(Position position) {
-  // Adding zero turns -0, which equals 0 but has other bits, into 0.
+  // Adding zero makes 0 of -0, which equals it but has other bits.
   position = {position.x + 0.0, position.y + 0.0, position.z + 0.0};
   std::size_t slot = slotOf(position);
   if (slots_[slot] != kFree) return slots_[slot];

@@ -5,7 +5,7 @@
 
 namespace tufa::base {
 
-/// Gives equal positions one index: for meshes that come in pieces, or repeat positions.
+/// Gives equal positions one index: for meshes whose faces repeat positions.
 class VertexWelder {
  public:
   explicit VertexWelder(std::vector<Position>& positions);

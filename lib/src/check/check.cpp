@@ -15,8 +15,8 @@
 namespace tufa {
 namespace {
 
-/// CGAL compares pieces in pairs, so meshes of more pieces than this get the answer of the nesting
-/// test, which follows the same definition in a time that grows with the pieces alone.
+/// CGAL compares components in pairs, so meshes of more components than this get the answer of the
+/// nesting test, which has the same definition and takes time proportional to their number.
 constexpr std::size_t kMostPiecesForCgal = 1000;
 
 void refuseTooLarge(const Mesh& mesh) {
@@ -36,7 +36,7 @@ void countFaces(const checks::Faces& faces, CheckReport& report) {
   report.degenerateFaces = faces.collapsedCount + faces.collinearCount;
 }
 
-/// Settles outward and boundsVolume, both of which ask for a closed, oriented surface.
+/// Decides outward and boundsVolume, both of which need a closed, oriented surface.
 void judgeVolume(const checks::Faces& faces, const checks::Pieces& pieces, const base::Bvh& tree,
                  const CheckOptions& options, base::Job& job, CheckReport& report) {
   if (!report.closed || !report.oriented) return;

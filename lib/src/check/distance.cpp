@@ -51,7 +51,7 @@ struct Tally {
   }
 };
 
-/// The triangle's centre, and a lattice of `perEdge` points a side without the corners.
+/// The triangle's centre, and a lattice of `perEdge` points along an edge, without the corners.
 template <class Measure>
 void sampleTriangle(const checks::TriangleSoup& soup, const Triangle& triangle, int perEdge,
                     const Measure& measure) {
@@ -164,7 +164,7 @@ DistanceReport checkAgainst(const Mesh& mesh, const openvdb::GridBase& grid,
 
 std::vector<double> distancesTo(const Mesh& mesh, const std::vector<Position>& points,
                                 const DistanceOptions& options) {
-  // A grid without a transform of its own makes voxels of the world's units.
+  // A default frame: voxels are world units.
   const grid::VoxelFrame frame;
   base::Job job(options.threads, options.progress);
   std::vector<double> distances(points.size());

@@ -14,7 +14,8 @@ using Point = Kernel::Point_3;
 
 Point toPoint(const Position& p) { return {p.x, p.y, p.z}; }
 
-/// Moves the common vertices of two triangles to their fronts, in the same order; returns how many.
+/// Moves the common vertices of two triangles to their fronts, in the same order; returns their
+/// number.
 int alignShared(std::array<VertexIndex, 3>& a, std::array<VertexIndex, 3>& b) {
   int shared = 0;
   for (int i = shared; i < 3; ++i) {
@@ -27,13 +28,13 @@ int alignShared(std::array<VertexIndex, 3>& a, std::array<VertexIndex, 3>& b) {
   return shared;
 }
 
-/// Triangles over one edge meet elsewhere only if one is folded onto the other.
+/// Triangles at a common edge intersect elsewhere only if one is folded onto the other.
 bool foldedOver(const std::array<Point, 3>& a, const Point& opposite) {
   return CGAL::orientation(a[0], a[1], a[2], opposite) == CGAL::COPLANAR &&
          CGAL::coplanar_orientation(a[0], a[1], a[2], opposite) == CGAL::POSITIVE;
 }
 
-/// Triangles at one vertex meet elsewhere only if the far edge of one meets the other.
+/// Triangles at a common vertex intersect elsewhere only if the far edge of one touches the other.
 bool intersectBeyondVertex(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
   // Most pairs end here: if the far edge of b is on one side of a's plane, b touches that plane in
   // the shared vertex alone.

@@ -5,14 +5,14 @@
 
 namespace tufa::checks {
 
-/// Exact predicates, by CGAL's filtered kernel: right for any finite coordinates. Indices must be
-/// in range. Safe to call from many threads at once.
+/// Exact predicates by CGAL's filtered kernel: correct for any finite coordinates. Indices must be
+/// in range. Thread-safe.
 
 /// True if the three vertices lie on one line.
 [[nodiscard]] bool areCollinear(const std::vector<Position>& positions, const Triangle& triangle);
 
-/// True if two triangles meet elsewhere than in the vertices or the edge whose indices they share.
-/// Neither may be collinear.
+/// True if two triangles intersect elsewhere than in the vertices or the edge whose indices they
+/// share. Neither may be collinear.
 [[nodiscard]] bool intersectElsewhere(const std::vector<Position>& positions, const Triangle& a,
                                       const Triangle& b);
 

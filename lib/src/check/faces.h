@@ -10,8 +10,8 @@
 
 namespace tufa::checks {
 
-/// The triangles of a mesh, sorted out by what can be said about them. Later stages read these
-/// lists and need no guard against bad indices or positions.
+/// The triangles of a mesh, sorted by what can be tested on them. Later stages read these lists and
+/// need no guards against bad indices or positions.
 struct Faces {
   explicit Faces(const std::vector<Position>& meshPositions) : positions(meshPositions) {}
 
@@ -21,10 +21,10 @@ struct Faces {
   std::size_t invalidCount = 0;    ///< an index out of range, or a position that is not finite
   std::size_t collapsedCount = 0;  ///< a repeated index
   std::size_t collinearCount = 0;  ///< three vertices, exactly on one line
-  /// Faces of three vertices at finite positions: what topology is about.
+  /// Faces of three distinct vertices at finite positions, for topology.
   std::vector<Triangle> proper;
-  /// Of these, the faces that span a plane: what intersections and rays are about. Empty if that is
-  /// all of them, see solid().
+  /// Of these, the faces that span a plane, for intersections and rays. Empty if that is all of
+  /// them, see solid().
   std::vector<Triangle> noncollinear;
 
   [[nodiscard]] const std::vector<Triangle>& solid() const {
@@ -32,7 +32,7 @@ struct Faces {
   }
 };
 
-/// Sorts out the triangles of a mesh. With `weld`, vertices at equal positions become the first of
+/// Sorts the triangles of a mesh. With `weld`, vertices at equal positions become the first of
 /// them. Positions are read from `mesh`, which must outlive the result.
 [[nodiscard]] Faces sortFaces(const Mesh& mesh, bool weld, base::Job& job);
 

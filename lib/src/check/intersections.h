@@ -14,7 +14,8 @@ using base::Bvh;
 /// A tree over faces.solid(), item i being face i.
 [[nodiscard]] Bvh buildFaceTree(const Faces& faces, base::Job& job);
 
-/// Pairs of faces that meet elsewhere than in the vertices or the edge whose indices they share.
+/// The number of pairs of faces that intersect elsewhere than in the vertices or the edge whose
+/// indices they share.
 ///
 /// Agrees with CGAL's self_intersections() wherever that can be asked, apart from its pairs (f, f):
 /// collinear faces are left out here, and counted as degenerate instead. Takes any mesh: two faces

@@ -47,7 +47,8 @@ void addFace(const Vec3& a, const Vec3& b, const Vec3& c, Totals& totals) {
 void measure(const Faces& faces, base::Job& job, CheckReport& report) {
   const std::size_t counted = faces.proper.size() + faces.collapsedCount;
   if (counted == 0) return;
-  // Volumes are taken about a vertex of the mesh: far from the world's origin they would cancel.
+  // Volumes are taken about a vertex of the mesh: far from the world's origin rounding would spoil
+  // them.
   const Vec3 origin =
       faces.proper.empty() ? Vec3(0) : Vec3(faces.positions[faces.proper[0].vertices[0]]);
   const auto corner = [&](VertexIndex v) { return Vec3(faces.positions[v]) - origin; };

@@ -12,10 +12,11 @@
 namespace tufa::checks {
 namespace {
 
-/// Rays to settle by majority whether a piece lies in a hole; odd, so that there is one.
+/// Rays that decide by majority whether a component lies in a cavity; odd, so that there is a
+/// majority.
 constexpr std::size_t kMostRays = 33;
 
-/// The vertices of each piece, in rising order.
+/// The vertices of each component, in rising order.
 class Members {
  public:
   explicit Members(const Pieces& pieces) : begins_(pieces.count + 1) {
@@ -39,7 +40,7 @@ class Members {
   std::vector<VertexIndex> vertices_;
 };
 
-/// Six times the signed volume of each piece, taken about a vertex of its own.
+/// Six times the signed volume of each component, taken about a vertex of its own.
 std::vector<double> pieceVolumes(const Faces& faces, const Pieces& pieces, const Members& members) {
   std::vector<double> volumes(pieces.count);
   for (const Triangle& face : faces.proper) {
@@ -53,7 +54,8 @@ std::vector<double> pieceVolumes(const Faces& faces, const Pieces& pieces, const
   return volumes;
 }
 
-/// How many other pieces hold `vertex`: those that a ray from it crosses an odd number of times.
+/// How many other components `vertex` lies in: those that a ray from it crosses an odd number of
+/// times.
 std::size_t depthOf(VertexIndex vertex, const Faces& faces, const Pieces& pieces, const Bvh& tree) {
   const Position& from = faces.positions[vertex];
   std::vector<VertexIndex> crossed;
@@ -73,8 +75,8 @@ std::size_t depthOf(VertexIndex vertex, const Faces& faces, const Pieces& pieces
   return depth;
 }
 
-/// Whether most of a piece lies in an odd number of others. Vertices disagree only where pieces
-/// intersect: a vertex that pokes through its neighbour must not turn the answer around.
+/// Whether most of a component lies in an odd number of others. Vertices disagree only where
+/// components intersect: a vertex that protrudes through its neighbour must not reverse the answer.
 bool liesInHole(std::span<const VertexIndex> members, const Faces& faces, const Pieces& pieces,
                 const Bvh& tree) {
   const std::size_t rays = std::min(kMostRays, (members.size() - 1) | 1);
@@ -86,7 +88,7 @@ bool liesInHole(std::span<const VertexIndex> members, const Faces& faces, const 
   return 2 * odd > rays;
 }
 
-/// Pieces that face the way their depth asks for, and the opposite way.
+/// Components that face as their depth demands, and the opposite way.
 struct Directions {
   std::size_t right = 0;
   std::size_t wrong = 0;

@@ -29,8 +29,8 @@ class VertexFaces {
   std::vector<std::uint32_t> faceIndices_;
 };
 
-/// What the faces around one vertex tell. Each edge is counted at the smaller of its two vertices,
-/// and each face at the smallest of its three, so sums over vertices count everything once.
+/// Counts around one vertex. Each edge is counted at the smaller of its two vertices, and each face
+/// at the smallest of its three, so sums over vertices count everything once.
 struct StarCounts {
   std::uint32_t edges = 0;
   std::uint32_t boundaryEdges = 0;
@@ -40,7 +40,7 @@ struct StarCounts {
   bool isFan = true;  ///< the faces form one closed or open fan
 };
 
-/// Studies the stars of all vertices, one record a vertex. Boundary edges are added to
+/// Analyses the stars of all vertices, one record for each vertex. Boundary edges are added to
 /// `boundaryEdges` as pairs (smaller, larger vertex), in increasing order.
 [[nodiscard]] std::vector<StarCounts> studyStars(
     const std::vector<Triangle>& faces, const VertexFaces& around, base::Job& job,

@@ -16,7 +16,7 @@ namespace tufa::checks {
 
 using base::Bvh;
 
-/// Points on the isosurface and a tree over them: what is left to ask where Newton steps fail.
+/// Points on the isosurface and a tree over them: the fallback where Newton steps fail.
 struct PointCloud {
   std::vector<Vec3> points;
   Bvh tree;
@@ -57,7 +57,7 @@ class SurfaceDistance {
       const Vec3 away = from - zero;
       const Vec3 normal = field_->direction(zero);
       Vec3 along = away - normal * normal.dot(away);
-      // A slant of 1 in 20 makes the distance 1/800 too long: good enough.
+      // A slant of 1 in 20 makes the distance 1/800 too long, which is accurate enough.
       if (along.length() <= 0.05 * distance) break;
       if (along.length() > 0.5) along *= 0.5 / along.length();
       const auto next = field_->project(zero + along);

@@ -34,7 +34,7 @@ class DisjointSets {
   std::vector<VertexIndex> parents_;
 };
 
-/// What is known of a piece while it is added up.
+/// Counts of a component while they are added up.
 struct PieceCounts {
   CheckComponent component;
   VertexIndex firstVertex = 0;
@@ -62,7 +62,7 @@ std::size_t countLoops(std::vector<Edge> edges) {
   return loops;
 }
 
-/// Numbers the pieces by their first vertices.
+/// Numbers the components by their first vertices.
 Pieces findLoneComponents(const Faces& faces, const VertexFaces& around) {
   Pieces pieces;
   DisjointSets sets(around.vertexCount());
@@ -74,7 +74,7 @@ Pieces findLoneComponents(const Faces& faces, const VertexFaces& around) {
   for (VertexIndex v = 0; v < pieces.ofVertex.size(); ++v) {
     if (around.begin(v) == around.end(v)) continue;
     const VertexIndex root = sets.root(v);
-    // The root is the smallest vertex of its piece: it has its number before the others ask.
+    // The root is the smallest vertex of its component, so it is numbered before the others.
     pieces.ofVertex[v] =
         root == v ? static_cast<VertexIndex>(pieces.count++) : pieces.ofVertex[root];
   }
@@ -106,7 +106,7 @@ std::vector<PieceCounts> countPieces(const Faces& faces, const std::vector<StarC
   return counts;
 }
 
-/// Puts the pieces into the report, largest first, and renumbers `pieces` to match.
+/// Lists the components in the report, largest first, and renumbers `pieces` to match.
 void listPieces(const std::vector<PieceCounts>& counts, Pieces& pieces, CheckReport& report) {
   std::vector<VertexIndex> order(counts.size());
   std::iota(order.begin(), order.end(), VertexIndex{0});

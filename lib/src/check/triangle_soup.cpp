@@ -29,7 +29,7 @@ double segmentDistanceSquared(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - along * t).squaredLength();
 }
 
-/// Right for triangles without area too: these are their edges.
+/// Correct for triangles without area too: these are their edges.
 double triangleDistanceSquared(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double size = normal.squaredLength();

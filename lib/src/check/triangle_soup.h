@@ -23,8 +23,8 @@ class TriangleSoup {
   [[nodiscard]] const Vec3& point(VertexIndex v) const { return points_[v]; }
 
   /// The distance to the nearest triangle; infinite if there is none. `hint` is a triangle that is
-  /// likely near, or Bvh::kNone, and becomes the nearest: points asked for in order of place are
-  /// then answered much faster.
+  /// likely near, or Bvh::kNone, and becomes the nearest: queries in spatial order are then much
+  /// faster.
   [[nodiscard]] double distance(const Vec3& from, std::uint32_t& hint) const;
 
  private:

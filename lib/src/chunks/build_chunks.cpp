@@ -26,15 +26,15 @@ namespace {
 
 using chunks::ChunkCells;
 
-// Chunks are made together in regions of at least this many voxels, aligned to their size, so that
-// less is made twice at their borders. Which region a chunk is in depends on its index alone.
+// Chunks are built together in regions of at least this many voxels, aligned to their size, so that
+// less is built twice at their borders. The region of a chunk depends on its index alone.
 constexpr int kLeastRegion = 128;
-// Around a region two blocks more are read: an ambiguous face depends on no cell more than six
-// away, and a vertex that is moved to a crease on none more than fourteen.
+// Two more blocks are read around a region: an ambiguous face depends on cells at most six away,
+// and a vertex that snaps to a crease on cells at most fourteen away.
 constexpr int kMargin = 2 * grid::kBlockSize;
 constexpr double kIndexEnd = 0.02;
-// So many regions' chunks are kept at most until those before them are handed out. More would make
-// threads wait less for each other, at the cost of memory.
+// Regions whose chunks are kept at most, for each thread, until those before them are handed to the
+// caller. With more, threads would wait less for each other but use more memory.
 constexpr std::size_t kRegionsPerThread = 4;
 
 void requireOptions(const ChunkOptions& options) {
@@ -54,7 +54,7 @@ void requireOptions(const ChunkOptions& options) {
   }
 }
 
-// Regions that hold blocks, and of these the ones with chunks that are asked for.
+// The regions that hold blocks and chunks that are asked for.
 std::set<Coord> findRegions(const grid::Blocks& blocks, const ChunkOptions& options,
                             int regionLevel) {
   const auto regionOf = [&](const Coord& voxel) {
@@ -183,7 +183,7 @@ class ChunkBuilder {
   }
 
  private:
-  // What was made of a region.
+  // The result for a region.
   struct Region {
     std::vector<chunks::MadeChunk> chunks;
     std::uint64_t surfaceCells = 0, openEdges = 0;
@@ -221,8 +221,8 @@ class ChunkBuilder {
     }
   }
 
-  // Counts what lies in the region itself: the margin is in other regions too, and the surface is
-  // cut open where it ends.
+  // Counts what lies in the region itself: the margin belongs to other regions too, and where it
+  // ends the surface is open.
   static void countOwn(const uniform::SurfaceView& base, const ChunkCells& cells, Region& made) {
     for (std::size_t i = 0; i < base.topology.blocks.size(); ++i) {
       const uniform::SurfaceBlock& block = base.topology.blocks[i];

@@ -41,6 +41,10 @@ Certifier::Certifier(const uniform::SurfaceView& base, const UniformReference& s
   base::resizeLarge(wandered_, base.mesh.positions.size() + base.mesh.quads.size(), job);
 }
 
+// Four passes, each parallel over points or triangles: uniform vertices, uniform quads, vertices of
+// the mesh, samples inside its triangles. Points whose surroundings did not change keep their
+// distance from the mesh before, and count in the mean and among the far points, but are not
+// measured.
 Deviation Certifier::measure(const Cut& cut, const octree::CutMesh& made,
                              const std::vector<VertexIndex>& altered) {
   cut_ = &cut;

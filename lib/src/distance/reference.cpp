@@ -72,6 +72,8 @@ const Offsets& nearestFirst() {
 
 }  // namespace
 
+// A quad's index is the first of its block plus the number of crossed edges before its own, by
+// axis, slab and bit: the order in which the quads were made.
 UniformReference::UniformReference(const uniform::SurfaceView& base,
                                    const octree::ClusterForest& forest, base::Job& job)
     : base_(base), forest_(forest) {
@@ -96,6 +98,7 @@ UniformReference::UniformReference(const uniform::SurfaceView& base,
   });
 }
 
+// The nearest vertex of a cell that does not face away from `facing`, if it is nearer than `near`.
 void UniformReference::searchCell(std::uint32_t block, int cell, const Vec3& point,
                                   const Vec3& facing, Near& near) const {
   const SurfaceBlock& surface = base_.topology.blocks[block];

@@ -8,9 +8,9 @@
 
 namespace tufa::grid {
 
-/// A linear transform from index to world space, taken apart for speed. Positions are counted from
-/// `origin`, a lattice point near the surface, so that they are the same digits wherever in the
-/// world the grid lies; toWorld() moves them there.
+/// A linear transform from index to world space, as matrices for fast evaluation. Positions are
+/// counted from `origin`, a lattice point near the surface, so that they have the same digits
+/// wherever in the world the grid lies; toWorld() moves them there.
 class Affine {
  public:
   explicit Affine(const Transform& transform, const Coord& origin = Coord(0));
@@ -64,7 +64,7 @@ class Affine {
   [[nodiscard]] double voxelSize() const { return voxelSize_; }
   /// World distance between the two faces of a voxel that are nearest to each other.
   [[nodiscard]] double leastHeight() const;
-  /// The transform turns right-handed into left-handed.
+  /// Whether the transform mirrors: right-handed becomes left-handed.
   [[nodiscard]] bool mirrored() const { return mirrored_; }
 
  private:

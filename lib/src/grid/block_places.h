@@ -13,8 +13,8 @@
 
 namespace tufa::grid {
 
-/// Names a block among Blocks::origins, or, where there is none, the side that the tile there is
-/// on.
+/// Index of a block in Blocks::origins, or, where there is no block, the side that the tile there
+/// is on.
 using BlockRef = std::int32_t;
 inline constexpr BlockRef kOutsideTile = -1;
 inline constexpr BlockRef kInsideTile = -2;
@@ -32,12 +32,12 @@ class BlockPlaces {
   static constexpr std::size_t kNodePlaces = std::size_t{1} << (3 * kNodeBits);
   static constexpr int kNodeVoxels = kBlockSize << kNodeBits;  ///< voxels along a node
 
-  /// Makes room for nodes at these places. What is at the places of each is still to be written.
+  /// Makes room for nodes at these origins. The places of each must then be written.
   void setNodes(const std::vector<Coord>& origins, base::Job& job);
   /// The places of a node, by x, then y, then z.
   [[nodiscard]] BlockRef* node(std::size_t index) { return &places_[index * kNodePlaces]; }
 
-  /// Blocks in a box alone, each at its place; `find` gives the blocks' numbers, or the sides of
+  /// Blocks in a box alone, each at its place; `find` gives the blocks' indices, or the sides of
   /// tiles. All else is kUnknown.
   void buildBox(const base::IndexBox& box, const std::function<BlockRef(const Coord&)>& find);
   /// Puts blocks, numbered from `first` on, where there are tiles.

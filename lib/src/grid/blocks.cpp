@@ -90,7 +90,7 @@ Neighbours Blocks::upperNeighbours(BlockRef block, Accessor& accessor) const {
   return upper;
 }
 
-// A missing block goes on as the one before it ends: there is no surface to be found.
+// A missing block continues the last layer before it, so that no surface is found between them.
 std::uint64_t Blocks::sides(const Neighbours& neighbours, int dx, int dy, int dz, int x) const {
   constexpr std::uint64_t kFirstZ = 0x0101010101010101u;
   const BlockRef block = neighbours[neighbourIndex(dx, dy, dz)];

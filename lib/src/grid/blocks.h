@@ -19,8 +19,8 @@ namespace tufa::grid {
 /// A block and the 26 around it: entry (dx + 1) * 9 + (dy + 1) * 3 + dz + 1.
 using Neighbours = std::array<BlockRef, 27>;
 
-/// The grid as blocks of 8^3 cells: every leaf, and every tile region that holds a cell which the
-/// surface passes. Keeps pointers into the tree, which must outlive it.
+/// The grid as blocks of 8^3 cells: every leaf, and every part of a tile of that size that holds a
+/// surface cell. Keeps pointers into the tree, which must outlive it.
 ///
 /// A block's cell (x, y, z) lies between its lattice points (x..x+1, y..y+1, z..z+1), so the last
 /// layer of cells reaches one layer into the blocks above.
@@ -31,8 +31,8 @@ class Blocks {
   Blocks(std::shared_ptr<const Tree> tree, const IsoChoice& iso, NonFinite nonFinite,
          base::Job& job);
 
-  /// The blocks of `whole` in a box of whole blocks. The surface ends where others would follow:
-  /// the outermost layer of cells is not as it is in `whole`.
+  /// The blocks of `whole` in a box of whole blocks. The surface ends at the border of the box: the
+  /// outermost layer of cells is not as it is in `whole`.
   Blocks(const Blocks& whole, const base::IndexBox& box);
 
   [[nodiscard]] std::size_t count() const { return origins_.size(); }
@@ -41,7 +41,7 @@ class Blocks {
   /// The leaf with the samples of a block; kNoLeaf where a tile gives them all.
   [[nodiscard]] LeafRef leaf(BlockRef block) const { return leaves_[block]; }
   [[nodiscard]] const Tree& tree() const { return *tree_; }
-  /// Reads what lies in no block. For one thread.
+  /// An accessor for values that lie in no block. For one thread.
   [[nodiscard]] std::unique_ptr<Accessor> accessor() const { return tree_->accessor(); }
   /// Slab x of the mask of active samples.
   [[nodiscard]] std::uint64_t active(BlockRef block, int x, Accessor& accessor) const;

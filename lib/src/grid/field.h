@@ -14,8 +14,8 @@ struct FieldScale {
   /// The field is a distance: its gradient has length 1. Creases can be restored from it.
   bool distance = false;
   /// The field is a level set that holds distances only inside its band: samples at or beyond these
-  /// values say nothing but their side, and a jump of more than a voxel between an active sample
-  /// and an inactive one is the edge of the data, not surface.
+  /// values only tell their side, and a jump of more than a voxel between an active sample and an
+  /// inactive one is the edge of the data, not surface.
   bool narrowBand = false;
   float bandInside = -3e38F;  ///< least value that is a distance, after scaling
   float bandOutside = 3e38F;  ///< greatest one
@@ -31,7 +31,7 @@ struct FieldScale {
   }
 };
 
-/// Finds out by a sample of the grid's leaves whether the field is a distance. `scale` must come
+/// Decides from a sample of the grid's leaves whether the field is a distance. `scale` must come
 /// from a linear transform.
 [[nodiscard]] FieldScale readFieldScale(const openvdb::GridBase& grid, const IsoChoice& iso);
 

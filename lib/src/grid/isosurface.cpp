@@ -114,7 +114,7 @@ class VdbField final : public TrilinearField {
   }
 
   static constexpr int kMostSteps = 20;
-  static constexpr double kReach = 4;  ///< voxels; further off the search over samples is better
+  static constexpr double kReach = 4;  ///< voxels; farther away the search over samples is better
   static constexpr double kTolerance = 1e-8;  ///< voxels; float samples carry less
 
   /// A zero on a segment whose ends have different signs: the field is continuous, so the Illinois
@@ -211,7 +211,7 @@ class Sampler {
   }
 
   /// From the mean of the crossings a Newton step or two ends inside the cell, where the trilinear
-  /// surface is furthest from what its edges tell.
+  /// surface is farthest from what its edges tell.
   void addCell(const CellSamples& samples) {
     if (!samples.isData || samples.insideMask == 0 || samples.insideMask == 0xff) return;
     const Coord cell = samples.cell;

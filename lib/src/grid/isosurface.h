@@ -25,9 +25,8 @@ class TrilinearField {
   [[nodiscard]] virtual Vec3 direction(const Vec3& point) = 0;
 };
 
-/// The trilinear isosurface of a grid: what meshes are checked against. Found apart from
-/// contour()'s own search, so that one can be held against the other. Keeps references to its
-/// arguments.
+/// The trilinear isosurface of a grid: what meshes are checked against. Found independently of
+/// contour()'s own search, so that one can check the other. Keeps references to its arguments.
 class Isosurface {
  public:
   virtual ~Isosurface() = default;

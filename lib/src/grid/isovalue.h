@@ -18,7 +18,7 @@ struct IsoChoice {
   return iso.insideIsBelow ? value < iso.isovalue : value > iso.isovalue;
 }
 
-/// Settles what the caller left open. Isovalue: 0 for level sets, else half way between the least
+/// Chooses what the caller left open. Isovalue: 0 for level sets, else half way between the least
 /// and the greatest finite value, background included. Inside: below for level sets, above for fog
 /// volumes, for other grids the side that the background is not on. Throws Error(InvalidArgument)
 /// for an isovalue that is not finite, Error(UnsupportedGrid) for grids other than float and

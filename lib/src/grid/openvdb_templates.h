@@ -8,7 +8,7 @@
   extern template class openvdb::tree::Tree<openvdb::TreeT::RootNodeType>; \
   extern template class openvdb::Grid<openvdb::TreeT>
 
-/// Compiles them.
+/// Compiles them in this source file.
 #define TUFA_TREE_IS_HERE(TreeT)                                    \
   template class openvdb::tree::Tree<openvdb::TreeT::RootNodeType>; \
   template class openvdb::Grid<openvdb::TreeT>

@@ -12,7 +12,7 @@ void BlockSamples::gather(const Blocks& blocks, const FieldScale& scale, BlockRe
   }
   accessor.gather(leaves, blocks.origin(block), scale, values_.data());
   if (blocks.nonFiniteValues() == 0) return;
-  // Let in as outside: a voxel away, where nothing better is known.
+  // Samples that are not finite count as outside, one voxel away.
   for (float& value : values_) value = std::isfinite(value) ? value : 1.0F;
 }
 

@@ -37,7 +37,7 @@ class SampleReader {
 
  private:
   [[nodiscard]] double scaled(double value) const {
-    // A sample that is not finite was let in as outside.
+    // A sample that is not finite counts as outside.
     if (!std::isfinite(value)) return 1;
     return (value - scale_.isovalue) * scale_.factor;
   }

@@ -11,8 +11,11 @@ namespace {
 
 using openvdb::Coord;
 
-// Only tiles on the other side than the background are walked: where two tiles of different sides
-// touch, one of them is such a tile.
+// Finds where tiles of different sides touch, over faces, edges or corners. Only tiles on the other
+// side than the background are visited: of two touching tiles of different sides one is such a
+// tile, and there are finitely many, whereas the background is everywhere. The smallest tiles have
+// the size of a leaf, so everything is decided in blocks: a tile of interest is compared with the
+// 26 blocks around each of its outer blocks.
 template <class TreeT>
 class TileContacts {
   using Accessor = openvdb::tree::ValueAccessor<const TreeT>;
@@ -67,7 +70,8 @@ class TileContacts {
     found_.insert(found_.end(), found.begin(), found.end());
   }
 
-  // The outer lower-node-sized pieces of a root tile: only they can touch something else.
+  // Collects the outer parts, of the size of a lower node, of a root tile: the inner ones touch
+  // nothing else.
   void collectRootTile(const Coord& origin) {
     for (int i = 0; i < kUpperChildren; ++i) {
       for (int j = 0; j < kUpperChildren; ++j) {
@@ -79,7 +83,7 @@ class TileContacts {
     }
   }
 
-  // Cells that touch a sample of a block lie in it and in the seven blocks below it.
+  // A sample of a block is a corner of cells in the block itself and in the seven blocks below it.
   static void addWithLowerBlocks(const Coord& block, std::vector<Coord>& found) {
     for (int corner = 0; corner < 8; ++corner) {
       found.push_back(block.offsetBy(-kBlockSize * (corner >> 2), -kBlockSize * ((corner >> 1) & 1),
@@ -92,14 +96,15 @@ class TileContacts {
     return isInside(accessor.getValue(block), iso_) ? State::Inside : State::Outside;
   }
 
-  // A tile as large as a lower node: its outer blocks against what lies around it.
+  // Compares the outer blocks of a tile as large as a lower node with what lies around it, in each
+  // of 26 directions.
   void walkBigTile(const Coord& origin, Accessor& accessor, std::vector<Coord>& found) const {
     const State other = walked_ ? State::Outside : State::Inside;
     for (int direction = 0; direction < 27; ++direction) {
       const std::array<int, 3> d = {direction / 9 - 1, direction / 3 % 3 - 1, direction % 3 - 1};
       if (direction == 13) continue;
       const Coord around = origin.offsetBy(d[0] * kLowerSize, d[1] * kLowerSize, d[2] * kLowerSize);
-      // A region of the same side in one piece: the common case inside a solid.
+      // A whole tile of the same side as large as this one: the common case inside a solid.
       if (accessor.getValueDepth(around) < kLeafDepth - 1 &&
           isInside(accessor.getValue(around), iso_) == walked_) {
         continue;
@@ -130,7 +135,8 @@ class TileContacts {
     return false;
   }
 
-  // A lower node's own tiles, with one layer of blocks around it.
+  // Compares a lower node's own tiles with their neighbours. The states of its blocks and of one
+  // layer around it are read into an array first, so each is looked up once and not 26 times.
   void walkLowerNode(const LowerNode& node, Accessor& accessor, std::vector<Coord>& found) const {
     const State mine = walked_ ? State::Inside : State::Outside;
     const State other = walked_ ? State::Outside : State::Inside;
@@ -177,7 +183,7 @@ class TileContacts {
 
   const TreeT& tree_;
   IsoChoice iso_;
-  bool walked_;  // side of the tiles to walk: inside or not
+  bool walked_;  // side of the tiles to visit: inside or not
   std::vector<Coord> bigTiles_;
   std::vector<Coord> found_;
   std::mutex mutex_;

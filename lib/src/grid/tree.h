@@ -17,12 +17,11 @@
 
 namespace tufa::grid {
 
-/// A leaf of the tree behind a block, by its place in the order of the tree; kNoLeaf where a tile
-/// is.
+/// Index of the leaf behind a block, in the order of the tree; kNoLeaf where a tile is.
 using LeafRef = std::int32_t;
 inline constexpr LeafRef kNoLeaf = -1;
 
-/// Reads values of a tree; remembers the nodes on its way. For one thread.
+/// Reads values of a tree and caches the nodes on the way. For one thread.
 class Accessor {
  public:
   virtual ~Accessor() = default;
@@ -36,13 +35,13 @@ class Accessor {
                       const FieldScale& scale, float* samples) = 0;
 };
 
-/// A tree of an OpenVDB grid: the one place where the type of its values is known. What goes
-/// through a virtual call is a block or a rare single value, never a loop over samples.
+/// The tree of an OpenVDB grid, behind an interface that hides the type of its values. A virtual
+/// call handles a block or a rare single value, never one sample of a loop.
 class Tree {
  public:
   virtual ~Tree() = default;
 
-  /// What there is to know of all values before the surface is looked for.
+  /// What is known of all values before the surface is searched.
   struct Summary {
     std::size_t activeVoxels = 0;  ///< those of tiles included
     std::size_t nonFiniteValues = 0;
@@ -61,7 +60,7 @@ class Tree {
   /// Error(NonFiniteValues) for a background that is not finite.
   virtual Summary readSides(const IsoChoice& iso, std::vector<BlockBits>& inside,
                             base::Job& job) const = 0;
-  /// Notes the place of every leaf and the sides of tiles as large as one.
+  /// Records the place of every leaf and the sides of tiles as large as one.
   virtual void findPlaces(const IsoChoice& iso, BlockPlaces& places, base::Job& job) const = 0;
   /// Blocks in tiles with cells that the surface passes because tiles of two sides touch; see
   /// tile_contacts.h.

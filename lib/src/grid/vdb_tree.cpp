@@ -142,7 +142,7 @@ class VdbTree final : public Tree {
     job.forRanges(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         leaves_[i] = leaves[i];
-        values_[i] = leaves[i]->buffer().data();  // reads a leaf that waits in its file
+        values_[i] = leaves[i]->buffer().data();  // loads a leaf whose values are still in the file
       }
     });
   }

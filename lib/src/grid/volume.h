@@ -13,7 +13,8 @@
 
 namespace tufa::grid {
 
-/// A grid as the stages read it: what was chosen, its blocks, and how values and places are scaled.
+/// A grid as later stages read it: what was chosen, its blocks, and how values and places are
+/// scaled.
 struct Volume {
   Blocks blocks;
   FieldScale scale;

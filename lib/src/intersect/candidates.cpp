@@ -62,12 +62,14 @@ bool hasVertexOutOfCell(const uniform::VertexSheets& sheets, const Quad& quad) {
 }
 
 // Whether `inner` is behind the plane through `p` and `outer` in front, by more than `margin`.
+// Squared, so that the normal needs no square root.
 bool parts(const Vec3& normal, const Vec3& p, const Vec3& inner, const Vec3& outer, double margin) {
   const double before = normal.dot(outer - p), behind = normal.dot(p - inner);
   const double least = margin * margin * normal.squaredLength();
   return before > 0 && behind > 0 && before * before > least && behind * behind > least;
 }
 
+// The sufficient condition of findCandidates() for both triangles of a quad.
 bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, const Vec3& outer,
                      double margin) {
   std::array<Vec3, 4> p;

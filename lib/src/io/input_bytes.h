@@ -30,7 +30,7 @@ class InputBytes {
   std::size_t size_ = 0;
 };
 
-/// Goes through text line by line and word by word, and knows the number of the line.
+/// Reads text line by line and word by word, and knows the number of the line.
 class TextCursor {
  public:
   TextCursor(const InputBytes& input, std::size_t offset, std::size_t firstLine)
@@ -69,7 +69,7 @@ class TextCursor {
   std::size_t line_;
 };
 
-/// Whether two words are the same but for the case of ASCII letters.
+/// Whether two words are equal up to the case of ASCII letters.
 [[nodiscard]] bool sameWord(std::string_view a, std::string_view b);
 
 }  // namespace tufa::io

@@ -142,7 +142,7 @@ void OutputFile::commit() {
   flush();
   const int descriptor = descriptor_;
   descriptor_ = -1;
-  // Some file systems tell of a full disk only here.
+  // Some file systems report a full disk only here.
   if (::close(descriptor) != 0) fail("closing failed", errno);
   if (direct_) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("renaming failed", errno);

@@ -9,9 +9,9 @@
 
 namespace tufa::io {
 
-/// A file that appears whole or not at all: bytes go to a temporary file in the target's folder,
-/// which commit() renames and the destructor otherwise removes. A target that is a pipe or a device
-/// is written to as it is. All members throw Error(UnwritableFile).
+/// A file that appears complete or not at all: bytes go to a temporary file in the target's folder,
+/// which commit() renames and the destructor removes otherwise. A pipe or a device is written to
+/// directly. All members throw Error(UnwritableFile).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -44,7 +44,7 @@ class OutputFile {
   bool direct_ = false;  ///< the target is a pipe or a device
 };
 
-/// Throws Error(UnwritableFile) if it is plain that OutputFile could not write there.
+/// Throws Error(UnwritableFile) if it is certain already that OutputFile could not write there.
 void requireWritablePath(const std::filesystem::path& path);
 
 /// Lets an std::ostream write to an OutputFile. Errors pass through as Error where the stream's

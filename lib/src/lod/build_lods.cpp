@@ -18,8 +18,8 @@ namespace {
 
 constexpr uniform::StageEnds kEnds = {0.08, 0.15, 0.33, 0.4, 0.42, 0.45};
 constexpr double kForestEnd = 0.55;
-// Triangles of a level fall at least with this power of its tolerance, up to this many times that
-// of the level before.
+// The triangles of an LOD must fall at least with this power of its tolerance, for tolerances up to
+// this many times that of the LOD before.
 constexpr double kLeastSlope = -0.3;
 constexpr double kMostRatio = 4;
 
@@ -29,7 +29,7 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What a level must keep: one or the other.
+// What an LOD must keep: one or the other.
 struct Target {
   double tolerance = 0;
   std::size_t triangles = 0;  ///< 0: none
@@ -82,7 +82,7 @@ std::vector<Target> targetsOf(const LodOptions& options) {
   return targets;
 }
 
-// Why a level is no coarser, or not as coarse as asked for, and was left out.
+// Why an LOD is no coarser, or not as coarse as asked for, and was left out.
 std::string stopOf(std::size_t level, const Target& target, std::size_t triangles) {
   if (target.triangles > 0) {
     return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
@@ -95,8 +95,8 @@ std::string stopOf(std::size_t level, const Target& target, std::size_t triangle
          ", and was left out: the surface's topology allows no coarser mesh";
 }
 
-// A level with so many triangles or more is not worth its error: at four times the tolerance there
-// should be a third fewer. Else what is left is needed for the topology.
+// An LOD with so many triangles or more is not worth its error: at four times the tolerance a third
+// fewer are expected. Otherwise what is left is needed for the topology.
 std::size_t tooMany(const Target& target, const Lod& before) {
   const std::size_t most = before.mesh.triangleCount();
   if (target.triangles > 0 || !(before.tolerance > 0)) return most;

@@ -90,6 +90,8 @@ CutMesh meshCut(const ClusterForest& forest, const Cut& cut, const Mesh& base,
   CutMesh result;
   Mesh& mesh = result.mesh;
   placeVertices(forest, cut, base, affine, mesh, job);
+  // Two passes over the quads, one to count and one to write, with a prefix sum between: polygons
+  // keep the order of the quads for any number of threads.
   const std::size_t chunks = (quads.size() + kChunk - 1) / kChunk;
   std::vector<Counts> before(chunks + 1);
   const auto forChunk = [&](std::size_t chunk, const auto& body) {

@@ -33,7 +33,7 @@ struct Patch {
   /// coordinate, along the edge, of the lattice edge that is crossed.
   std::array<std::int32_t, uniform::kEdges> crossings;
   PatchPlanes
-      planes;  ///< seen from the lower corner of the block, above blocks from that of the cell
+      planes;  ///< counted from the lower corner of the block, above level 3 from that of the cell
   NormalCone cone;
 
   Patch() { crossings.fill(kNoCrossing); }

@@ -19,6 +19,8 @@ struct Outcome {
 
 using ChildCells = std::array<std::uint32_t, kCorners>;
 
+// Joins the children of one cell. A child that is not safe ends the branch. Planes move to the
+// corner of the new cell, so that coordinates stay small at all levels.
 Outcome tryCell(const ClusterLevel& below, const std::vector<Patch>& patches,
                 const ChildCells& cells, const grid::Affine& affine, PatchJoiner& joiner) {
   Outcome outcome;

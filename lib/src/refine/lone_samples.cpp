@@ -12,7 +12,7 @@ constexpr std::uint8_t kThree = 3;
 constexpr std::size_t kCorners = 8;
 constexpr std::size_t kSides = 6;
 
-// The quads of which all vertices have three quads.
+// The quads of which all vertices have three quads, as the six around a single sample do.
 std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
   std::vector<std::uint8_t> quadsAt(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.quads.size(); ++i) {

@@ -2,7 +2,7 @@
 //
 // Its field is the exact Euclidean distance to the solid's boundary. The minimum and maximum of CSG
 // would give the right surface, but off it distances that are too short near every convex edge
-// (and, inside, near every concave one); a mesh converted to a level set has no such fault. So CSG
+// (and, inside, near every concave one); a mesh converted to a level set has no such error. So CSG
 // gives the sign and a quick lower bound, and the magnitude is the least distance to any boundary
 // patch.
 

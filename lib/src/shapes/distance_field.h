@@ -38,8 +38,8 @@ class DistanceField {
 
   [[nodiscard]] virtual double distance(const Vec3& point) const = 0;
 
-  /// Bounds of the field over a ball. They may be loose, but never wrong: whole blocks are skipped
-  /// on their word. The default holds for fields with a Lipschitz constant of 1.
+  /// Bounds of the field over a ball. They need not be tight but must be valid: whole blocks are
+  /// skipped because of them. The default holds for fields with a Lipschitz constant of 1.
   [[nodiscard]] virtual ValueRange range(const Vec3& center, double radius) const {
     const double d = distance(center);
     return {d - radius, d + radius};

@@ -9,7 +9,7 @@
 
 namespace tufa::shapes {
 
-/// What buildBlocks() asks of a volume. Both functions are called from several threads at a time.
+/// What buildBlocks() needs of a volume. Both functions are called from several threads at a time.
 struct BlockSource {
   /// Half the side, in voxels, of the cube around the origin that holds all values.
   int halfExtentVoxels = 0;

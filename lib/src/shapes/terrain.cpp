@@ -84,7 +84,7 @@ class Terrain final : public DistanceField {
   static constexpr double kSteepestNoise = 1.875 * 2 * std::numbers::sqrt2;
 
   [[nodiscard]] Height heightAt(double x, double y) const {
-    // Each octave is turned against the one before, so that their lattices do not line up.
+    // Each octave is rotated against the one before, so that their lattices do not line up.
     const double turnCos = 0.8;
     const double turnSin = 0.6;
     Height sum;

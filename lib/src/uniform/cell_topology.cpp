@@ -30,6 +30,7 @@ std::array<std::uint64_t, 3> crossedEdges(const CornerWords& corners, int x) {
   return {here[0] ^ corners.words[x + 1][0], here[0] ^ here[2], here[0] ^ here[1]};
 }
 
+// The rank of the cell among the surface cells, and what cells before it have beyond one vertex.
 std::uint32_t CellTopology::firstVertexInBlock(const SurfaceBlock& block, int cell) const {
   const int slab = cell >> 6;
   const std::uint64_t before = block.cells.slabs[slab] & base::bitsBelow(cell & 63);
@@ -100,6 +101,8 @@ Components CellTopology::componentsAt(const SurfaceBlock& block, int cell, Corne
   return cut == 0 ? componentsOf(mask, joined) : joinCrossings(mask, joined, cut);
 }
 
+// The two arcs cut off the inside corners of the face, or the outside ones if the inside ones are
+// joined.
 bool CellTopology::ownsBothArcs(const SurfaceBlock& block, int cell, CornerMask mask,
                                 int face) const {
   const unsigned cut = openEdgesOf(block, cell);

@@ -117,6 +117,7 @@ bool slideInto(float half, const Vector& direction, Vector& point) {
 
 }  // namespace
 
+// See the class for the order of the candidates.
 CreasePlacement CreaseCell::place(int x, int y, int z, const Vector& massPoint) {
   CreasePlacement placement;
   cell_ = {x, y, z};
@@ -304,6 +305,8 @@ float CreaseCell::sampleAt(int corner) const {
                                       cell_[2] + (corner & 1))];
 }
 
+// A sample outside the narrow band is clamped, and so is its ball: smaller than it might be, never
+// larger.
 void CreaseCell::readBalls() {
   const auto [x, y, z] = cell_;
   for (int row = 0; row < 16; ++row) {
@@ -316,6 +319,8 @@ void CreaseCell::readBalls() {
   }
 }
 
+// Whether the point lies in none of the balls that the surface does not enter. Without branches: 64
+// balls are tested in a few vector instructions.
 bool CreaseCell::isOnSurface(const Vector& point) const {
   std::array<std::array<float, 4>, 3> squared;
   for (int axis = 0; axis < 3; ++axis) {

@@ -51,8 +51,8 @@ class SplitChooser {
     return (corners_[3] - corners_[1]).squaredLength() <
            (corners_[2] - corners_[0]).squaredLength();
   }
-  // Whether the two diagonals, as lines, pass at less than kSameDistance, and the one asked for has
-  // a triangle on either side.
+  // Whether the two diagonals, as lines, are less than kSameDistance apart, and the chosen one
+  // separates two triangles that face alike.
   [[nodiscard]] bool isFlatAndConvex(bool second) const {
     const Vec3 diagonals[2] = {corners_[2] - corners_[0], corners_[3] - corners_[1]};
     const Vec3 across = diagonals[0].cross(diagonals[1]);

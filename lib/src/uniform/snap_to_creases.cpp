@@ -87,6 +87,7 @@ class CreaseSnapper {
   }
 
  private:
+  // Corners that have a vertex. No second one snaps to them.
   void collectCorners() {
     for (std::size_t v = 0; v < mesh_.positions.size(); ++v) {
       const auto vertex = static_cast<VertexIndex>(v);
@@ -222,6 +223,8 @@ class CreaseSnapper {
     return planes;
   }
 
+  // A vertex on one sheet may snap to the crease of that sheet and another one of the quad.
+  // Vertices that are on creases already stay.
   void proposeCreases(const Quad& quad, const QuadSheets& around, int corner, Move& best) const {
     const VertexIndex vertex = quad.vertices[corner];
     if (sheets_.isSharp(vertex)) return;
@@ -237,6 +240,7 @@ class CreaseSnapper {
     }
   }
 
+  // A vertex on one of three sheets may snap to their corner, unless a vertex is there already.
   void proposeCorners(const Quad& quad, const QuadSheets& around, int corner, Move& best) const {
     const VertexIndex vertex = quad.vertices[corner];
     if (around.count() < 3 || sheets_.sheets(mesh_, vertex).count > 2) return;

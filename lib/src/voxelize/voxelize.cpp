@@ -42,7 +42,7 @@ class IndexSpaceMesh {
   double voxelSize_;
 };
 
-/// Hands OpenVDB's questions on to a Progress. OpenVDB asks from any thread and tells the
+/// Passes OpenVDB's interrupt checks on to a Progress. OpenVDB calls from any thread and gives the
 /// percentage only at times, so only the caller's thread passes it on.
 class ProgressInterrupter final : public openvdb::util::NullInterrupter {
  public:
@@ -76,7 +76,7 @@ void requireUsableFaces(const Mesh& mesh) {
   std::for_each(mesh.quads.begin(), mesh.quads.end(), requireInside);
 }
 
-/// Refuses meshes that are not finite and voxels so small that the lattice cannot name them.
+/// Throws for meshes that are not finite, and for voxels too small for the lattice's coordinates.
 void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
   double largest = 0;
   for (const Position& p : mesh.positions) {

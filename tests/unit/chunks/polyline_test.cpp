@@ -60,7 +60,8 @@ Vec3 placeOf(const Seams& seams, SeamIndex vertex) {
   return Vec3(seams.vertices[vertex].cell) + seams.vertices[vertex].offset;
 }
 
-SeamPolylines simplified(const Seams& seams, double budget, const PolylineValidation& validation = nullptr) {
+SeamPolylines simplified(const Seams& seams, double budget,
+                         const PolylineValidation& validation = nullptr) {
   return simplifySeams(
       seams, kLattice, [&](const Vec3&) { return budget; }, validation);
 }

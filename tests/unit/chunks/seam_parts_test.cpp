@@ -145,7 +145,7 @@ struct ThreeArcs {
 TEST(CurveSide, RunsAsTheCurveDoesSeenFromBelow) {
   const ChunkSeam below = ThreeArcs().side(false);
   EXPECT_EQ(below.tiles, (std::vector<VertexIndex>{110, 111, 112}));
-  EXPECT_EQ(below.line, (std::vector<VertexIndex>{1000, 1000, 1002}));
+  EXPECT_EQ(below.polyline, (std::vector<VertexIndex>{1000, 1000, 1002}));
   EXPECT_EQ(below.begin, 1003U);
   EXPECT_EQ(below.end, 1004U);
   EXPECT_FALSE(below.closed);
@@ -154,7 +154,7 @@ TEST(CurveSide, RunsAsTheCurveDoesSeenFromBelow) {
 TEST(CurveSide, RunsTheOtherWaySeenFromAbove) {
   const ChunkSeam above = ThreeArcs().side(true);
   EXPECT_EQ(above.tiles, (std::vector<VertexIndex>{122, 121, 120}));
-  EXPECT_EQ(above.line, (std::vector<VertexIndex>{1002, 1000, 1000}));
+  EXPECT_EQ(above.polyline, (std::vector<VertexIndex>{1002, 1000, 1000}));
   EXPECT_EQ(above.begin, 1004U);
   EXPECT_EQ(above.end, 1003U);
 }

@@ -1,6 +1,6 @@
 // Strips between the vertices of a chunk and those on its face.
 
-#include "chunks/levels/stitch.h"
+#include "chunks/seams/stitch.h"
 
 #include <gtest/gtest.h>
 

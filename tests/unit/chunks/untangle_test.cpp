@@ -1,6 +1,6 @@
 // Curves on the faces between chunks that cross each other.
 
-#include "chunks/levels/untangle.h"
+#include "chunks/seams/untangle.h"
 
 #include <gtest/gtest.h>
 

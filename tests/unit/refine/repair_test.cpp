@@ -93,7 +93,8 @@ TEST(Repair, UnfoldsASheet) {
   const std::size_t pairs = allPairs(mesh).size();
   ASSERT_GT(pairs, 0U);
   base::Job job(0, {});
-  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), sourceOf(good), job);
+  const refine::RepairReport report =
+      refine::repairIntersections(mesh, allPolygons(mesh), sourceOf(good), job);
   EXPECT_EQ(report.pairsFound, pairs);
   EXPECT_TRUE(report.left.empty());
   EXPECT_TRUE(allPairs(mesh).empty());
@@ -105,7 +106,8 @@ TEST(Repair, LeavesAGoodMeshAlone) {
   Mesh mesh = contourOf(Shape::Sphere, 0.05, false);
   const Mesh before = mesh;
   base::Job job(0, {});
-  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), sourceOf(before), job);
+  const refine::RepairReport report =
+      refine::repairIntersections(mesh, allPolygons(mesh), sourceOf(before), job);
   EXPECT_EQ(report.pairsFound, 0U);
   EXPECT_EQ(mesh.positions, before.positions);
   EXPECT_EQ(mesh.quads, before.quads);
@@ -121,7 +123,8 @@ TEST(Repair, ReportsWhatItCannotMendWithoutTheFloor) {
   refine::Source source = sourceOf(before);
   source.lastResort = false;
   base::Job job(0, {});
-  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), source, job);
+  const refine::RepairReport report =
+      refine::repairIntersections(mesh, allPolygons(mesh), source, job);
   ASSERT_EQ(report.left.size(), 1U);
   EXPECT_EQ(report.left[0], (intersect::PolygonPair{0, 1}));
 }
@@ -142,7 +145,8 @@ TEST(Repair, FansAQuadWhereNothingElseHelps) {
     return points;
   };
   base::Job job(0, {});
-  const refine::RepairReport report = refine::repairIntersections(mesh, allPolygons(mesh), source, job);
+  const refine::RepairReport report =
+      refine::repairIntersections(mesh, allPolygons(mesh), source, job);
   EXPECT_EQ(report.fannedQuads, 1U);
   EXPECT_TRUE(report.left.empty());
   EXPECT_TRUE(allPairs(mesh).empty());

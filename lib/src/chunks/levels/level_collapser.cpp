@@ -56,6 +56,8 @@ refine::Goal LevelCollapser::goalFor(const SeamedCut& mesh,
   return goal;
 }
 
+// Collapses the regular mesh; the transition mesh takes over its interior. Both are repaired and
+// measured, and if neither is worse than before they replace the old ones.
 void LevelCollapser::collapse(LevelMeshes& meshes, const Level& level, const refine::Repair* repair,
                               distance::Certifier& certifier) const {
   std::vector<std::uint8_t> fixed;

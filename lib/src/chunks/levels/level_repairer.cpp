@@ -132,6 +132,10 @@ void LevelRepairer::repairRegular(LevelMeshes& meshes, Movable movable, Clean& c
       refine::candidatesOf(mesh.made, mesh.cut, region_.uniformCandidates, mesh.altered), &clean);
 }
 
+// The two meshes must end with the same interior. So what the repair of one moves is taken over by
+// the other, which is then searched again: all of its strips, and pairs that the first one kept. If
+// they do not agree after kMostFlips repairs each, the regular mesh decides, and the pairs of the
+// transition mesh are only counted.
 void LevelRepairer::repairInSequence(LevelMeshes& meshes, Movable movable, Clean& clean) const {
   const auto stripCandidates = [&] { return stripCandidatesOf(meshes.transition, meshes.pairs); };
   for (int turn = 0; turn < kMostFlips; ++turn) {

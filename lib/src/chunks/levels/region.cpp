@@ -130,6 +130,11 @@ class RegionMaker {
   [[nodiscard]] const std::vector<Position>& seamPositions() const { return seamPositions_; }
   [[nodiscard]] const SeamPolylines& lines(std::size_t level) const { return lines_[level]; }
 
+  // One LOD: cut, divide at the seams, measure, repair, each time for both meshes, and start again
+  // with smaller cells wherever either is too far or still intersects. After kMostRounds
+  // intersections split no more cells; strips that still intersect run as their arcs do, and last
+  // all but vertices on seams may move. It ends, as cells are only forbidden and flags only set.
+  // Then edges are collapsed.
   LevelMeshes makeLevel(std::size_t level) {
     const octree::CutRule rule = ruleFor(options_.tolerances[level]);
     const octree::CutRule cutRule = ruleFor((options_.simplify ? kCutShare : 1) * rule.tolerance);

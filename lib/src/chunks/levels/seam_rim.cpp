@@ -9,7 +9,8 @@
 namespace tufa::chunks {
 namespace {
 
-// The arcs of a curve in an order in which its parts are contiguous, and the part of each place.
+// The arcs of a curve in an order in which its parts (quadrants, if it is closed) are contiguous,
+// and the part of each.
 struct Parts {
   std::vector<std::size_t> order;
   std::vector<std::uint32_t> of;
@@ -38,7 +39,7 @@ Parts partsOf(const Seams& seams, const SeamCurve& curve) {
   return parts;
 }
 
-// The stretches of the clusters on one side of a curve.
+// Adds the stretches of the clusters on one side of a curve.
 void addSide(const SeamedCut& mesh, const Seams& seams, std::uint32_t number, const Parts& parts,
              bool above, refine::Rim& rim, std::vector<std::uint8_t>& fixed) {
   const SeamCurve& curve = seams.curves[number];

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "base/polygons.h"
-#include "chunks/levels/stitch.h"
 #include "chunks/seams/curve_side.h"
+#include "chunks/seams/stitch.h"
 
 namespace tufa::chunks {
 namespace {
@@ -80,6 +80,7 @@ bool isSet(const SideFlags& flags, const StripPlace& place) {
 void addStrips(const Seams& seams, const SeamPolylines& lines,
                const std::vector<VertexIndex>& seamVertices, const ChunkCells& chunks,
                const SideFlags& kept, SeamedCut& result) {
+  // All sides are collected first: whether two vertices may be joined depends on all strips.
   struct Side {
     const SeamCurve* curve;
     bool above;

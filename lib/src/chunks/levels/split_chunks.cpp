@@ -115,6 +115,9 @@ void ChunkSplitter::sortPieces(const SeamedCut& mesh,
   }
 }
 
+// Vertices are numbered in the order in which polygons first use them: the interior and regular
+// strips, then seams, then transition strips. Their indices are reset one by one, as a chunk uses
+// few of a region's.
 void ChunkSplitter::fillLevel(const LevelMeshes& meshes, std::int32_t chunk,
                               const std::vector<Piece>& regular,
                               const std::vector<Piece>& transition, const SeamPolylines& lines,

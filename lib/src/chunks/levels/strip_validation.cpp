@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "chunks/levels/stitch.h"
 #include "chunks/seams/curve_side.h"
+#include "chunks/seams/stitch.h"
 #include "intersect/surface.h"
 
 namespace tufa::chunks {
@@ -88,6 +88,9 @@ FaceValidation StripValidation::ofFace(std::size_t begin, std::size_t end, bool 
   };
 }
 
+// Builds the strips on one side of a face and the uniform quads beside them as a small mesh, and
+// searches it for folded and intersecting triangles. From call to call only new triangles are
+// searched: polylines are refined in few places.
 void StripValidation::lookAtSide(std::size_t begin, std::size_t end, bool above,
                                  const SeamPolylines& lines, Seen& seen, LineFaults& faults) const {
   // Seam vertices are numbered behind the uniform ones.

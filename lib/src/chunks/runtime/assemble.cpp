@@ -5,7 +5,7 @@
 #include <map>
 
 #include "base/vertex_welder.h"
-#include "chunks/levels/stitch.h"
+#include "chunks/seams/stitch.h"
 
 namespace tufa {
 namespace {
@@ -27,7 +27,7 @@ const ChunkLevel& levelOf(const Chunk& chunk, std::size_t level) {
                                               " levels and no level " + std::to_string(level));
 }
 
-/// Several meshes on their way to one.
+/// Several meshes while they are welded to one.
 class Weld {
  public:
   explicit Weld(Mesh& mesh) : mesh_(mesh), welder_(mesh.positions) {}
@@ -38,7 +38,7 @@ class Weld {
     return vertex;
   }
 
-  /// A triangle that has lost a side is none.
+  /// Adds a triangle, unless two of its corners became one.
   void addTriangle(VertexIndex a, VertexIndex b, VertexIndex c) {
     if (a != b && b != c && c != a) mesh_.triangles.emplace_back(a, b, c);
   }
@@ -50,8 +50,8 @@ class Weld {
   base::VertexWelder welder_;
 };
 
-/// The vertices of one level of a chunk by their places in the mesh of all, which they enter when
-/// they are first asked for.
+/// The vertices of one LOD of a chunk, as indices in the common mesh, to which they are added when
+/// they are first used.
 class LevelVertices {
  public:
   LevelVertices(const ChunkLevel& level, Weld& weld)
@@ -77,7 +77,7 @@ class LevelVertices {
   std::vector<VertexIndex> places_;
 };
 
-/// Whether a vertex comes up again where others have come up in between.
+/// Whether a vertex occurs again after others.
 bool comesAgain(const ChunkSeam& seam) {
   std::vector<VertexIndex> runs = seam.tiles;
   runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
@@ -86,7 +86,7 @@ bool comesAgain(const ChunkSeam& seam) {
   return std::adjacent_find(runs.begin(), runs.end()) != runs.end();
 }
 
-/// The strip between the tiles of one level and the line of another.
+/// Adds the strip between the tiles of one LOD and the polyline of another.
 void addStrip(const ChunkSeam& seam, LevelVertices& tiles, const ChunkSeam& coarse,
               LevelVertices& line, Weld& weld) {
   if (seam.tiles.empty()) return;
@@ -104,8 +104,8 @@ void addStrip(const ChunkSeam& seam, LevelVertices& tiles, const ChunkSeam& coar
   }
 }
 
-/// The strip on `face` of a chunk at level `lod` towards a neighbour at level `coarse`, from the
-/// chunk's seams: the line is the same for both.
+/// Adds the strip on `face` of a chunk at LOD `lod` towards a neighbour at LOD `coarse`, from the
+/// chunk's own seams: the polyline is the same for both chunks.
 void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, std::size_t face,
                      LevelVertices& tiles, Weld& weld) {
   const ChunkLevel& own = chunk.levels[lod];

@@ -13,7 +13,7 @@ void requireFit(const ChunkIndex& index, const std::vector<std::size_t>& lods) {
                                               std::to_string(index.chunks.size()) + " chunks");
 }
 
-/// The distance from a point to the box around all levels of a chunk; 0 inside.
+/// The distance from a point to the box around all LODs of a chunk; 0 inside.
 double distanceTo(const ChunkEntry& chunk, const Position& eye) {
   const auto beyond = [&](double Position::*axis) {
     double least = chunk.levels.front().least.*axis;
@@ -52,7 +52,7 @@ unsigned transitionMask(const ChunkIndex& index, std::size_t chunk,
 void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods) {
   requireFit(index, lods);
   if (lods.empty()) return;
-  // Chunks of a level are final once all finer ones have been looked at.
+  // The chunks of an LOD are final once all finer ones have been visited.
   const std::size_t coarsest = *std::max_element(lods.begin(), lods.end());
   for (std::size_t level = 0; level + 1 < coarsest; ++level) {
     for (std::size_t chunk = 0; chunk < lods.size(); ++chunk) {

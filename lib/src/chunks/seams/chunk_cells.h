@@ -42,7 +42,8 @@ struct ChunkCells {
     }
     return at;
   }
-  /// Vertices of a chunk's own are kept this far from its faces, in voxels, those beyond them half.
+  /// Distance from the faces of its chunk, in voxels, below which a vertex is moved. One on a face
+  /// comes to nearly this distance, one a voxel beyond it to half of it.
   static constexpr double kOffFace = 0.01;
 
   [[nodiscard]] std::int32_t count() const {

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "base/single_precision.h"
-#include "chunks/levels/untangle.h"
 #include "chunks/seams/clearance.h"
 #include "chunks/seams/flatness.h"
 #include "chunks/seams/seam_crossings.h"
+#include "chunks/seams/untangle.h"
 
 namespace tufa::chunks {
 namespace {

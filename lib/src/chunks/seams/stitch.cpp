@@ -1,4 +1,4 @@
-#include "chunks/levels/stitch.h"
+#include "chunks/seams/stitch.h"
 
 #include <algorithm>
 #include <functional>
@@ -40,6 +40,10 @@ std::vector<Link> chainOf(const std::vector<VertexIndex>& vertices, bool closed)
   return chain;
 }
 
+// Finds a strip as a path through the grid of pairs (tile, vertex of the polyline): each step
+// advances on one side and adds one triangle, and its cost is that of the triangle and of the edge
+// across that it ends at. Any path closes the strip; the cheapest is found in one sweep over the
+// grid.
 class Stitcher {
  public:
   using MayJoin = std::function<bool(VertexIndex, VertexIndex)>;

@@ -1,4 +1,4 @@
-#include "chunks/levels/untangle.h"
+#include "chunks/seams/untangle.h"
 
 #include <algorithm>
 #include <cmath>

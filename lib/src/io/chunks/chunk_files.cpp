@@ -20,7 +20,7 @@ using io::kChunkParts;
 using io::glb::Floats;
 using io::glb::Json;
 
-/// Numbers as they lie in memory, one behind the other.
+/// Numbers as they are in memory, one after another.
 class Bytes {
  public:
   template <class Number>
@@ -46,7 +46,7 @@ std::size_t triangleCount(const ChunkLevel& level) {
   return count;
 }
 
-/// A .glb in the making: its document and its binary data.
+/// A .glb while it is built: its document and its binary data.
 class GlbBuilder {
  public:
   GlbBuilder(const ChunkIndex& index, const ChunkLevel& level) : index_(index), level_(level) {}

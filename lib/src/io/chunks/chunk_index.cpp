@@ -56,7 +56,7 @@ std::string textOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Turns JSON into an index, and refuses what no index says.
+/// Converts JSON to an index, and refuses what no index contains.
 class IndexReader {
  public:
   explicit IndexReader(const io::InputBytes& input) : input_(input) {}

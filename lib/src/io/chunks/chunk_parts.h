@@ -6,8 +6,8 @@
 
 namespace tufa::io {
 
-/// The parts of a chunk's level by their numbers in files: 0 the interior, 1 to 6 the regular
-/// strips, 7 to 12 those for coarser neighbours.
+/// The parts of an LOD of a chunk by their numbers in files: 0 the interior, 1 to 6 the regular
+/// strips, 7 to 12 those to coarser neighbours.
 inline constexpr std::size_t kChunkParts = 1 + 2 * kChunkFaces;
 
 [[nodiscard]] std::vector<Triangle>& partOf(ChunkLevel& level, std::size_t part);
@@ -16,13 +16,13 @@ inline constexpr std::size_t kChunkParts = 1 + 2 * kChunkFaces;
 /// "interior", "face-x.regular", ..., "face+z.transition".
 [[nodiscard]] std::string partName(std::size_t part);
 
-/// The part of that name, or kChunkParts.
+/// The part of that name; kChunkParts if there is none.
 [[nodiscard]] std::size_t partNamed(const std::string& name);
 
 /// "chunk_X_Y_Z_LODn".
 [[nodiscard]] std::string chunkName(const Coord& index, std::size_t level);
 
-/// The place of chunks.json.
+/// The path of chunks.json.
 [[nodiscard]] std::filesystem::path chunkIndexFile(const std::string& folder);
 
 }  // namespace tufa::io

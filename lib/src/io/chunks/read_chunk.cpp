@@ -67,7 +67,7 @@ void readPly(const io::InputBytes& input, ChunkLevel& level) {
   }
 }
 
-/// Whether a mesh has as much as chunks.json says.
+/// Whether the sizes of a mesh are those in chunks.json.
 bool matches(const ChunkLevel& level, const ChunkLevelEntry& entry) {
   const auto sizeOf = [](const auto& strips) {
     std::size_t count = 0;

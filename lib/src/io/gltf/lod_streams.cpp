@@ -22,7 +22,7 @@ using glb::Floats;
 constexpr double kMostShort = 65535;
 constexpr double kMostByte = 127;
 
-/// A point or direction of the volume as it is with y up.
+/// A point or direction of the volume, rotated so that y is up.
 Point turned(double x, double y, double z, UpAxis up) {
   if (up == UpAxis::Y) return {x, y, z};
   return {x, z, -y};
@@ -37,14 +37,14 @@ std::vector<Floats> elementsOf(const Mesh& mesh, const LodFrame& frame, UpAxis u
     for (std::size_t i = 0; i < 3; ++i) {
       double element = frame.factor * (place[i] - frame.origin[i]);
       if (frame.quantized) element = std::clamp(std::round(element), 0.0, kMostShort);
-      // Without + 0 there would be two kinds of zero, and bytes that differ for equal positions.
+      // Without + 0 there would be -0 too, and different bytes for equal positions.
       elements[v][i] = static_cast<float>(element) + 0.0F;
     }
   }
   return elements;
 }
 
-/// Whether positions that differ have elements that do.
+/// Whether different positions have different elements.
 bool tellsApart(const Mesh& mesh, const std::vector<Floats>& elements) {
   std::vector<VertexIndex> order(elements.size());
   for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<VertexIndex>(v);
@@ -113,8 +113,8 @@ LodStream positionStream(const std::vector<Floats>& elements, const ShadedMesh& 
   return stream;
 }
 
-/// The numbers of 8 bits that come nearest to the direction of a unit vector among those about as
-/// long: rounding each by itself can come out shorter than glTF allows.
+/// The 8-bit vector nearest in direction to a unit vector among those of about its length: rounding
+/// each component by itself may give one shorter than glTF allows.
 std::array<std::int8_t, 3> roundNormal(const Floats& unit) {
   // What the Khronos validator takes for unit length, less some.
   constexpr double kMostStretch = 0.006;
@@ -176,7 +176,8 @@ LodStream indexStream(const ShadedMesh& shaded) {
   return stream;
 }
 
-/// Has the library pack in the versions that the extension is written for, whatever its defaults.
+/// Makes the library use the versions of its codecs that the extension specifies, whatever its
+/// defaults.
 void setCodecVersions() {
   static const bool set = [] {
     meshopt_encodeVertexVersion(0);
@@ -196,7 +197,7 @@ void packVertices(LodStream& stream) {
   stream.bytes = std::move(packed);
 }
 
-/// Packs triangles as its mode TRIANGLES has it. That may turn a triangle's corners round.
+/// Packs triangles in its mode TRIANGLES, which may rotate the corners of a triangle.
 void packTriangles(const ShadedMesh& shaded, LodStream& stream) {
   std::string packed(meshopt_encodeIndexBufferBound(shaded.indices.size(), shaded.sources.size()),
                      '\0');
@@ -254,7 +255,7 @@ std::vector<LodFrame> framesFor(const LodChain& chain, const LodWriteOptions& op
     }
   }
   frames.push_back(frameAt(origin, options.scale, 1, options.scale));
-  // In metres two vertices may round to one. In world units they are as they were made.
+  // In metres two vertices may round to one. In world units they keep their values.
   if (options.scale != 1) frames.push_back(frameAt(origin, 1, options.scale, options.scale));
   return frames;
 }

@@ -10,8 +10,8 @@
 
 namespace tufa::io {
 
-/// In what numbers a .glb holds positions, y up: an element is `factor` * (position - origin). The
-/// node makes metres of it by its scale and translation.
+/// How a .glb stores positions, y up: an element is `factor` * (position - origin). The node
+/// converts it to metres by its scale and translation.
 struct LodFrame {
   std::array<double, 3> origin{0, 0, 0};  ///< world units
   double factor = 1;
@@ -28,7 +28,7 @@ struct LodStream {
   int componentType = 0;   ///< as glTF numbers them
 };
 
-/// One level as it goes into a .glb.
+/// One LOD as stored in a .glb.
 struct LodStreams {
   LodFrame frame;
   LodStream positions;
@@ -38,13 +38,12 @@ struct LodStreams {
   std::array<float, 3> greatest{};  ///< the same
 };
 
-/// The frames to try for the levels of a chain. A level takes the first that keeps its vertices
-/// apart.
+/// The frames to try for the LODs of a chain. An LOD takes the first that keeps its vertices apart.
 [[nodiscard]] std::vector<LodFrame> framesFor(const LodChain& chain,
                                               const LodWriteOptions& options);
 
-/// A level in the numbers of the first frame that tells all its vertices apart and, in 16 bits,
-/// leaves an area to all triangles that have one. Throws Error(LimitExceeded) if none does.
+/// Encodes an LOD in the first frame that keeps all its vertices apart and, in 16 bits, leaves an
+/// area to all triangles that have one. Throws Error(LimitExceeded) if none does.
 [[nodiscard]] LodStreams encodeLevel(const Mesh& mesh, const ShadedMesh& shaded,
                                      const std::vector<LodFrame>& frames,
                                      const LodWriteOptions& options);

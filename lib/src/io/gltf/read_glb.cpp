@@ -1,5 +1,5 @@
-// .glb: triangles of all meshes of the scene, through the transforms of their nodes. Of levels of
-// detail the finest, which alone stands in the scene.
+// .glb: triangles of all meshes of the scene, through the transforms of their nodes. Of several
+// LODs the finest, which alone is in the scene.
 
 #include <array>
 #include <nlohmann/json.hpp>

@@ -16,8 +16,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kGrain = 4096;
 
-/// Finds the smooth pieces of surface around each vertex. A corner is a place of the index list: 3
-/// t
+/// Finds the smooth groups of faces around each vertex. A corner is a place in the index list: 3 t
 /// + k is corner k of triangle t.
 class CreaseSplitter {
  public:
@@ -32,7 +31,7 @@ class CreaseSplitter {
     gatherCorners();
     ShadedMesh out;
     out.indices.resize(corners_.size());
-    // first[v]: of vertex v's pieces, once the counts are summed.
+    // first[v]: first vertex of v's groups, once the counts are summed.
     std::vector<VertexIndex> first(mesh_.positions.size() + 1);
     forVertices([&](std::size_t v, Star& star) {
       first[v + 1] = labelPieces(v, star);
@@ -121,8 +120,8 @@ class CreaseSplitter {
     return n.dot(m) >= leastCosine_ || n == Vec3(0) || m == Vec3(0);
   }
 
-  /// Numbers the pieces around a vertex from 0, in the order of their first corners; gives their
-  /// count and leaves each corner's in star.labels.
+  /// Numbers the groups around a vertex from 0, in the order of their first corners; returns their
+  /// number and leaves each corner's in star.labels.
   VertexIndex labelPieces(std::size_t v, Star& star) const {
     const auto degree = static_cast<VertexIndex>(begin_[v + 1] - begin_[v]);
     std::vector<VertexIndex>& labels = star.labels;
@@ -146,7 +145,7 @@ class CreaseSplitter {
     return numberRoots(labels);
   }
 
-  /// Turns a forest of parents, each before its children, into numbers of its trees.
+  /// Numbers the trees of a forest, given as parents that precede their children.
   static VertexIndex numberRoots(std::vector<VertexIndex>& parents) {
     VertexIndex count = 0;
     for (VertexIndex i = 0; i < parents.size(); ++i) {

@@ -6,8 +6,8 @@
 
 namespace tufa::io {
 
-/// A mesh as graphics cards take it: each vertex has one normal, so that a point on a crease is as
-/// many vertices as there are smooth pieces of surface around it.
+/// A mesh for graphics cards: each vertex has one normal, so a point on a crease becomes one vertex
+/// for each smooth group of faces around it.
 struct ShadedMesh {
   std::vector<VertexIndex> sources;  ///< for each vertex its element of Mesh::positions
   std::vector<Normal> normals;       ///< one for each vertex
@@ -15,9 +15,8 @@ struct ShadedMesh {
 };
 
 /// Splits vertices where the normals of faces that share an edge differ by more than `creaseAngle`
-/// degrees. A vertex that is in one piece keeps the mesh's normal, if it has normals; the others
-/// get the mean of their faces' normals, weighted by angle. Positions that no face uses are left
-/// out.
+/// degrees. A vertex with one group keeps the mesh's normal, if it has normals; the others get the
+/// mean of their faces' normals, weighted by angle. Positions that no face uses are left out.
 [[nodiscard]] ShadedMesh splitAtCreases(const Mesh& mesh, double creaseAngle, base::Job& job);
 
 /// Reorders triangles for the vertex cache of graphics cards and vertices by their first use.

@@ -7,8 +7,8 @@
 namespace tufa::io {
 namespace {
 
-// No byte of packed data stands for more than that many, give or take a block: a group of 16
-// numbers takes 2 bits at least, and a triangle one byte.
+// A packed byte stands for at most this many, up to a block: a group of 16 numbers takes 2 bits at
+// least, and a triangle one byte.
 constexpr std::size_t kMostRatio = 64;
 constexpr std::size_t kSlack = 65536;
 

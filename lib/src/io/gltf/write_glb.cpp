@@ -32,8 +32,8 @@ Layout layOut(const Mesh& mesh) {
 }
 
 /// The middle of the mesh in single precision: what the node's translation gives back exactly. Not
-/// inline: GCC 12 at -O3 takes a vectorized rounding to float and back to double for nothing to do,
-/// and positions would be relative to another middle than the one written.
+/// inline: GCC 12 at -O3 optimizes a vectorized rounding to float and back to double away, and
+/// positions would be relative to another middle than the one written.
 [[gnu::noinline]] Floats middleOf(const Bounds& bounds) {
   return {static_cast<float>(0.5 * (bounds.least.x + bounds.greatest.x)),
           static_cast<float>(0.5 * (bounds.least.y + bounds.greatest.y)),

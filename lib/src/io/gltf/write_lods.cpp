@@ -23,7 +23,7 @@ void requireInRange(const LodWriteOptions& options) {
   }
 }
 
-/// Builds a .glb of some levels: the document, and the bytes behind it.
+/// Builds a .glb of some LODs: the document, and the bytes behind it.
 class LodDocument {
  public:
   LodDocument(const LodChain& chain, const LodWriteOptions& options)
@@ -68,8 +68,8 @@ class LodDocument {
 
   [[nodiscard]] bool packs() const { return options_.compression == LodCompression::Meshopt; }
 
-  /// Adds the view of a stream. Packed ones name a buffer that is not there: its bytes come from
-  /// the packed ones, and it says how many there will be.
+  /// Adds the view of a stream. A packed one names a buffer without data, which tells the unpacked
+  /// size; its bytes come from the packed data.
   std::size_t addView(const LodStream& stream, bool vertices) {
     const std::uint64_t plain = stream.stride * stream.count;
     Json view = {{"buffer", packs() ? 1 : 0},
@@ -100,7 +100,7 @@ class LodDocument {
     return glb::add(json_, "accessors", std::move(accessor));
   }
 
-  /// The primitive of a level.
+  /// The primitive of an LOD.
   Json addAccessors(const LodStreams& streams) {
     const std::size_t positions = addAccessor(streams.positions, true);
     json_["accessors"][positions]["min"] = streams.least;
@@ -146,8 +146,8 @@ class LodDocument {
     }
   }
 
-  /// Programs that know MSFT_lod find the other levels by it, those that know nothing of levels see
-  /// the first one alone, and those that go by names find all in a scene of their own.
+  /// Programs that know MSFT_lod find the other LODs by it; those that do not show the first one
+  /// alone; those that go by names find all in a scene of their own.
   void linkLevels() {
     json_["extensionsUsed"].push_back("MSFT_lod");
     Json all = Json::array(), others = Json::array(), coverage = Json::array();
@@ -222,7 +222,7 @@ class LodWriter {
                     "level");
   }
 
-  /// The share of the work that is done with some levels: it goes with their triangles.
+  /// The share of the work that some LODs are, by their triangles.
   [[nodiscard]] double shareUpTo(std::size_t levels) const {
     double done = 0, all = 1;
     for (std::size_t i = 0; i < chain_.levels.size(); ++i) {

@@ -22,7 +22,7 @@ class VdbReader : private openvdb::io::Archive {
 
   [[nodiscard]] std::size_t gridCount() const { return entries_.size(); }
 
-  /// The grid's name; grids of one name are told apart as "name[0]", "name[1]" and so on.
+  /// The grid's name; grids of the same name are distinguished as "name[0]", "name[1]" and so on.
   [[nodiscard]] std::string gridName(std::size_t index) const;
   [[nodiscard]] bool isNamed(std::size_t index, const std::string& name) const;
 

@@ -9,7 +9,7 @@
 
 namespace tufa::io {
 
-/// Gathers what a reader finds. Faces of more than four corners are fanned; faces of fewer than
+/// Collects what a reader finds. Faces of more than four corners are fanned; faces of fewer than
 /// three are points and lines, no part of a surface, and left out.
 class MeshBuilder {
  public:

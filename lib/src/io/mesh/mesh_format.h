@@ -28,14 +28,14 @@ struct Bounds {
 /// Throws Error(LimitExceeded) that names the format, what there is too much of, and the limit.
 void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, const char* format);
 
-/// Bytes on their way into a file, with the progress of the whole.
+/// Writes bytes to a file and reports progress of the whole.
 class MeshSink {
  public:
   MeshSink(OutputFile& file, const Mesh& mesh, const WriteOptions& options);
 
   void write(const void* data, std::size_t size) { file_.write(data, size); }
 
-  /// Says that `count` more positions, normals or faces are written. Throws Error(Cancelled).
+  /// Reports that `count` more positions, normals or faces are written. Throws Error(Cancelled).
   void advance(std::size_t count);
 
   /// Items to write between two calls of advance().

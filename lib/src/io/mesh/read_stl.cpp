@@ -26,8 +26,8 @@ std::size_t claimedBytes(const InputBytes& input) {
   return kPrefixBytes + kTriangleBytes * std::size_t{claimedTriangles(input)};
 }
 
-/// Text or binary? The first word does not tell: many programs begin binary files with "solid". The
-/// size does: a binary file's follows from its count of triangles.
+/// Text or binary? The first word does not tell, as many programs begin binary files with "solid".
+/// The size does: that of a binary file follows from its count of triangles.
 bool isText(const InputBytes& input) {
   if (input.size() >= kPrefixBytes && claimedBytes(input) == input.size()) return false;
   const std::string_view text = input.view();

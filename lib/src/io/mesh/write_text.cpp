@@ -9,7 +9,7 @@
 namespace tufa::io {
 namespace {
 
-/// A line of text in the making.
+/// A line of text while it is built.
 class Line {
  public:
   explicit Line(MeshSink& sink) : sink_(sink) {}

@@ -32,6 +32,8 @@ class Collapse {
            base::Job& job)
       : state_(mesh, planes, bounds), job_(job) {}
 
+  // Rounds with growing budget scale, after a repeat of earlier steps if there are any. For a
+  // number of triangles the scale may exceed 1, otherwise it ends there.
   void run() {
     const Bounds& bounds = state_.bounds;
     const bool few = state_.mesh.triangleCount() < kFewTriangles;

@@ -48,6 +48,8 @@ void Collapser::proposeAround(VertexIndex vertex, bool behind) {
   }
 }
 
+// An edge whose root mean square error exceeds the budget is not queued. All other tests wait until
+// it comes out of the queue.
 void Collapser::propose(VertexIndex a, VertexIndex b) {
   if (state_.mesh.isBefore(b, a)) std::swap(a, b);
   const double budget = budgetAt(a, b);
@@ -70,6 +72,7 @@ void Collapser::propose(VertexIndex a, VertexIndex b) {
 }
 
 void Collapser::run(std::size_t most, base::Job& job) {
+  // Entries whose ends have changed are outdated: the edges around a new vertex are queued again.
   constexpr std::size_t kBetweenLooks = 512;
   const std::size_t before = steps_.size();
   EdgeQueue::Entry best{};

@@ -102,6 +102,9 @@ bool LinkCheck::mayCollapse(const EdgeMesh& mesh, VertexIndex a, VertexIndex b) 
                                     [&](VertexIndex vertex) { return mesh.degree(vertex) > 3; });
 }
 
+// Removes the triangles at the edge and appends the corners of `drop` to the list of `keep`, in
+// time proportional to both lists. Removed corners stay in the lists of the two opposite vertices;
+// forTriangles() skips them.
 void EdgeMesh::collapse(VertexIndex keep, VertexIndex drop, const Vec3& point) {
   points_[keep] = point;
   forTriangles(drop, [&](std::uint32_t t, VertexIndex x, VertexIndex y) {

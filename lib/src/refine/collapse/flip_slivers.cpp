@@ -93,6 +93,8 @@ class Turner {
     return std::min({budget_[pair.a], budget_[pair.b], budget_[pair.c], budget_[pair.d]});
   }
 
+  // Shape: rounder, facing as the two triangles did, and no fold sharper than before at the four
+  // outer edges.
   [[nodiscard]] bool looksBetter(const Pair& pair) const {
     const auto [t, u, a, b, c, d] = pair;
     const double before = std::min(roundnessOf(a, b, c), roundnessOf(b, a, d));
@@ -114,6 +116,7 @@ class Turner {
     return least > std::min(kFold, was - kSharper);
   }
 
+  // Distance: all samples on the two triangles, and the middle of the new edge from the surface.
   [[nodiscard]] bool staysNear(const Pair& pair) const {
     const double budget = budgetAt(pair);
     const std::array<FlatTriangle, 2> now = shapesOf(pair);

@@ -28,6 +28,8 @@ int longestAxis(const EdgeMesh& mesh, std::span<const VertexIndex> vertices) {
   return longest;
 }
 
+// Divides vertices as a k-d tree does. Ties are broken by place, and the second half is appended
+// after the first, so neither the order of the mesh nor the threads matter.
 void part(const EdgeMesh& mesh, std::span<VertexIndex> vertices, std::size_t most, Parting parting,
           std::vector<std::span<VertexIndex>>& regions) {
   if (vertices.size() <= most) {

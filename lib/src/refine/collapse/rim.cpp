@@ -5,6 +5,7 @@
 namespace tufa::refine {
 namespace {
 
+// Whether two stretches are neighbours in the same part of a curve.
 bool follows(const Rim::Stretch& a, const Rim::Stretch& b) {
   return a.part == b.part && (a.last + 1 == b.first || b.last + 1 == a.first);
 }

@@ -29,8 +29,8 @@ struct Changes {
 
 /// Repairs the pairs of one patch, each by the change of least harm that leaves fewer pairs than
 /// before. Harm is how far the surface moves off itself, in voxels; so a vertex on a crease slides
-/// along it before it leaves it. Cost: each trial tests the polygons it touches against all of the
-/// patch, boxes first.
+/// along it before it leaves it. Cost: each edit tried tests the polygons it touches against all of
+/// the patch, boxes first.
 class Cluster {
  public:
   Cluster(Patch patch, const std::vector<intersect::PolygonPair>& pairs,

@@ -42,6 +42,9 @@ class Repairer {
     fallbacks_.singlePrecision = source.singlePrecision;
   }
 
+  // Crowded meshes first retreat to their fallback positions. Then rounds of small changes until no
+  // pair is left that anything helps, and rounds with last resorts if they are wanted. Each round
+  // searches only what it changed.
   RepairReport run(const std::vector<intersect::PolygonIndex>& candidates) {
     pairs_ = intersect::findPairs(surface_, candidates, job_);
     report_.pairsFound = pairs_.size();
@@ -114,6 +117,8 @@ class Repairer {
     return all;
   }
 
+  // Each cluster is repaired in a copy of its surroundings, in parallel; changes are applied in the
+  // order of the clusters.
   std::vector<intersect::PolygonIndex> repairClusters(bool lastResort) {
     const std::vector<std::vector<intersect::PolygonPair>> clusters = findClusters();
     const std::vector<std::vector<intersect::PolygonIndex>> polygons =
