@@ -15,11 +15,14 @@ namespace tufa {
 class Coord {
  public:
   constexpr Coord() = default;  ///< (0, 0, 0)
+  /// (all, all, all).
   constexpr explicit Coord(std::int32_t all) : at_{all, all, all} {}
+  /// (x, y, z).
   constexpr Coord(std::int32_t x, std::int32_t y, std::int32_t z) : at_{x, y, z} {}
 
   /// Coordinate along axis 0, 1 or 2.
   constexpr std::int32_t& operator[](std::size_t axis) { return at_[axis]; }
+  /// Coordinate along axis 0, 1 or 2.
   constexpr const std::int32_t& operator[](std::size_t axis) const { return at_[axis]; }
 
   /// The coordinates so many steps further along each axis.
@@ -30,23 +33,29 @@ class Coord {
     return offsetBy(all, all, all);
   }
 
+  /// The sum along each axis.
   friend constexpr Coord operator+(const Coord& a, const Coord& b) {
     return a.offsetBy(b[0], b[1], b[2]);
   }
+  /// The difference along each axis.
   friend constexpr Coord operator-(const Coord& a, const Coord& b) {
     return a.offsetBy(-b[0], -b[1], -b[2]);
   }
+  /// Each coordinate times 2^bits.
   friend constexpr Coord operator<<(const Coord& a, int bits) {
     return {a[0] << bits, a[1] << bits, a[2] << bits};
   }
+  /// Each coordinate over 2^bits, rounded down: the cell of that size which holds it.
   friend constexpr Coord operator>>(const Coord& a, int bits) {
     return {a[0] >> bits, a[1] >> bits, a[2] >> bits};
   }
+  /// Each coordinate masked.
   friend constexpr Coord operator&(const Coord& a, std::int32_t mask) {
     return {a[0] & mask, a[1] & mask, a[2] & mask};
   }
   /// By x, then y, then z.
   friend constexpr auto operator<=>(const Coord&, const Coord&) = default;
+  /// Equal along all axes.
   friend constexpr bool operator==(const Coord&, const Coord&) = default;
 
  private:
