@@ -111,6 +111,7 @@ class Measure {
 
   void vertices(std::size_t begin, std::size_t end, Measured& measured) const {
     for (std::size_t r = begin; r < end; ++r) {
+      if (s_.owner[r] == kNone) continue;
       const float d = distance(reference_.positions()[r], s_.owner[r]);
       measured.sum += static_cast<double>(d);
       measured.largest = std::max(measured.largest, d);
@@ -135,9 +136,10 @@ class Measure {
                Measured& measured) const {
     const Corners face = reference_.cornersOf(gap.face);
     Sphere about{(face[0] + face[1] + face[2]) * (1.0f / 3), 0};
-    about.radius = length(face[0] - about.middle) + 3 * expected_ + 1;
+    for (const Vec3f& p : face) about.radius = std::max(about.radius, length(p - about.middle));
+    about.radius += 3 * expected_ + 1;
     const float reach = about.radius + 2 * expected_ + 1;
-    std::vector<Index> candidates;
+    std::vector<Index> candidates{gap.face};
     for (const Index t : trianglesAround({&gap.triangle, 1})) {
       for (const Index r : owned[t]) {
         if (squaredLength(reference_.positions()[r] - about.middle) > reach * reach) continue;
@@ -148,7 +150,6 @@ class Measure {
       }
     }
     sortUnique(candidates);
-    if (candidates.empty()) return;
     const auto toFace = [&](Vec3f q, Index f) { return reference_.distance(f, q); };
     const Index t = gap.triangle;
     const Corners p{s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2)};
@@ -237,7 +238,9 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
   for (const Measured& p : parts) gaps.insert(gaps.end(), p.gaps.begin(), p.gaps.end());
   if (!gaps.empty()) {
     std::vector<std::vector<Index>> owned(s.triangles.size());
-    for (Index r = 0; r < vertices; ++r) owned[s.owner[r]].push_back(r);
+    for (Index r = 0; r < vertices; ++r) {
+      if (s.owner[r] != kNone) owned[s.owner[r]].push_back(r);
+    }
     parts.resize(a + b + gaps.size());
     job.forRanges(gaps.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) measure.wayBack(gaps[i], owned, parts[a + b + i]);
