@@ -99,15 +99,18 @@ void Partition::shareTriangles(const Surface& surface) {
 
 void Partition::shareSamples(const Surface& surface) {
   sampleFirst_.assign(size() + 1, 0);
-  for (const Index t : surface.owner) {
-    if (const Index b = partOfTriangle_[t]; b != kNone) ++sampleFirst_[b + 1];
+  const auto partOfSample = [&](Index r) {
+    return surface.owner[r] == kNone ? kNone : partOfTriangle_[surface.owner[r]];
+  };
+  for (Index r = 0; r < surface.owner.size(); ++r) {
+    if (const Index b = partOfSample(r); b != kNone) ++sampleFirst_[b + 1];
   }
   for (std::size_t b = 0; b < size(); ++b) sampleFirst_[b + 1] += sampleFirst_[b];
   samples_.resize(sampleFirst_.back());
   std::vector<Index> at(sampleFirst_.begin(), sampleFirst_.end());
   localSample_.assign(surface.owner.size(), kNone);
   for (Index r = 0; r < surface.owner.size(); ++r) {
-    const Index b = partOfTriangle_[surface.owner[r]];
+    const Index b = partOfSample(r);
     if (b == kNone) continue;
     localSample_[r] = at[b] - sampleFirst_[b];
     samples_[at[b]++] = r;

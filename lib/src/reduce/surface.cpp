@@ -87,7 +87,7 @@ Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> 
 void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index> standsFor,
                base::Job& job) {
   s.face.assign(s.position.size(), kNone);
-  s.owner.resize(reference.positions().size());
+  s.owner.assign(reference.positions().size(), kNone);
   if (standsFor.empty()) {
     for (Index t = 0; t < s.triangles.size(); ++t) {
       for (const Index v : s.triangles[t].vertices) s.owner[v] = t, s.face[v] = t;
@@ -129,7 +129,9 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
   }
   s.position.resize(vertices), s.axis.resize(vertices), s.quadric.resize(vertices);
   s.flags.resize(vertices), s.source.resize(vertices), s.face.resize(vertices);
-  for (Index& t : s.owner) t = triangleNumber[t];
+  for (Index& t : s.owner) {
+    if (t != kNone) t = triangleNumber[t];
+  }
 }
 
 }  // namespace tufa::reduce

@@ -28,7 +28,8 @@ struct Surface {
   std::vector<Index> face;            ///< of the reference, at the vertex seen along its axis
 
   std::vector<Triangle> triangles;
-  /// For each reference vertex its owner: the triangle that answers for it.
+  /// For each reference vertex its owner: the triangle that answers for it. kNone for those without
+  /// faces.
   std::vector<Index> owner;
 
   /// A place as it will be written, which is what the guards judge; empty: as it is.
