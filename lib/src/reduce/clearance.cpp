@@ -1,0 +1,203 @@
+#include "reduce/clearance.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "reduce/star.h"
+
+namespace tufa::reduce {
+namespace {
+
+// Cells that a part is divided into at once: at least so large, in voxels, and at most so many.
+constexpr float kLeastCell = 2.5f;
+constexpr double kMostCells = 65536;
+// Normals that look so far apart have no common direction.
+constexpr float kOpposite = -0.93f;
+constexpr int kDepth = 24;
+
+using List = std::vector<Index>;
+
+struct Item {
+  Vec3f normal;
+  Box3f box;  // grown by the reach
+  Vec3f at;   // a point of the triangle
+  Index triangle;
+};
+
+// The triangles about one part.
+class Neighbourhood {
+ public:
+  Neighbourhood(Surface& surface, float reach) : surface_(surface), reach_(reach) {}
+
+  void look(const List& triangles, const Box3f& within) {
+    Box3f bounds;
+    float sizes = 0;
+    for (const Index t : triangles) {
+      const Vec3f p[3] = {surface_.corner(t, 0), surface_.corner(t, 1), surface_.corner(t, 2)};
+      Box3f box = boxOf(p);
+      bounds.add(box);
+      sizes += length(box.upper - box.lower);
+      box.growBy(reach_);
+      items_.push_back({unit(cross(p[1] - p[0], p[2] - p[0])), box, p[0], t});
+    }
+    if (items_.empty()) return;
+    bounds.lower = maxVec3f(bounds.lower, within.lower);
+    bounds.upper = minVec3f(bounds.upper, within.upper);
+    const float mean = sizes / static_cast<float>(items_.size());
+    lookInCells(bounds, std::max({kLeastCell, 2 * reach_, 1.5f * mean}));
+  }
+
+ private:
+  struct Cells {
+    Vec3f lower;
+    float size;
+    int count[3];
+  };
+
+  // Into cells of a few triangles' size at once, then by halving where that is not enough.
+  void lookInCells(const Box3f& bounds, float size) {
+    const Vec3f d = maxVec3f(bounds.upper - bounds.lower, Vec3f());
+    const auto countAlong = [&](int axis) { return static_cast<int>(d[axis] / size) + 1; };
+    const auto most = [&](int axis) { return static_cast<double>(d[axis] / size + 1); };
+    while (most(0) * most(1) * most(2) > kMostCells) size *= 1.3f;
+    const Cells cells{bounds.lower, size, {countAlong(0), countAlong(1), countAlong(2)}};
+    const int* n = cells.count;
+    std::vector<Index> first(static_cast<std::size_t>(n[0] * n[1] * n[2]) + 1, 0);
+    for (const Item& item : items_) forCells(cells, item, [&](std::size_t c) { ++first[c + 1]; });
+    for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
+    List all(first.back());
+    for (Index k = 0; k < items_.size(); ++k) {
+      forCells(cells, items_[k], [&](std::size_t c) { all[first[c]++] = k; });
+    }
+    List list;
+    for (std::size_t c = 0; c + 1 < first.size(); ++c) {  // first[c] is the end now
+      list.assign(all.begin() + (c == 0 ? 0 : first[c - 1]), all.begin() + first[c]);
+      if (list.empty()) continue;
+      const int i = static_cast<int>(c);
+      const Vec3f at(static_cast<float>(i % n[0]), static_cast<float>(i / n[0] % n[1]),
+                     static_cast<float>(i / n[0] / n[1]));
+      Box3f box;
+      box.lower = bounds.lower + at * size;
+      box.upper = box.lower + Vec3f(size, size, size);
+      halve(list, box, 0);
+    }
+  }
+
+  // f(cell) for the cells that the plane of a triangle passes within the reach.
+  template <class F>
+  void forCells(const Cells& cells, const Item& item, F&& f) const {
+    int from[3], to[3];
+    for (int i = 0; i < 3; ++i) {
+      from[i] = std::max(0, static_cast<int>((item.box.lower[i] - cells.lower[i]) / cells.size));
+      to[i] = static_cast<int>(std::min(static_cast<float>(cells.count[i] - 1),
+                                        (item.box.upper[i] - cells.lower[i]) / cells.size));
+    }
+    const Vec3f n = item.normal;
+    const float half = 0.5f * cells.size * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) + reach_;
+    const auto middleOf = [](int i) { return static_cast<float>(i) + 0.5f; };
+    for (int z = from[2]; z <= to[2]; ++z) {
+      for (int y = from[1]; y <= to[1]; ++y) {
+        for (int x = from[0]; x <= to[0]; ++x) {
+          const Vec3f middle =
+              cells.lower + Vec3f(middleOf(x), middleOf(y), middleOf(z)) * cells.size;
+          if (std::abs(dot(n, middle - item.at)) > half) continue;
+          f(static_cast<std::size_t>((z * cells.count[1] + y) * cells.count[0] + x));
+        }
+      }
+    }
+  }
+
+  bool isOneSheet(const List& list) const {
+    constexpr int kRounds = 5;
+    Vec3f sum;
+    for (const Index i : list) {
+      if (dot(items_[list[0]].normal, items_[i].normal) < kOpposite) return false;
+      sum = sum + items_[i].normal;
+    }
+    for (int round = 0; round < kRounds; ++round) {
+      const Vec3f axis = unit(sum);
+      float leastCosine = 2;
+      Index worst = 0;
+      for (const Index i : list) {
+        const float cosine = dot(axis, items_[i].normal);
+        if (cosine < leastCosine) leastCosine = cosine, worst = i;
+      }
+      if (leastCosine > kLeastCosine) return true;
+      sum = axis + items_[worst].normal * (0.8f / static_cast<float>(round + 1));
+    }
+    return false;
+  }
+
+  void halve(const List& list, const Box3f& box, int depth) {
+    if (list.size() < 2 || isOneSheet(list)) return;
+    const Vec3f d = box.upper - box.lower;
+    const float longest = std::max({d.x, d.y, d.z});
+    if (longest <= 3 * reach_ || depth >= kDepth) {
+      for (const Index i : list) mark(items_[i].triangle);
+      return;
+    }
+    for (int k = 0; k < 8; ++k) {
+      Box3f child = box;
+      bool isEmpty = false;
+      for (int i = 0; i < 3; ++i) {  // along the longest extents only
+        const float middle = 0.5f * (box.lower[i] + box.upper[i]);
+        const bool isUpper = (k >> i & 1) != 0;
+        if (d[i] > 0.6f * longest) {
+          (isUpper ? child.lower : child.upper)[i] = middle;
+        } else {
+          isEmpty |= isUpper;
+        }
+      }
+      if (!isEmpty) halve(select(list, child), child, depth + 1);
+    }
+  }
+
+  List select(const List& list, const Box3f& box) const {
+    List inside;
+    const Vec3f m = (box.lower + box.upper) * 0.5f, h = (box.upper - box.lower) * 0.5f;
+    for (const Index i : list) {
+      const Item& item = items_[i];
+      const Vec3f n = item.normal;
+      const float half = std::abs(n.x) * h.x + std::abs(n.y) * h.y + std::abs(n.z) * h.z + reach_;
+      if (std::abs(dot(n, m - item.at)) <= half && box.meets(item.box)) inside.push_back(i);
+    }
+    return inside;
+  }
+
+  // Triangles that reach into several parts are marked by several threads.
+  void mark(Index triangle) {
+    for (const Index v : surface_.triangles[triangle].vertices) {
+      std::atomic_ref<std::uint8_t>(surface_.flags[v]).fetch_or(kNarrow, std::memory_order_relaxed);
+    }
+  }
+
+  Surface& surface_;
+  float reach_;
+  std::vector<Item> items_;
+};
+
+}  // namespace
+
+void markNarrow(Surface& surface, const Partition& partition, float reach, base::Job& job) {
+  std::vector<List> lists(partition.size());
+  for (Index t = 0; t < surface.triangles.size(); ++t) {
+    const Vec3f p[3] = {surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2)};
+    Box3f box = boxOf(p);
+    box.growBy(reach);
+    const Index own = partition.partOf(surface.triangles[t].vertices[0]);
+    if (partition.box(own).hasInside(box.lower) && partition.box(own).hasInside(box.upper)) {
+      lists[own].push_back(t);
+    } else {
+      partition.forPartsAt(box, [&](Index part) { lists[part].push_back(t); });
+    }
+  }
+  job.forRanges(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      Neighbourhood(surface, reach).look(lists[p], partition.box(static_cast<Index>(p)));
+    }
+  });
+}
+
+}  // namespace tufa::reduce

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "reduce/corners.h"
+#include "reduce/triangles.h"
+
+namespace tufa::reduce {
+
+// How edges and faces of the reference run over the triangles of a mesh. Functions here see the
+// mesh as a type M: mesh(t, i) is the position of a triangle's corner i, mesh.vertex(t, i) its
+// vertex, and mesh.across(t, i) the triangle across the edge opposite it, or kNone.
+
+/// More than any squared distance.
+inline constexpr float kFar2 = 1e30f;
+
+/// A way over triangles.
+struct OverlayPath {
+  static constexpr int kMost = 8;  ///< triangles
+  std::array<Index, kMost> triangles;
+  int count = 0;
+  float largest2 = 0;  ///< the largest squared distance of the segment from an edge on the way
+};
+
+/// A way from triangle `from`, which is near p, to `to`, which is near q, each step across an edge
+/// that the segment from p to q comes within the limit of. Then the segment falls into pieces, each
+/// with both ends within the limit of one triangle, whatever way it is: so the one of fewest
+/// triangles will do. Returns false if there is none among the triangles looked at first.
+template <class M>
+bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, Index to,
+                     float limit2, OverlayPath& path) {
+  struct Step {
+    Index triangle;
+    int before, depth;
+    float largest2;
+  };
+  constexpr int kLooked = 40;
+  Step steps[kLooked];
+  int count = 1;
+  steps[0] = {from, -1, 1, 0};
+  for (int k = 0; k < count; ++k) {
+    const Step step = steps[k];
+    if (step.triangle == to) {
+      path.count = step.depth;
+      path.largest2 = step.largest2;
+      for (int at = k, i = step.depth - 1; at >= 0; at = steps[at].before, --i) {
+        path.triangles[static_cast<std::size_t>(i)] = steps[at].triangle;
+      }
+      return true;
+    }
+    if (step.depth == OverlayPath::kMost) continue;
+    for (int i = 0; i < 3; ++i) {
+      const Index next = mesh.across(step.triangle, i);
+      if (next == kNone || count == kLooked) continue;
+      const auto isNext = [&](const Step& seen) { return seen.triangle == next; };
+      if (std::any_of(steps, steps + count, isNext)) continue;
+      const float d2 = squaredDistanceOfSegments(pq[0], pq[1], mesh(step.triangle, (i + 1) % 3),
+                                                 mesh(step.triangle, (i + 2) % 3));
+      if (d2 <= limit2) steps[count++] = {next, k, step.depth + 1, std::max(step.largest2, d2)};
+    }
+  }
+  return false;
+}
+
+/// A face of the reference with the owners of its corners.
+struct OwnedFace {
+  std::array<Vec3f, 3> corners;
+  std::array<Index, 3> vertices;
+  std::array<Index, 3> owners;
+
+  [[nodiscard]] bool hasOneOwner() const {
+    return owners[0] == owners[1] && owners[1] == owners[2];
+  }
+};
+
+/// The triangles that the edges of a face pass in turn. Steps back and forth are left out.
+struct OverlayLoop {
+  std::array<Index, 3 * OverlayPath::kMost> triangles;
+  int first = 0;
+  int end = 0;
+
+  void add(Index triangle) {
+    if (end >= 2 && at(end - 2) == triangle) {
+      --end;
+    } else {
+      triangles[static_cast<std::size_t>(end++)] = triangle;
+    }
+  }
+  /// Leaves out steps back and forth where the loop closes.
+  void close() {
+    while (end - first >= 3 && at(first + 1) == at(end - 1)) ++first, --end;
+  }
+  [[nodiscard]] Index at(int i) const { return triangles[static_cast<std::size_t>(i)]; }
+  /// Whether all of its triangles have a vertex.
+  template <class M>
+  [[nodiscard]] bool isAround(const M& mesh, Index vertex) const {
+    for (int i = first; i < end; ++i) {
+      bool has = false;
+      for (int k = 0; k < 3; ++k) has |= mesh.vertex(at(i), k) == vertex;
+      if (!has) return false;
+    }
+    return true;
+  }
+};
+
+/// A bound of the squared distance between a face of the reference and the mesh where the face lies
+/// over it, from the ways of its edges; more than the limit, at most kFar2, if there is none. The
+/// ways make a loop, which must fall together or turn around one vertex, and that must be near the
+/// face. The distances of the corners from their owners are not in it.
+template <class M>
+float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
+  float worst = 0;
+  OverlayLoop loop;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    // The same way from both of the edge's faces.
+    const bool isTurned = face.vertices[i] > face.vertices[j];
+    const std::size_t a = isTurned ? j : i, b = isTurned ? i : j;
+    OverlayPath path;
+    if (!findOverlayPath(mesh, {face.corners[a], face.corners[b]}, face.owners[a], face.owners[b],
+                         limit2, path)) {
+      return kFar2;
+    }
+    worst = std::max(worst, path.largest2);
+    for (int k = 0; k + 1 < path.count; ++k) {  // the last one begins the next edge
+      loop.add(path.triangles[static_cast<std::size_t>(isTurned ? path.count - 1 - k : k)]);
+    }
+  }
+  loop.close();
+  if (loop.end - loop.first <= 2) return worst;
+  for (int k = 0; k < 3; ++k) {
+    if (!loop.isAround(mesh, mesh.vertex(loop.at(loop.first), k))) continue;
+    const auto& p = face.corners;
+    const Vec3f centre = mesh(loop.at(loop.first), k);
+    worst = std::max(worst, squaredDistanceToTriangle(centre, p[0], p[1], p[2]));
+    if (worst <= limit2) return worst;
+  }
+  return kFar2;
+}
+
+/// The squared distance of a face's farthest corner from that of its owners where it is least: a
+/// bound of the way from the face to the mesh, not of the way back.
+template <class M>
+float wholeFace2(const M& mesh, const OwnedFace& face) {
+  float best = kFar2;
+  for (const Index t : face.owners) {
+    float worst = 0;
+    for (const Vec3f& p : face.corners) {
+      worst = std::max(worst, squaredDistanceToTriangle(p, mesh(t, 0), mesh(t, 1), mesh(t, 2)));
+    }
+    best = std::min(best, worst);
+  }
+  return best;
+}
+
+}  // namespace tufa::reduce

@@ -1,0 +1,140 @@
+#include "reduce/part.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tufa::reduce {
+
+void Part::load(const Surface& surface, const ReferenceMesh& reference, const Partition& partition,
+                Index number, const PhaseLimits& limits) {
+  surface_ = &surface;
+  reference_ = &reference;
+  partition_ = &partition;
+  number_ = number;
+  limits_ = limits;
+  squaredDistance_ = limits.distance * limits.distance;
+  box_ = partition.box(number);
+  const auto vertices = partition.vertices(number);
+  vertexCount_ = static_cast<Index>(vertices.size());
+  position_.resize(vertexCount_), axis_.resize(vertexCount_), quadric_.resize(vertexCount_);
+  flags_.resize(vertexCount_), inner_.resize(vertexCount_), face_.resize(vertexCount_);
+  corner_.resize(vertexCount_);
+  version_.assign(vertexCount_, 0), stamp_.assign(vertexCount_, 0);
+  moved_.assign(vertexCount_, 0);
+  now_ = 0;
+  for (Index i = 0; i < vertexCount_; ++i) {
+    const Index v = vertices[i];
+    position_[i] = surface.position[v], axis_[i] = surface.axis[v];
+    quadric_[i] = surface.quadric[v], flags_[i] = surface.flags[v];
+    face_[i] = surface.face[v], inner_[i] = partition.isInner(v);
+  }
+  loadTables(surface, partition.triangles(number));
+  loadSamples(surface);
+  lowest_ = kBuckets;
+  hasBoxList_ = false;
+  boxList_.clear();
+}
+
+void Part::loadTables(const Surface& surface, std::span<const Index> triangles) {
+  triangleCount_ = static_cast<Index>(triangles.size());
+  const Index corners = 3 * triangleCount_;
+  vertex_.resize(corners), opposite_.assign(corners, kNone);
+  auto& first = firstScratch_;
+  first.assign(vertexCount_ + 1, 0);
+  for (Index t = 0; t < triangleCount_; ++t) {
+    for (Index i = 0; i < 3; ++i) {
+      const Index v = partition_->localVertex(surface.triangles[triangles[t]].vertices[i]);
+      vertex_[3 * t + i] = v, corner_[v] = 3 * t + i, ++first[v + 1];
+    }
+  }
+  for (Index i = 0; i < vertexCount_; ++i) first[i + 1] += first[i];
+  edgeScratch_.resize(corners);  // by start: end and opposite corner
+  for (Index c = 0; c < corners; ++c) {
+    edgeScratch_[first[vertex_[nextCorner(c)]]++] = {vertex_[previousCorner(c)], c};
+  }
+  for (Index i = vertexCount_; i > 0; --i) first[i] = first[i - 1];
+  first[0] = 0;
+  for (Index c = 0; c < corners; ++c) {
+    const Index from = vertex_[nextCorner(c)], to = vertex_[previousCorner(c)];
+    for (Index j = first[to]; j < first[to + 1]; ++j) {
+      if (edgeScratch_[j][0] == from) opposite_[c] = edgeScratch_[j][1];
+    }
+  }
+}
+
+void Part::loadSamples(const Surface& surface) {
+  firstSample_.assign(triangleCount_, kNone);
+  sampleIds_ = partition_->samples(number_);
+  samples_.resize(sampleIds_.size());
+  for (Index s = 0; s < sampleIds_.size(); ++s) {
+    const Index t = partition_->localTriangle(surface.owner[sampleIds_[s]]);
+    samples_[s] = {reference_->positions()[sampleIds_[s]], firstSample_[t], t, 0, kNone};
+    firstSample_[t] = s;
+  }
+}
+
+void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) const {
+  const auto vertices = partition_->vertices(number_);
+  const auto triangles = partition_->triangles(number_);
+  for (Index i = 0; i < vertexCount_; ++i) {
+    const Index v = vertices[i];
+    if (inner_[i] != 0) surface.axis[v] = axis_[i], surface.flags[v] = flags_[i];
+    if (moved_[i] == 0) continue;
+    surface.position[v] = position_[i], surface.quadric[v] = quadric_[i];
+    surface.face[v] = face_[i], surface.source[v] = kNone;
+  }
+  for (Index t = 0; t < triangleCount_; ++t) {
+    const Index own = triangles[t];
+    if (isDead(t)) {
+      dead[own] = 1;
+      continue;
+    }
+    for (Index i = 0; i < 3; ++i) {
+      surface.triangles[own].vertices[i] = vertices[vertex_[3 * t + i]];
+    }
+    for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
+      surface.owner[sampleIds_[s]] = own;
+    }
+  }
+}
+
+void Part::push(float cost, const Candidate& candidate) {
+  const Index bucket = std::bit_cast<Index>(std::max(cost, 0.0f)) >> 22;  // two for each octave
+  buckets_[bucket].push_back(candidate);
+  lowest_ = std::min(lowest_, bucket);
+}
+
+bool Part::pop(Candidate& candidate) {
+  for (; lowest_ < kBuckets; ++lowest_) {
+    auto& bucket = buckets_[lowest_];
+    if (heads_[lowest_] < bucket.size()) {
+      candidate = bucket[heads_[lowest_]++];
+      return true;
+    }
+    bucket.clear();
+    heads_[lowest_] = 0;
+  }
+  return false;
+}
+
+// Puts the samples that an attempt has gathered in the lists of their new owners.
+void Part::giveSamples() {
+  for (const Taken& taken : taken_) {
+    Index& first = firstSample_[taken.triangle];
+    samples_[taken.sample].next = first;
+    samples_[taken.sample].owner = taken.triangle;
+    first = taken.sample;
+  }
+}
+
+// Numbers from triangleCount_ on are foreign triangles'.
+void Part::triangleAt(Index t, Vec3f* p) const {
+  if (t < triangleCount_) {
+    for (Index i = 0; i < 3; ++i) p[i] = position_[vertex_[3 * t + i]];
+  } else {
+    const Index own = partition_->foreign(number_)[t - triangleCount_];
+    for (std::size_t i = 0; i < 3; ++i) p[i] = surface_->corner(own, i);
+  }
+}
+
+}  // namespace tufa::reduce

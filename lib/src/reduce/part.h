@@ -1,0 +1,193 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "reduce/box_list.h"
+#include "reduce/operations.h"
+#include "reduce/partition.h"
+#include "reduce/reference_mesh.h"
+#include "reduce/star.h"
+#include "reduce/surface.h"
+
+namespace tufa::reduce {
+
+/// One part of a partition: a compact copy of its vertices and triangles, and what is done to them.
+///
+/// An operation is tried on the copy, passes all guards or is refused, and is then made for good.
+/// The guards, in the order in which they are asked (see Outcome): topology, place, shape of the
+/// triangles, folds, stars, distance, intersections. One object serves many parts in turn, and
+/// keeps its memory.
+class Part {
+ public:
+  void load(const Surface& surface, const ReferenceMesh& reference, const Partition& partition,
+            Index number, const PhaseLimits& limits);
+  /// Collapses edges, the cheapest first, until none is left.
+  void collapseAll();
+  /// Flips edges of slivers.
+  void flipAll();
+  /// Writes back what changed. Parts write to places of their own. `dead`: for each triangle of the
+  /// surface whether it has vanished.
+  void store(Surface& surface, std::vector<std::uint8_t>& dead) const;
+
+  /// What was tried in all parts so far.
+  [[nodiscard]] const OperationCounts& counts() const { return counts_; }
+  void clearCounts() { counts_ = {}; }
+
+ private:
+  static constexpr int kMostValence = 16;  ///< of a new star, unless it was higher
+  static constexpr Index kBuckets = 512;
+  struct Candidate {
+    Index a, b, versionA, versionB;
+  };
+  /// A reference vertex, in the list of its owner.
+  struct Sample {
+    Vec3f p;
+    Index next, owner;
+    Index stamp, taker;  ///< in the attempt `stamp` its owner would be `taker`
+  };
+  struct Taken {
+    Index sample, triangle;
+  };
+  struct NewAxis {
+    Index vertex;
+    Vec3f axis;
+  };
+  /// The neighbours of a vertex as seen from it, counter-clockwise.
+  struct Link {
+    Vec3f to[kMostRing + 1];
+    int count = 0;
+    int changed = 0;  ///< one that is new or has moved
+    void add(Vec3f neighbour) { to[count++] = neighbour; }
+  };
+  /// Triangles that an attempt would make. Vertices are kNone where they are new.
+  struct NewTriangles {
+    Vec3f corners[kMostRing][3];
+    Index vertices[kMostRing][3];
+    int count = 0;
+  };
+  struct Changed;  ///< the mesh as it would be
+
+  // part.cpp: tables and queue.
+  void loadTables(const Surface& surface, std::span<const Index> triangles);
+  void loadSamples(const Surface& surface);
+  void push(float cost, const Candidate& candidate);
+  bool pop(Candidate& candidate);
+  void giveSamples();
+  [[nodiscard]] Index around(Index c) const { return nextCorner(opposite_[nextCorner(c)]); }
+  [[nodiscard]] bool isDead(Index t) const { return vertex_[3 * t] == kNone; }
+  [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis_[v]) != 0; }
+  /// Whether a guard is to be obeyed; tests switch single ones off.
+  [[nodiscard]] bool isOn(Outcome guard) const { return limits_.switchedOff != guard; }
+  void triangleAt(Index t, Vec3f* p) const;
+
+  // part_collapse.cpp.
+  void countSlivers();
+  float solve(Index a, Index b, Vec3f& place, LocalQuadric& sum) const;
+  void propose(Index a, Index b);
+  Outcome tryCollapse(Index a, Index b);
+  Outcome tryPlace(Index a, Index b, Vec3f place);
+  bool gatherRing(Index a, Index b);
+  bool addToRing(Index corner);
+  void apply(Index a, Index b);
+
+  // part_star.cpp.
+  Outcome shapeGuard(Index a, Index b);
+  bool windsInFrame();
+  bool isSimpleStar(Index a, Index b) const;
+  Outcome trianglesGuard(Vec3f a, Vec3f b);
+  [[nodiscard]] bool foldGuard(Index a, Index b) const;
+  [[nodiscard]] float sharpestBefore(Index a, Index b) const;
+  [[nodiscard]] Vec3f outerNormal(Index corner) const;
+  bool ringGuard(Index a, Index b);
+  [[nodiscard]] Link linkAfterCollapse(Index v, Index a, Index b) const;
+  bool starGuard(Index v, const Link& link);
+
+  // part_distance.cpp.
+  Outcome distanceGuard(Index a, Index b);
+  bool samplesNear(Index t);
+  bool sampleNearGraph(Index s, Vec3f p);
+  bool sampleNearStar(Index s, Vec3f p);
+  [[nodiscard]] int wedgeOf(Vec3f s) const;
+  bool apexNear(Index a, Index b);
+  [[nodiscard]] bool crossingsNear() const;
+  [[nodiscard]] bool edgeNear(Index face, const ReferenceMesh::Section& section) const;
+  bool facesNear();
+  [[nodiscard]] bool facesNearAt(Index referenceVertex) const;
+  [[nodiscard]] Index ownerAfter(Index referenceVertex) const;
+
+  // part_intersect.cpp.
+  bool intersects(const NewTriangles& made, Index gone, Index gone2);
+  bool starIntersects(Index a, Index b);
+  void makeBoxList();
+  void renewBox(Index t);
+  [[nodiscard]] bool isNarrow(Index t) const;
+  [[nodiscard]] Index cornerVertex(Index t, std::size_t i) const;
+
+  // part_flip.cpp.
+  Outcome tryFlip(Index corner);
+  bool flipStars(const Index* v, const Vec3f* n);
+  [[nodiscard]] Link linkAfterFlip(const Index* v, int k) const;
+  bool flipDistance(const Index* v);
+  bool flipIntersects(const Index* v);
+  void applyFlip(const Index* v);
+
+  const Surface* surface_ = nullptr;
+  const ReferenceMesh* reference_ = nullptr;
+  const Partition* partition_ = nullptr;
+  PhaseLimits limits_;
+  OperationCounts counts_;
+  Index number_ = 0, vertexCount_ = 0, triangleCount_ = 0;
+  float squaredDistance_ = 0;
+  Box3f box_;
+
+  // For each vertex.
+  std::vector<Vec3f> position_, axis_;
+  std::vector<LocalQuadric> quadric_;
+  std::vector<std::uint8_t> flags_, inner_, moved_;
+  std::vector<Index> face_, corner_, version_, stamp_;
+  // For each corner; for each triangle its first sample; for each sample.
+  std::vector<Index> vertex_, opposite_, firstSample_;
+  std::vector<Sample> samples_;
+  std::span<const Index> sampleIds_;
+
+  // The queue: buckets by the leading bits of the cost, first in first out.
+  std::array<std::vector<Candidate>, kBuckets> buckets_;
+  std::array<Index, kBuckets> heads_{};
+  Index lowest_ = kBuckets;
+
+  Index now_ = 0;                    ///< the last stamp
+  int alive_ = 0, sliverCount_ = 0;  ///< triangles
+  bool hasBoxList_ = false;
+  BoxList boxList_;
+  BoxList::Slots boxSlots_;
+  std::vector<std::array<Index, 2>> edgeScratch_;
+  std::vector<Index> firstScratch_;
+
+  // The attempt at hand. A collapse takes b into a. The ring of neighbours runs counter-clockwise;
+  // its edge from i to i + 1 belongs to a while i < split_, then to b.
+  int size_ = 0, split_ = 0;
+  Index kept_ = 0, gone_ = 0;
+  Index left_ = 0, right_ = 0;      ///< corners at a in the two triangles that vanish
+  Index flip_[2] = {kNone, kNone};  ///< or the corners opposite the edge to be flipped
+  Index ring_[kMostRing + 1] = {};
+  Index at_[kMostRing] = {};  ///< the corner of each ring edge's triangle at a or b
+  Index ringStamp_ = 0;       ///< of the vertices in the ring
+  Vec3f place_, n_;
+  base::Frame frame_;
+  bool isGraph_ = true;         ///< the new star is a graph over n_
+  Vec3f spoke_[kMostRing + 1];  ///< from the place to the ring
+  Vec3f normal_[kMostRing];     ///< of the new triangles
+  Vec3f z_[kMostRing + 1];      ///< spokes in the frame, with the height last
+  Vec3f slope_[kMostRing];      ///< normals in the frame, scaled to height 1
+  int newSlivers_ = 0;
+  LocalQuadric sum_;
+  std::vector<Taken> taken_;
+  NewAxis newAxis_[kMostRing];
+  int newAxes_ = 0;
+  Index apexFace_ = kNone;
+};
+
+}  // namespace tufa::reduce

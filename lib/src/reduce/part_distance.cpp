@@ -1,0 +1,213 @@
+// The distance guard: why it bounds the distance between the surfaces, not only at samples.
+//
+// Overlay the mesh and the reference: every reference vertex has an owner, every vertex lies over a
+// face, every edge crosses a sequence of edges of the reference. The pieces of the overlay are
+// convex polygons in a triangle and in a face at once. Map one to the other corner by corner: if no
+// corner moves farther than the limit, no point of the piece does, as the distance is convex. So
+// the limit bounds both ways once it holds at reference vertices, at vertices, and for each pair of
+// crossing edges at one point of each, any: at the nearest points. An operation changes the overlay
+// within its star only, and exactly these three kinds of points are tested there. Where the
+// reference is rough, what is seen along one axis may not be all of it: there faces are tested as
+// the certificate does.
+//
+// Cost: about 10 ns a reference vertex and 8 ns a crossing.
+
+#include <algorithm>
+#include <cmath>
+
+#include "reduce/overlay_path.h"
+#include "reduce/part.h"
+
+namespace tufa::reduce {
+
+Outcome Part::distanceGuard(Index a, Index b) {
+  taken_.clear();
+  bool isNear = true;
+  for (int i = 0; i < size_ && isNear; ++i) isNear = samplesNear(at_[i] / 3);
+  if (!isNear || !samplesNear(left_ / 3) || !samplesNear(right_ / 3)) return Outcome::Sample;
+  if (!apexNear(a, b)) return Outcome::Apex;
+  if (isOn(Outcome::Crossing) && !crossingsNear()) return Outcome::Crossing;
+  if (isOn(Outcome::Face) && !facesNear()) return Outcome::Face;
+  return Outcome::Done;
+}
+
+// All samples of a triangle that changes; notes the new triangles that take them. One that is too
+// far goes first in its list, as it is likely to be so again.
+bool Part::samplesNear(Index t) {
+  Index before = kNone;
+  for (Index s = firstSample_[t]; s != kNone; before = s, s = samples_[s].next) {
+    const Vec3f p = samples_[s].p - place_;
+    if ((isGraph_ ? sampleNearGraph(s, p) : sampleNearStar(s, p)) || !isOn(Outcome::Sample)) {
+      continue;
+    }
+    if (before != kNone) {
+      samples_[before].next = samples_[s].next;
+      samples_[s].next = firstSample_[t];
+      firstSample_[t] = s;
+    }
+    return false;
+  }
+  return true;
+}
+
+// By the triangle above or below it: its plane's height first, as that is cheap.
+bool Part::sampleNearGraph(Index s, Vec3f p) {
+  const Vec3f q{dot(p, frame_.x), dot(p, frame_.y), dot(p, n_)};
+  const int w = wedgeOf(q);
+  taken_.push_back({s, at_[w] / 3});
+  const bool isOutside =
+      (z_[w + 1].x - z_[w].x) * (q.y - z_[w].y) - (z_[w + 1].y - z_[w].y) * (q.x - z_[w].x) < 0;
+  if (!isOutside && std::abs(dot(q, slope_[w])) <= limits_.distance) return true;
+  return squaredDistanceToTriangle(q, {}, z_[w], z_[w + 1]) <= squaredDistance_;
+}
+
+// The star is no graph: by the nearest of all its triangles.
+bool Part::sampleNearStar(Index s, Vec3f p) {
+  float best = kFar2;
+  int wedge = 0;
+  for (int i = 0; i < size_; ++i) {
+    const float d2 = squaredDistanceToTriangle(p, {}, spoke_[i], spoke_[i + 1]);
+    if (d2 < best) best = d2, wedge = i;
+  }
+  taken_.push_back({s, at_[wedge] / 3});
+  return best <= squaredDistance_;
+}
+
+// The triangle of the star that is above or below s, in the frame.
+int Part::wedgeOf(Vec3f s) const {
+  float last = z_[0].x * s.y - z_[0].y * s.x;
+  for (int i = 0; i < size_; ++i) {
+    const float next = z_[i + 1].x * s.y - z_[i + 1].y * s.x;
+    if (last >= 0 && next < 0) return i;
+    last = next;
+  }
+  return 0;  // the apex itself
+}
+
+// Finds the face of the reference below the apex, from that of the nearer end of the edge.
+bool Part::apexNear(Index a, Index b) {
+  constexpr int kMostSteps = 256;
+  const bool isNearA = squaredLength(position_[a] - place_) <= squaredLength(position_[b] - place_);
+  const Index start = isNearA ? face_[a] : face_[b];
+  if (start == kNone) return false;
+  apexFace_ = reference_->locate(start, place_, n_, kMostSteps);
+  if (apexFace_ == kNone) return false;
+  return reference_->distance(apexFace_, place_) <= limits_.distance || !isOn(Outcome::Apex);
+}
+
+// All crossings of the spokes with edges of the reference; the sharpest spoke first, as it is the
+// likeliest to be too far.
+bool Part::crossingsNear() const {
+  int sharpest = 0;
+  float leastCosine = 2;
+  for (int i = 0; i < size_; ++i) {
+    const float cosine = dot(normal_[i], normal_[i == 0 ? size_ - 1 : i - 1]);
+    if (cosine < leastCosine) leastCosine = cosine, sharpest = i;
+  }
+  for (int k = 0; k < size_; ++k) {
+    const int i = sharpest + k < size_ ? sharpest + k : sharpest + k - size_;
+    if (!edgeNear(apexFace_, {place_, spoke_[i], n_, !isGraph_})) return false;
+  }
+  return true;
+}
+
+// Whether an edge stays near the reference, walking from the face below its start. Where the
+// reference bends away around a crease just before the end, the section never passes the end: it
+// then is enough that it came near it, as all triangles around the end have that in common.
+bool Part::edgeNear(Index face, const ReferenceMesh::Section& section) const {
+  constexpr float kArrived = 0.5f;  // voxels from the end, and twice the distance allowed
+  const Vec3f z = section.along;
+  const float scale = 1 / squaredLength(z);
+  const float close2 = std::min(kArrived * kArrived, 4 * squaredDistance_);
+  bool hasArrived = false;
+  const auto isNear = [&](Vec3f m, Vec3f right, Vec3f left) {
+    const float share = std::clamp(dot(m, z) * scale, 0.0f, 1.0f);
+    const bool ok = squaredLength(m - z * share) <= squaredDistance_ ||
+                    squaredDistanceOfSegments(right, left, {}, z) <= squaredDistance_;
+    hasArrived |= ok && squaredLength(m - z) <= close2;
+    return ok;
+  };
+  return reference_->follow(face, section, isNear) || hasArrived;
+}
+
+// The mesh as it would be, for overlay_path.h. What collapse and flip change in the tables is few
+// enough to be told here corner by corner.
+struct Part::Changed {
+  const Part& part;
+
+  [[nodiscard]] Index vertex(Index t, int i) const {
+    const Index c = 3 * t + static_cast<Index>(i), v = part.vertex_[c];
+    if (part.flip_[0] == kNone) return v == part.gone_ ? part.kept_ : v;
+    if (c == previousCorner(part.flip_[0])) return part.vertex_[part.flip_[1]];
+    if (c == previousCorner(part.flip_[1])) return part.vertex_[part.flip_[0]];
+    return v;
+  }
+  Vec3f operator()(Index t, int i) const {
+    const Index v = vertex(t, i);
+    return part.flip_[0] == kNone && v == part.kept_ ? part.place_ : part.position_[v];
+  }
+  [[nodiscard]] Index across(Index t, int i) const {
+    const Index c = 3 * t + static_cast<Index>(i);
+    const Index d = part.flip_[0] == kNone ? afterCollapse(part.opposite_[c]) : afterFlip(c);
+    return d == kNone ? kNone : d / 3;
+  }
+
+ private:
+  [[nodiscard]] Index afterCollapse(Index c) const {
+    if (c == part.left_) return part.opposite_[nextCorner(part.left_)];
+    if (c == nextCorner(part.left_)) return part.opposite_[part.left_];
+    if (c == part.right_) return part.opposite_[previousCorner(part.right_)];
+    if (c == previousCorner(part.right_)) return part.opposite_[part.right_];
+    return c;
+  }
+  [[nodiscard]] Index afterFlip(Index c) const {
+    for (int k = 0; k < 2; ++k) {
+      const Index own = part.flip_[k], other = part.flip_[1 - k];
+      if (c == own) return part.opposite_[nextCorner(other)];
+      if (c == nextCorner(own)) return nextCorner(other);
+      if (part.opposite_[c] == nextCorner(own)) return other;
+    }
+    return part.opposite_[c];
+  }
+};
+
+// The triangle that would own a reference vertex, or kNone if it is none of this part. Owners in
+// the surface may not be read here: other parts write theirs.
+Index Part::ownerAfter(Index r) const {
+  const Index local = partition_->localSample(r);
+  if (local >= sampleIds_.size() || sampleIds_[local] != r) return kNone;
+  const Sample& s = samples_[local];
+  return s.stamp == now_ ? s.taker : s.owner;
+}
+
+// Faces of the reference at rough vertices that change their owner.
+bool Part::facesNear() {
+  bool isRough = false;
+  for (const Taken& t : taken_) isRough |= reference_->isRough(sampleIds_[t.sample]);
+  if (!isRough) return true;
+  for (const Taken& t : taken_) {
+    samples_[t.sample].stamp = now_;
+    samples_[t.sample].taker = t.triangle;
+  }
+  for (const Taken& t : taken_) {
+    const Index r = sampleIds_[t.sample];
+    if (reference_->isRough(r) && !facesNearAt(r)) return false;
+  }
+  return true;
+}
+
+bool Part::facesNearAt(Index referenceVertex) const {
+  const Changed mesh{*this};
+  return reference_->allAround(referenceVertex, [&](Index f) {
+    const auto& v = reference_->faces()[f].vertex;
+    OwnedFace face{
+        reference_->cornersOf(f), v, {ownerAfter(v[0]), ownerAfter(v[1]), ownerAfter(v[2])}};
+    for (const Index owner : face.owners) {
+      if (owner == kNone) return false;
+    }
+    return face.hasOneOwner() || overlayBound2(mesh, face, squaredDistance_) <= squaredDistance_ ||
+           wholeFace2(mesh, face) <= squaredDistance_;
+  });
+}
+
+}  // namespace tufa::reduce

@@ -1,0 +1,204 @@
+// Guards against folds, crossings within stars, and slivers.
+
+#include <algorithm>
+#include <cmath>
+
+#include "reduce/part.h"
+
+namespace tufa::reduce {
+namespace {
+
+constexpr float kWorstSine2 = 3e-4f;   // squared sine of 1 degree: no new sliver is as sharp
+constexpr float kNoNormal = 0.001f;    // of 1.8 degrees: the normal of such a sliver says little
+constexpr float kLeastLength = 1e-6f;  // of a cross product, in squared voxels: no area at all
+
+}  // namespace
+
+// The new star, as seen from the place: spokes, normals, axis and frame.
+Outcome Part::shapeGuard(Index a, Index b) {
+  for (int i = 0; i < size_; ++i) spoke_[i] = position_[ring_[i]] - place_;
+  spoke_[size_] = spoke_[0];
+  for (int i = 0; i < size_; ++i) {
+    const Vec3f c = cross(spoke_[i], spoke_[i + 1]);
+    const float l = length(c);
+    if (!(l > kLeastLength)) return Outcome::Flat;
+    normal_[i] = c * (1 / l);
+  }
+  float leastCosine;
+  n_ = commonAxis(normal_, size_, leastCosine);
+  isGraph_ = leastCosine >= kLeastCosine;
+  frame_ = base::frameAbout(n_);
+  for (int i = 0; i < size_; ++i) {
+    z_[i] = {dot(spoke_[i], frame_.x), dot(spoke_[i], frame_.y), dot(spoke_[i], n_)};
+  }
+  z_[size_] = z_[0];
+  if (!(isGraph_ ? windsInFrame() : isSimpleStar(a, b)) && isOn(Outcome::Flat)) {
+    return Outcome::Flat;
+  }
+  return trianglesGuard(position_[a], position_[b]);
+}
+
+// Whether the star goes around its axis once. Sets the slopes of its triangles.
+bool Part::windsInFrame() {
+  int turns = 0;
+  for (int i = 0; i < size_; ++i) {
+    const Vec3f m{dot(normal_[i], frame_.x), dot(normal_[i], frame_.y), dot(normal_[i], n_)};
+    slope_[i] = m * (1 / m.z);
+    turns += z_[i].y < 0 && z_[i + 1].y >= 0;
+  }
+  return turns == 1;
+}
+
+// A star without an axis: only where intersections are tested explicitly.
+bool Part::isSimpleStar(Index a, Index b) const {
+  if (((flags_[a] | flags_[b]) & kNarrow) == 0) return false;
+  Vec3f directions[kMostRing];
+  for (int i = 0; i < size_; ++i) directions[i] = unit(spoke_[i]);
+  return linkIsSimple(directions, size_, 0, size_ - 1);
+}
+
+// Compares the triangles with those before. None may turn far, unless it was a sliver or folded
+// over. Slivers may be made if the smallest angle of the star does not shrink, or as long as they
+// are few in the part.
+Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
+  const float limit = limits_.leastSine2;
+  float after = 1, before = 1;
+  newSlivers_ = 0;
+  // One that was folded over may turn: the ring, and so the sum of the star's areas, is the same.
+  const auto wasFolded = [&](Vec3f was, float area2) {
+    const float along = dot(was, n_);
+    return along < 0 || along * along < kLeastCosine * kLeastCosine * area2;
+  };
+  for (int i = 0; i < size_; ++i) {
+    const Vec3f old = (i < split_ ? a : b) - place_, x = spoke_[i], y = spoke_[i + 1];
+    const Vec3f was = cross(x - old, y - old);
+    const float area2Was = squaredLength(was), turn = dot(normal_[i], was);
+    const float then =
+        leastSine2(area2Was, squaredLength(x - old), squaredLength(y - old), squaredLength(y - x));
+    const bool keeps =
+        turn > 0 && turn * turn >= limits_.turnCosine * limits_.turnCosine * area2Was;
+    if (!keeps && then > kNoNormal && !(isGraph_ && wasFolded(was, area2Was)) &&
+        isOn(Outcome::Turn)) {
+      return Outcome::Turn;
+    }
+    const float now = leastSine2(squaredLength(cross(x, y)), squaredLength(x), squaredLength(y),
+                                 squaredLength(y - x));
+    before = std::min(before, then), after = std::min(after, now);
+    newSlivers_ += (now < limit) - (then < limit);
+  }
+  for (const Vec3f x : {spoke_[0] + place_, spoke_[split_] + place_}) {  // those that vanish
+    const Vec3f u = a - x, v = b - x;
+    const float then = leastSine2(squaredLength(cross(u, v)), squaredLength(u), squaredLength(v),
+                                  squaredLength(a - b));
+    before = std::min(before, then);
+    newSlivers_ -= then < limit;
+  }
+  if (after >= std::min(limit, before) || !isOn(Outcome::Round)) return Outcome::Done;
+  const bool isFew = static_cast<float>(sliverCount_ + newSlivers_) <=
+                     limits_.sliverShare * static_cast<float>(alive_);
+  return isFew && after >= kWorstSine2 ? Outcome::Done : Outcome::Round;
+}
+
+// Of the triangle across the edge opposite a corner; not of length 1; 0 if it is not in the part.
+Vec3f Part::outerNormal(Index c) const {
+  const Index d = opposite_[c];
+  if (d == kNone) return {};
+  const Vec3f p = position_[vertex_[d]];
+  return cross(position_[vertex_[nextCorner(d)]] - p, position_[vertex_[previousCorner(d)]] - p);
+}
+
+// The edges of the new star: the spokes and the ring. A sharper turn than kFoldCosine passes only
+// where the old star had one as sharp, which it has on a wedge of the solid.
+bool Part::foldGuard(Index a, Index b) const {
+  constexpr float kFoldCosine2 = 0.6f;  // less than the square, so that the root is seldom taken
+  constexpr float kSlack = 0.01f;
+  float sharpest = 1;
+  for (int i = 0; i < size_; ++i) {
+    sharpest = std::min(sharpest, dot(normal_[i], normal_[i == 0 ? size_ - 1 : i - 1]));
+    const Vec3f outer = outerNormal(at_[i]);
+    const float cosine = dot(normal_[i], outer);
+    if (cosine < 0 && cosine * cosine > kFoldCosine2 * squaredLength(outer)) {
+      sharpest = std::min(sharpest, cosine / length(outer));
+    }
+  }
+  if (sharpest >= kFoldCosine) return true;
+  return sharpest >= kSharpestCosine && sharpest >= sharpestBefore(a, b) - kSlack;
+}
+
+float Part::sharpestBefore(Index a, Index b) const {
+  float sharpest = 1;
+  for (const Index v : {a, b}) {
+    Index c = corner_[v];
+    do {
+      const Index t = 3 * (c / 3);
+      const Vec3f p = position_[vertex_[t]];
+      const Vec3f n = unit(cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p));
+      for (const Index edge : {c, nextCorner(c)}) {
+        sharpest = std::min(sharpest, dot(n, unit(outerNormal(edge))));
+      }
+      c = around(c);
+    } while (c != corner_[v]);
+  }
+  return sharpest;
+}
+
+// The stars of the ring, where the new triangles do not face the axes that they have.
+bool Part::ringGuard(Index a, Index b) {
+  newAxes_ = 0;
+  for (int i = 0; i < size_; ++i) {
+    const Index v = ring_[i];
+    const Vec3f axis = axis_[v];
+    if (dot(axis, normal_[i]) >= kLeastCosine &&
+        dot(axis, normal_[i == 0 ? size_ - 1 : i - 1]) >= kLeastCosine) {
+      continue;
+    }
+    if (inner_[v] == 0) return false;
+    if (!starGuard(v, linkAfterCollapse(v, a, b))) return false;
+  }
+  return true;
+}
+
+// Once a and b are one vertex at the place.
+Part::Link Part::linkAfterCollapse(Index v, Index a, Index b) const {
+  Link link;
+  Index c = corner_[v];
+  do {
+    const Index x = vertex_[nextCorner(c)], y = vertex_[previousCorner(c)];
+    if (!((x == a && y == b) || (x == b && y == a))) {
+      const bool isNew = x == a || x == b;
+      if (isNew) link.changed = link.count;
+      link.add((isNew ? place_ : position_[x]) - position_[v]);
+    }
+    c = around(c);
+  } while (c != corner_[v] && link.count < kMostRing);
+  return link;
+}
+
+// The whole star of a vertex as it would be: there is an axis for it, which is noted, or its link
+// is simple, where intersections are tested explicitly.
+bool Part::starGuard(Index v, const Link& link) {
+  if (link.count < 3 || newAxes_ >= kMostRing) return false;
+  Vec3f normals[kMostRing + 1];
+  for (int i = 0; i < link.count; ++i) {
+    const Vec3f c = cross(link.to[i], link.to[i + 1 == link.count ? 0 : i + 1]);
+    const float l = length(c);
+    if (!(l > kLeastLength)) return false;
+    normals[i] = c * (1 / l);
+  }
+  float leastCosine;
+  Vec3f axis = commonAxis(normals, link.count, leastCosine);
+  if (leastCosine < kLeastCosine || !windsOnce(link.to, link.count, axis)) {
+    if ((flags_[v] & kNarrow) == 0) return false;
+    Vec3f directions[kMostRing + 1];
+    for (int i = 0; i < link.count; ++i) directions[i] = unit(link.to[i]);
+    // A star without an axis was simple before, so that only what is new may cross.
+    const int first = hasAxis(v) ? 0 : link.changed;
+    const int last = hasAxis(v) ? link.count - 1 : link.changed;
+    if (!linkIsSimple(directions, link.count, first, last)) return false;
+    axis = {};
+  }
+  newAxis_[newAxes_++] = {v, axis};
+  return true;
+}
+
+}  // namespace tufa::reduce

@@ -1,0 +1,117 @@
+#include "reduce/partition.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tufa::reduce {
+
+void Partition::build(const Surface& surface, Index most, float share, base::Job& job) {
+  const std::size_t count = surface.position.size();
+  items_.resize(count);
+  for (Index i = 0; i < count; ++i) items_[i] = {surface.position[i], i};
+  nodes_.clear(), boxes_.clear(), ranges_.assign(1, 0);
+  Box3f all;
+  std::swap(all.lower, all.upper);
+  split(0, static_cast<Index>(count), all, most, share);
+  numberVertices(job);
+  shareTriangles(surface);
+  shareSamples(surface);
+}
+
+Index Partition::split(Index begin, Index end, const Box3f& box, Index most, float share) {
+  const Index me = static_cast<Index>(nodes_.size());
+  nodes_.push_back({-1, 0, 0, 0});
+  const auto leaf = [&] {
+    nodes_[me].low = static_cast<Index>(boxes_.size());
+    boxes_.push_back(box);
+    ranges_.push_back(end);
+    return me;
+  };
+  if (end - begin <= most) return leaf();
+  Box3f bounds;
+  for (Index i = begin; i < end; ++i) bounds.add(items_[i].p);
+  const Vec3f d = bounds.upper - bounds.lower;
+  const int axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
+  const auto first = items_.begin() + begin, last = items_.begin() + end;
+  auto middle = first + static_cast<std::ptrdiff_t>(static_cast<float>(end - begin) * share);
+  std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
+    return a.p[axis] < b.p[axis] || (a.p[axis] == b.p[axis] && a.vertex < b.vertex);
+  });
+  const float plane = middle->p[axis];  // vertices on it are the upper side's, but may not move
+  middle = std::partition(first, middle, [&](const Item& i) { return i.p[axis] < plane; });
+  if (middle == first) return leaf();
+  Box3f low = box, high = box;
+  low.upper[axis] = plane, high.lower[axis] = plane;
+  const Index cut = static_cast<Index>(middle - items_.begin());
+  const Index l = split(begin, cut, low, most, share), h = split(cut, end, high, most, share);
+  nodes_[me] = {axis, plane, l, h};
+  return me;
+}
+
+void Partition::numberVertices(base::Job& job) {
+  const std::size_t count = items_.size();
+  vertices_.resize(count), partOf_.resize(count), localVertex_.resize(count);
+  job.forRanges(size(), 1, [&](std::size_t firstPart, std::size_t endPart) {
+    for (std::size_t p = firstPart; p < endPart; ++p) {
+      const Index begin = ranges_[p], end = ranges_[p + 1];
+      for (Index i = begin; i < end; ++i) vertices_[i] = items_[i].vertex;
+      std::sort(vertices_.begin() + begin, vertices_.begin() + end);
+      for (Index i = begin; i < end; ++i) {
+        partOf_[vertices_[i]] = static_cast<Index>(p);
+        localVertex_[vertices_[i]] = i - begin;
+      }
+    }
+  });
+}
+
+void Partition::shareTriangles(const Surface& surface) {
+  const std::size_t parts = size(), count = surface.triangles.size();
+  inner_.assign(surface.position.size(), 1);
+  for (Index v = 0; v < inner_.size(); ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
+  triangleFirst_.assign(parts + 1, 0), foreignFirst_.assign(parts + 1, 0);
+  partOfTriangle_.resize(count), localTriangle_.resize(count);
+  std::vector<std::array<Index, 2>> across;
+  for (Index t = 0; t < count; ++t) {
+    const auto& v = surface.triangles[t].vertices;
+    const Index b = partOf_[v[0]];
+    const bool owned = b == partOf_[v[1]] && b == partOf_[v[2]];
+    partOfTriangle_[t] = owned ? b : kNone;
+    if (owned) {
+      localTriangle_[t] = triangleFirst_[b + 1]++;
+      continue;
+    }
+    Box3f box;
+    for (const Index i : v) inner_[i] = 0, box.add(surface.position[i]);
+    forPartsAt(box, [&](Index k) { across.push_back({k, t}), ++foreignFirst_[k + 1]; });
+  }
+  for (std::size_t b = 0; b < parts; ++b) {
+    triangleFirst_[b + 1] += triangleFirst_[b], foreignFirst_[b + 1] += foreignFirst_[b];
+  }
+  triangles_.resize(triangleFirst_[parts]), foreign_.resize(across.size());
+  for (Index t = 0; t < count; ++t) {
+    if (const Index b = partOfTriangle_[t]; b != kNone) {
+      triangles_[triangleFirst_[b] + localTriangle_[t]] = t;
+    }
+  }
+  std::vector<Index> at(foreignFirst_.begin(), foreignFirst_.end());
+  for (const auto& [b, t] : across) foreign_[at[b]++] = t;
+}
+
+void Partition::shareSamples(const Surface& surface) {
+  sampleFirst_.assign(size() + 1, 0);
+  for (const Index t : surface.owner) {
+    if (const Index b = partOfTriangle_[t]; b != kNone) ++sampleFirst_[b + 1];
+  }
+  for (std::size_t b = 0; b < size(); ++b) sampleFirst_[b + 1] += sampleFirst_[b];
+  samples_.resize(sampleFirst_.back());
+  std::vector<Index> at(sampleFirst_.begin(), sampleFirst_.end());
+  localSample_.assign(surface.owner.size(), kNone);
+  for (Index r = 0; r < surface.owner.size(); ++r) {
+    const Index b = partOfTriangle_[surface.owner[r]];
+    if (b == kNone) continue;
+    localSample_[r] = at[b] - sampleFirst_[b];
+    samples_[at[b]++] = r;
+  }
+}
+
+}  // namespace tufa::reduce

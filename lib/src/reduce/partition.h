@@ -1,0 +1,87 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/job.h"
+#include "reduce/box3f.h"
+#include "reduce/surface.h"
+
+namespace tufa::reduce {
+
+/// The k-d parts of a surface that a phase works on one by one, in parallel.
+///
+/// Parts cannot disturb each other. A part moves vertices only strictly inside its box, and changes
+/// only triangles with all corners in the box, those it owns. Triangles of several parts stay as
+/// they are while the phase lasts, and every part knows those that reach into its box, the foreign
+/// ones. So surface that two parts change cannot meet, and the order of the parts does not show in
+/// the result.
+class Partition {
+ public:
+  /// Cuts across the longest extent leave `share` of the vertices on their lower side, until parts
+  /// have at most `most`. Depends on the surface alone. Cost: n log n.
+  void build(const Surface& surface, Index most, float share, base::Job& job);
+
+  [[nodiscard]] std::size_t size() const { return boxes_.size(); }
+  [[nodiscard]] const Box3f& box(Index part) const { return boxes_[part]; }
+  /// Vertices of a part, in rising order. Numbers in the part are places in these lists.
+  [[nodiscard]] std::span<const Index> vertices(Index p) const { return of(vertices_, ranges_, p); }
+  /// Triangles with all corners in a part.
+  [[nodiscard]] std::span<const Index> triangles(Index p) const {
+    return of(triangles_, triangleFirst_, p);
+  }
+  /// Triangles of several parts that reach into the box of a part.
+  [[nodiscard]] std::span<const Index> foreign(Index p) const {
+    return of(foreign_, foreignFirst_, p);
+  }
+  /// Reference vertices whose owners are triangles of a part.
+  [[nodiscard]] std::span<const Index> samples(Index p) const {
+    return of(samples_, sampleFirst_, p);
+  }
+  [[nodiscard]] Index partOf(Index vertex) const { return partOf_[vertex]; }
+  /// Numbers in their part. For a reference vertex kNone if its owner is in no part.
+  [[nodiscard]] Index localVertex(Index vertex) const { return localVertex_[vertex]; }
+  [[nodiscard]] Index localTriangle(Index triangle) const { return localTriangle_[triangle]; }
+  [[nodiscard]] Index localSample(Index sample) const { return localSample_[sample]; }
+  /// Whether all triangles at a vertex are triangles of its part, and none of its edges is open.
+  [[nodiscard]] bool isInner(Index vertex) const { return inner_[vertex] != 0; }
+
+  /// f(part) for each part that a box reaches into.
+  template <class F>
+  void forPartsAt(const Box3f& box, F&& f, Index node = 0) const {
+    const Node& n = nodes_[node];
+    if (n.axis < 0) return void(f(n.low));
+    if (box.lower[n.axis] <= n.at) forPartsAt(box, f, n.low);
+    if (box.upper[n.axis] >= n.at) forPartsAt(box, f, n.high);
+  }
+
+ private:
+  struct Item {
+    Vec3f p;
+    Index vertex;
+  };
+  struct Node {
+    int axis;  ///< -1: a part, whose number is `low`
+    float at;
+    Index low, high;
+  };
+  static std::span<const Index> of(const std::vector<Index>& all, const std::vector<Index>& first,
+                                   Index part) {
+    return {all.data() + first[part], all.data() + first[part + 1]};
+  }
+  Index split(Index begin, Index end, const Box3f& box, Index most, float share);
+  void numberVertices(base::Job& job);
+  void shareTriangles(const Surface& surface);
+  void shareSamples(const Surface& surface);
+
+  std::vector<Item> items_;
+  std::vector<Node> nodes_;
+  std::vector<Box3f> boxes_;
+  std::vector<Index> vertices_, ranges_, partOf_, localVertex_;
+  std::vector<Index> triangles_, triangleFirst_, partOfTriangle_, localTriangle_;
+  std::vector<Index> foreign_, foreignFirst_;
+  std::vector<Index> samples_, sampleFirst_, localSample_;
+  std::vector<std::uint8_t> inner_;
+};
+
+}  // namespace tufa::reduce

@@ -1,0 +1,161 @@
+#include "reduce/reduction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "reduce/clearance.h"
+#include "reduce/part.h"
+
+namespace tufa::reduce {
+namespace {
+
+constexpr float kRadians = 0.01745329252f;
+// PhaseLimits::errorShare of most phases, and of one that tries harder.
+constexpr float kErrorShare = 1;
+constexpr float kLargeErrorShare = 4;
+// On the way to a large tolerance each is this share of the next, down to kRampEnd voxels.
+constexpr float kRamp = 0.25f;
+constexpr float kRampEnd = 0.09f;
+constexpr int kRampPhases = 2;
+// Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
+constexpr int kMostPhases = 24;
+// Phases end once one has removed less than this share of the triangles.
+constexpr Index kLittle = 16;
+// For a number of triangles: the first tolerance, and the factors by which it grows.
+constexpr float kFirstTolerance = 0.02f;
+constexpr float kLeastStep = 1.06f;
+constexpr float kMostStep = 1.6f;
+
+}  // namespace
+
+Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor,
+                     Options options, base::Job& job)
+    : options_(std::move(options)),
+      job_(job),
+      reference_(reference.positions, reference.triangles, job),
+      surface_(makeSurface(input.positions, input.triangles, job)) {
+  surface_.rounded = options_.rounded;
+  locateAll(surface_, reference_, standsFor, job);
+}
+
+Reduction::~Reduction() = default;
+
+// Large tolerances by way of smaller ones: most collapses are cheap there, as little surface is
+// near other surface and triangles hold few samples.
+void Reduction::toTolerance(float tolerance) {
+  std::vector<float> way{tolerance};
+  while (way.back() * kRamp > std::max(tolerance_, kRampEnd)) way.push_back(way.back() * kRamp);
+  for (std::size_t i = way.size(); i-- > 1;) reduce(way[i], 0, kRampPhases);
+  reduce(tolerance, 0, options_.phases);
+}
+
+// Each phase sees other parts. The first one spends a share of the tolerance only, so that surface
+// along its parts' borders does not lag behind; once phases find little more, one tries harder.
+void Reduction::reduce(float tolerance, Index count, int phases) {
+  tolerance_ = std::max(tolerance_, tolerance);
+  PhaseLimits limits;
+  const float sine = std::sin(options_.leastAngle * kRadians);
+  limits.leastSine2 = sine * sine;
+  limits.sliverShare = options_.sliverShare;
+  limits.turnCosine = std::cos(options_.mostTurn * kRadians);
+  limits.flips = options_.flips;
+  limits.switchedOff = options_.switchedOff;
+  for (int i = 0, left = phases; left > 0 && triangleCount() > count; ++i, --left) {
+    const bool isLast = left == 1 && phases == options_.phases;
+    limits.distance = tolerance * options_.margin * (i == 0 ? options_.firstShare : 1);
+    limits.errorShare = isLast ? kLargeErrorShare : kErrorShare;
+    limits.allPlaces = isLast;
+    const Index before = triangleCount();
+    partition_.build(surface_, options_.partVertices, phaseNumber_ % 2 == 0 ? 1.0f / 3 : 0.5f,
+                     job_);
+    if (i == 0) markNarrow(surface_, partition_, options_.clearance * tolerance, job_);
+    runPhase(limits, count);
+    const bool isLittle = triangleCount() > before - before / kLittle;
+    const bool isMore = lastCounts_.overQuota > 0 && triangleCount() < before;
+    if (isMore && left == 1 && i < kMostPhases) ++left;
+    if (i > 0 && isLittle && !isMore) left = std::min(left, 2);
+  }
+}
+
+// Growing tolerances, in small steps once the count is near: each is spent before the next one, so
+// the error at the count is at most a step over that of the tolerance that gives as many triangles.
+float Reduction::toCount(Index count, float mostTolerance) {
+  float tolerance = std::max(tolerance_, kFirstTolerance);
+  for (;;) {
+    reduce(std::min(tolerance, mostTolerance), count, options_.phases);
+    if (triangleCount() <= count + 1 || tolerance >= mostTolerance) {
+      return std::min(tolerance, mostTolerance);
+    }
+    const float ratio =
+        static_cast<float>(triangleCount()) / static_cast<float>(std::max<Index>(count, 1));
+    tolerance *= std::clamp(std::pow(ratio, 0.4f), kLeastStep, kMostStep);
+  }
+}
+
+// The collapses that a phase may still make, shared among parts by their inner vertices.
+std::vector<Index> Reduction::quotas(Index count) const {
+  std::vector<Index> quota(partition_.size(), kNone);
+  if (count == 0) return quota;
+  std::vector<double> inner(partition_.size(), 0);
+  double all = 0;
+  for (Index p = 0; p < quota.size(); ++p) {
+    for (const Index v : partition_.vertices(p)) inner[p] += partition_.isInner(v) ? 1 : 0;
+    all += inner[p];
+  }
+  const double allowed = static_cast<double>((triangleCount() - count + 1) / 2);
+  double sum = 0;
+  for (Index p = 0; p < quota.size(); ++p) {
+    const double before = std::floor(sum);
+    sum += all > 0 ? allowed * inner[p] / all : 0;
+    quota[p] = static_cast<Index>(std::floor(sum + 1e-6) - before);
+  }
+  return quota;
+}
+
+std::unique_ptr<Part> Reduction::takePart() {
+  const std::lock_guard<std::mutex> lock(partsMutex_);
+  if (parts_.empty()) return std::make_unique<Part>();
+  std::unique_ptr<Part> part = std::move(parts_.back());
+  parts_.pop_back();
+  return part;
+}
+
+void Reduction::returnPart(std::unique_ptr<Part> part) {
+  const std::lock_guard<std::mutex> lock(partsMutex_);
+  lastCounts_ += part->counts();
+  part->clearCounts();
+  parts_.push_back(std::move(part));
+}
+
+// Parts read what no other part writes, so that their order does not show.
+void Reduction::runPhase(const PhaseLimits& limits, Index count) {
+  std::vector<std::uint8_t> dead(surface_.triangles.size(), 0);
+  const std::vector<Index> quota = quotas(count);
+  lastCounts_ = {};
+  job_.forRanges(partition_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<Part> part = takePart();
+    for (std::size_t p = begin; p < end; ++p) {
+      PhaseLimits own = limits;
+      own.quota = quota[p];
+      part->load(surface_, reference_, partition_, static_cast<Index>(p), own);
+      part->collapseAll();
+      if (limits.flips) part->flipAll();
+      part->store(surface_, dead);
+    }
+    returnPart(std::move(part));
+  });
+  counts_ += lastCounts_;
+  compact(surface_, dead);
+  ++phaseNumber_;
+}
+
+Certificate Reduction::certificate() const {
+  return certify(surface_, reference_, tolerance_, job_);
+}
+
+ReducedMesh Reduction::mesh() const {
+  return {surface_.position, surface_.triangles, surface_.source};
+}
+
+}  // namespace tufa::reduce

@@ -1,0 +1,75 @@
+#include "reduce/reference_mesh.h"
+
+#include "reduce/star.h"
+
+namespace tufa::reduce {
+namespace {
+
+constexpr std::size_t kGrain = 16384;
+constexpr float kRoughCosine = 0.65f;
+
+}  // namespace
+
+ReferenceMesh::ReferenceMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                             base::Job& job)
+    : positions_(positions.begin(), positions.end()),
+      faces_(triangles.size()),
+      cornerOf_(positions.size(), kNone),
+      rough_(positions.size(), 0) {
+  const std::vector<Index> opposite = oppositeCorners(positions.size(), triangles, job);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      faces_[t].vertex[i] = triangles[t].vertices[i];
+      faces_[t].opposite[i] = opposite[3 * t + i];
+      cornerOf_[faces_[t].vertex[i]] = static_cast<Index>(3 * t + i);
+    }
+  }
+  markRough(job);
+}
+
+void ReferenceMesh::markRough(base::Job& job) {
+  std::vector<Vec3f> normals(faces_.size());
+  job.forRanges(faces_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto p = cornersOf(static_cast<Index>(f));
+      normals[f] = unit(cross(p[1] - p[0], p[2] - p[0]));
+    }
+  });
+  job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    constexpr int kMost = 64;
+    Vec3f normalsAround[kMost];
+    for (std::size_t v = begin; v < end; ++v) {
+      int n = 0;
+      const Index first = cornerOf_[v];
+      if (first == kNone) continue;
+      Index c = first;
+      do {
+        normalsAround[n++] = normals[c / 3];
+        c = around(c);
+      } while (c != first && c != kNone && n < kMost);
+      float leastCosine;
+      static_cast<void>(commonAxis(normalsAround, n, leastCosine));
+      rough_[v] = c == kNone || leastCosine < kRoughCosine;
+    }
+  });
+}
+
+Index ReferenceMesh::locate(Index start, Vec3f p, Vec3f axis, int steps) const {
+  Index face = start;
+  for (int step = 0; step < steps && face != kNone; ++step) {
+    Vec3f q[3];
+    for (std::size_t i = 0; i < 3; ++i) q[i] = corner(face, i) - p;
+    int out = -1;
+    float worst = 0;
+    for (int i = 0; i < 3; ++i) {
+      const float side = dot(cross(q[(i + 1) % 3], q[(i + 2) % 3]), axis);
+      if (side < worst) worst = side, out = i;
+    }
+    if (out < 0) return dot(cross(q[1] - q[0], q[2] - q[0]), axis) > 0 ? face : kNone;
+    const Index c = faces_[face].opposite[static_cast<std::size_t>(out)];
+    face = c == kNone ? kNone : c / 3;
+  }
+  return kNone;
+}
+
+}  // namespace tufa::reduce

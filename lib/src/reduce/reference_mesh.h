@@ -1,0 +1,135 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/job.h"
+#include "reduce/corners.h"
+#include "reduce/triangles.h"
+
+namespace tufa::reduce {
+
+/// The mesh that distances are measured to, the uniform one. It never changes.
+class ReferenceMesh {
+ public:
+  struct Face {
+    std::array<Index, 3> vertex;
+    std::array<Index, 3> opposite;  ///< the corner across the edge opposite each corner, or kNone
+  };
+
+  ReferenceMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                base::Job& job);
+
+  [[nodiscard]] std::span<const Vec3f> positions() const { return positions_; }
+  [[nodiscard]] std::span<const Face> faces() const { return faces_; }
+  /// One of a vertex's corners, or kNone.
+  [[nodiscard]] Index cornerOf(Index vertex) const { return cornerOf_[vertex]; }
+  /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
+  /// what is seen along one axis may not be all.
+  [[nodiscard]] bool isRough(Index vertex) const { return rough_[vertex] != 0; }
+  [[nodiscard]] const Vec3f& corner(Index face, std::size_t i) const {
+    return positions_[faces_[face].vertex[i]];
+  }
+  [[nodiscard]] std::array<Vec3f, 3> cornersOf(Index face) const {
+    return {corner(face, 0), corner(face, 1), corner(face, 2)};
+  }
+  /// Distance from p to a face.
+  [[nodiscard]] float distance(Index face, Vec3f p) const {
+    return std::sqrt(
+        squaredDistanceToTriangle(p, corner(face, 0), corner(face, 1), corner(face, 2)));
+  }
+  /// Calls f(face) for the faces around a vertex, to a border at most, until f returns false;
+  /// returns whether it never did.
+  template <class F>
+  bool allAround(Index vertex, F&& f) const {
+    const Index first = cornerOf_[vertex];
+    for (Index c = first; c != kNone;) {
+      if (!f(c / 3)) return false;
+      c = around(c);
+      if (c == first) break;
+    }
+    return true;
+  }
+  /// The corner at the same vertex of the next face counter-clockwise, or kNone at a border.
+  [[nodiscard]] Index around(Index c) const {
+    const Index across = faces_[c / 3].opposite[nextCorner(c) % 3];
+    return across == kNone ? kNone : nextCorner(across);
+  }
+
+  /// Walks from face `start` to the face that the line through p along `axis` passes. kNone if the
+  /// way ends at a border, takes more than `steps` faces, or ends at a face that looks against the
+  /// axis.
+  [[nodiscard]] Index locate(Index start, Vec3f p, Vec3f axis, int steps = 64) const;
+
+  /// How follow() walks.
+  struct Section {
+    Vec3f start;  ///< a point; the line through it along the axis passes the first face
+    Vec3f along;  ///< to the end
+    Vec3f axis;
+    /// Whether the end is a plane across `along`, not one that holds the axis: where the surface
+    /// may stand upright, as beside a star that is no graph.
+    bool steep = false;
+  };
+
+  /// Follows the section of the mesh with the plane through `start` that `along` and `axis` span,
+  /// from face `first` to where it passes the end. visit(m, right, left) is called where it crosses
+  /// the edge from right to left, at m, all as seen from the start; the walk ends when that returns
+  /// false. Returns whether the end was reached.
+  ///
+  /// The section is followed by the sides of the edges' ends alone, so that it needs no graph: it
+  /// goes up and down walls, over creases, and past its own start if the surface does.
+  template <class Visit>
+  bool follow(Index first, const Section& section, Visit&& visit) const {
+    const Vec3f side = cross(section.axis, section.along);  // positive on the left
+    const Vec3f forward = section.steep
+                              ? section.along
+                              : section.along - section.axis * dot(section.along, section.axis);
+    const float end = dot(forward, section.along);
+    Vec3f q[3];
+    float s[3];
+    for (int i = 0; i < 3; ++i) {
+      q[i] = corner(first, static_cast<std::size_t>(i)) - section.start, s[i] = dot(q[i], side);
+    }
+    int out = -1;  // the section leaves through the edge opposite this corner
+    for (int i = 0; i < 3; ++i) {
+      if (s[(i + 1) % 3] <= 0 && s[(i + 2) % 3] > 0) out = i;
+    }
+    if (out < 0) return false;
+    Vec3f right = q[(out + 1) % 3], left = q[(out + 2) % 3];
+    float sr = s[(out + 1) % 3], sl = s[(out + 2) % 3];
+    Index face = first;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const float share = sr / (sr - sl);
+      const Vec3f m = right + (left - right) * share;
+      if (dot(m, forward) >= end) return true;
+      if (!visit(m, right, left)) return false;
+      const Index c = faces_[face].opposite[static_cast<std::size_t>(out)];
+      if (c == kNone) return false;
+      face = c / 3;
+      const int at = static_cast<int>(c - 3 * face);
+      const Vec3f w = positions_[faces_[face].vertex[static_cast<std::size_t>(at)]] - section.start;
+      const float sw = dot(w, side);
+      // The edge from right to left is opposite c, turned round: right comes after c's successor.
+      if (sw > 0) {
+        left = w, sl = sw, out = at == 2 ? 0 : at + 1;
+      } else {
+        right = w, sr = sw, out = at == 0 ? 2 : at - 1;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr int kMostSteps = 2000;
+
+  void markRough(base::Job& job);
+
+  std::vector<Vec3f> positions_;
+  std::vector<Face> faces_;
+  std::vector<Index> cornerOf_;
+  std::vector<std::uint8_t> rough_;
+};
+
+}  // namespace tufa::reduce

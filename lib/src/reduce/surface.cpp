@@ -1,0 +1,135 @@
+#include "reduce/surface.h"
+
+#include <atomic>
+#include <limits>
+
+#include "reduce/star.h"
+
+namespace tufa::reduce {
+namespace {
+
+constexpr std::size_t kGrain = 16384;
+constexpr float kFar = std::numeric_limits<float>::max();
+
+// Vertices are marked from several threads at a time.
+void setFlag(std::uint8_t& flags, VertexFlag flag) {
+  std::atomic_ref<std::uint8_t>(flags).fetch_or(flag, std::memory_order_relaxed);
+}
+
+void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
+  constexpr int kMost = 64;
+  Vec3f normals[kMost];
+  const auto vertexAt = [&](Index c) { return s.triangles[c / 3].vertices[c % 3]; };
+  int n = 0;
+  Index sum = 0;  // each neighbour once as start and once as end of the link, unless it is open
+  const Vec3f p = s.position[v];
+  for (const Index c : corners.of(v)) {
+    const Index a = vertexAt(nextCorner(c)), b = vertexAt(previousCorner(c));
+    sum += a - b;
+    const Vec3f normal = cross(s.position[a] - p, s.position[b] - p);
+    const float l = length(normal);
+    if (!(l > 0)) continue;
+    s.quadric[v].addPlane(normal * (1 / l), l / 6);
+    if (n < kMost) normals[n++] = normal * (1 / l);
+  }
+  if (sum != 0) setFlag(s.flags[v], kBorder);
+  float leastCosine = -1;
+  if (n > 0) s.axis[v] = commonAxis(normals, n, leastCosine);
+  if (leastCosine >= kLeastCosine) return;
+  s.axis[v] = {};
+  setFlag(s.flags[v], kNarrow);
+  for (const Index c : corners.of(v)) {
+    setFlag(s.flags[vertexAt(nextCorner(c))], kNarrow);
+    setFlag(s.flags[vertexAt(previousCorner(c))], kNarrow);
+  }
+}
+
+// For each vertex the face nearest to it of those at reference vertices that it stands for.
+void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index> standsFor,
+               base::Job& job) {
+  std::vector<float> nearest(s.position.size(), kFar);
+  for (Index f = 0; f < reference.faces().size(); ++f) {
+    for (const Index r : reference.faces()[f].vertex) {
+      const Index v = standsFor[r];
+      const float d = squaredLength(reference.positions()[r] - s.position[v]);
+      if (d < nearest[v]) nearest[v] = d, s.face[v] = f;
+    }
+  }
+  job.forRanges(s.position.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (Index v = static_cast<Index>(begin); v < end; ++v) {
+      if (s.face[v] == kNone || !s.hasAxis(v)) continue;
+      const Index f = reference.locate(s.face[v], s.position[v], s.axis[v]);
+      if (f != kNone) s.face[v] = f;
+    }
+  });
+}
+
+}  // namespace
+
+Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                    base::Job& job) {
+  Surface s;
+  const std::size_t count = positions.size();
+  s.position.assign(positions.begin(), positions.end());
+  s.triangles.assign(triangles.begin(), triangles.end());
+  s.source.resize(count);
+  for (Index i = 0; i < count; ++i) s.source[i] = i;
+  s.quadric.assign(count, {});
+  s.axis.assign(count, {});
+  s.flags.assign(count, 0);
+  const CornersOfVertices corners(count, s.triangles);
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (Index v = static_cast<Index>(begin); v < end; ++v) makeVertex(s, corners, v);
+  });
+  return s;
+}
+
+void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index> standsFor,
+               base::Job& job) {
+  s.face.assign(s.position.size(), kNone);
+  s.owner.resize(reference.positions().size());
+  if (standsFor.empty()) {
+    for (Index t = 0; t < s.triangles.size(); ++t) {
+      for (const Index v : s.triangles[t].vertices) s.owner[v] = t, s.face[v] = t;
+    }
+    return;
+  }
+  const CornersOfVertices corners(s.position.size(), s.triangles);
+  job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (Index r = static_cast<Index>(begin); r < end; ++r) {
+      float nearest = kFar;
+      for (const Index c : corners.of(standsFor[r])) {
+        const float d2 = squaredDistanceToTriangle(reference.positions()[r], s.corner(c / 3, 0),
+                                                   s.corner(c / 3, 1), s.corner(c / 3, 2));
+        if (d2 < nearest) nearest = d2, s.owner[r] = c / 3;
+      }
+    }
+  });
+  findFaces(s, reference, standsFor, job);
+}
+
+void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
+  std::vector<Index> vertexNumber(s.position.size(), kNone), triangleNumber(s.triangles.size());
+  Index triangles = 0, vertices = 0;
+  for (Index t = 0; t < s.triangles.size(); ++t) {
+    if (dead[t] != 0) continue;
+    for (const Index v : s.triangles[t].vertices) vertexNumber[v] = 0;
+    triangleNumber[t] = triangles;
+    s.triangles[triangles++] = s.triangles[t];
+  }
+  for (Index v = 0; v < vertexNumber.size(); ++v) {
+    if (vertexNumber[v] == kNone) continue;
+    const Index n = vertexNumber[v] = vertices++;
+    s.position[n] = s.position[v], s.axis[n] = s.axis[v], s.quadric[n] = s.quadric[v];
+    s.flags[n] = s.flags[v], s.source[n] = s.source[v], s.face[n] = s.face[v];
+  }
+  s.triangles.resize(triangles);
+  for (Triangle& t : s.triangles) {
+    for (Index& v : t.vertices) v = vertexNumber[v];
+  }
+  s.position.resize(vertices), s.axis.resize(vertices), s.quadric.resize(vertices);
+  s.flags.resize(vertices), s.source.resize(vertices), s.face.resize(vertices);
+  for (Index& t : s.owner) t = triangleNumber[t];
+}
+
+}  // namespace tufa::reduce

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/job.h"
+#include "reduce/corners.h"
+#include "reduce/local_quadric.h"
+#include "reduce/reference_mesh.h"
+
+namespace tufa::reduce {
+
+enum VertexFlag : std::uint8_t {
+  kNarrow = 1,  ///< other surface is near: intersections are tested explicitly
+  kBorder = 2,  ///< on an open border: stays
+};
+
+/// The mesh between phases: arrays without gaps.
+struct Surface {
+  // For each vertex.
+  std::vector<Vec3f> position;
+  std::vector<Vec3f> axis;            ///< all triangles at the vertex face it; 0 if there is none
+  std::vector<LocalQuadric> quadric;  ///< seen from the position
+  std::vector<std::uint8_t> flags;    ///< of VertexFlag
+  std::vector<Index> source;          ///< the input's vertex that it still is, or kNone
+  std::vector<Index> face;            ///< of the reference, at the vertex seen along its axis
+
+  std::vector<Triangle> triangles;
+  /// For each reference vertex its owner: the triangle that answers for it.
+  std::vector<Index> owner;
+
+  /// A place as it will be written, which is what the guards judge; empty: as it is.
+  std::function<Vec3f(const Vec3f&)> rounded;
+
+  [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis[v]) != 0; }
+  [[nodiscard]] Vec3f roundedPlace(Vec3f p) const { return rounded ? rounded(p) : p; }
+  [[nodiscard]] const Vec3f& corner(Index triangle, std::size_t i) const {
+    return position[triangles[triangle].vertices[i]];
+  }
+};
+
+/// A surface of these positions and triangles, with quadrics, axes and border flags. Vertices
+/// without an axis, and those beside them, are narrow.
+[[nodiscard]] Surface makeSurface(std::span<const Vec3f> positions,
+                                  std::span<const Triangle> triangles, base::Job& job);
+
+/// Gives every reference vertex an owner at the vertex that stands for it, and every vertex a face
+/// of the reference. `standsFor`: for each reference vertex a vertex; empty if the two meshes are
+/// the same.
+void locateAll(Surface& surface, const ReferenceMesh& reference, std::span<const Index> standsFor,
+               base::Job& job);
+
+/// Removes the triangles marked in `dead` and the vertices without triangles; the others keep their
+/// order.
+void compact(Surface& surface, const std::vector<std::uint8_t>& dead);
+
+}  // namespace tufa::reduce
