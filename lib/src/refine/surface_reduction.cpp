@@ -92,7 +92,6 @@ AdaptiveMesh SurfaceReduction::toTolerance(double tolerance, bool drops) {
   reduction_->toTolerance(static_cast<float>(tolerance));
   AdaptiveMesh adaptive;
   const reduce::ReducedMesh reduced = extract(adaptive);
-  adaptive.tolerance = tolerance;
   if (!drops) return adaptive;
   findComponents();
   std::vector<std::uint8_t> isDropped(components_.size());
@@ -104,14 +103,11 @@ AdaptiveMesh SurfaceReduction::toTolerance(double tolerance, bool drops) {
 }
 
 AdaptiveMesh SurfaceReduction::toCount(std::size_t triangles, bool drops) {
-  // Farther than this no vertex can go from another.
-  const double most = size_;
   const auto count = static_cast<reduce::Index>(
       std::min<std::size_t>(triangles, std::numeric_limits<reduce::Index>::max()));
-  const float tolerance = reduction_->toCount(count, static_cast<float>(most));
+  reduction_->toCount(count, static_cast<float>(size_));
   AdaptiveMesh adaptive;
   const reduce::ReducedMesh reduced = extract(adaptive);
-  adaptive.tolerance = static_cast<double>(tolerance);
   std::size_t left = reduced.triangles.size();
   if (!drops || left <= triangles) return adaptive;
   findComponents();
