@@ -6,6 +6,7 @@
 #include "refine/adapt.h"
 #include "refine/finish.h"
 #include "refine/surface_model.h"
+#include "refine/surface_reduction.h"
 #include "uniform/uniform_surface.h"
 
 namespace tufa {
@@ -13,6 +14,19 @@ namespace {
 
 constexpr uniform::StageEnds kUniformEnds = {0.15, 0.3, 0.7, 0.85, 0.9, 0.95};
 constexpr uniform::StageEnds kAdaptiveEnds = {0.08, 0.15, 0.36, 0.46, 0.48, 0.5};
+
+refine::AdaptiveMesh makeAdaptive(refine::SurfaceModel& model, const octree::CutRule& rule,
+                                  const ContourOptions& options, base::Job& job) {
+  if (octree::maySimplify(options)) {
+    job.beginStage("reduce", 0.95);
+    return refine::SurfaceReduction(model, rule, job).toTolerance(rule.tolerance, false);
+  }
+  job.beginStage("forest", 0.7);
+  model.buildClusters(rule, job);
+  job.beginStage("cut", 0.95);
+  const auto repair = model.repair(job);
+  return refine::adapt(model, rule, {repair ? &*repair : nullptr}, job);
+}
 
 Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
                  ContourReport& report, base::Job& job) {
@@ -26,12 +40,7 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
     extracted.candidates = model.candidates();
     extracted.mesh = model.takeMesh();
   } else {
-    job.beginStage("forest", 0.7);
-    model.buildClusters(rule, job);
-    job.beginStage("cut", 0.95);
-    const auto repair = model.repair(job);
-    refine::AdaptiveMesh adaptive = refine::adapt(
-        model, rule, {repair ? &*repair : nullptr, octree::maySimplify(options)}, job);
+    refine::AdaptiveMesh adaptive = makeAdaptive(model, rule, options, job);
     report.certificate =
         refine::certificateOf(adaptive, model.affine().voxelSize(), options.keepLeaves);
     report.intersectionsFound += adaptive.repaired.pairsFound;

@@ -85,7 +85,12 @@ bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, cons
 }  // namespace
 
 std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context, const Mesh& mesh,
-                                          double margin, base::Job& job) {
+                                          double margin, base::Job& job,
+                                          const std::vector<std::uint8_t>* marked) {
+  const auto isMeant = [&](const Quad& quad) {
+    return marked == nullptr || std::any_of(quad.vertices.begin(), quad.vertices.end(),
+                                            [&](VertexIndex v) { return (*marked)[v] != 0; });
+  };
   std::vector<std::uint32_t> candidates;
   std::mutex mutex;
   job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
@@ -93,10 +98,13 @@ std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context, c
     SharedCells shared;
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = context.topology.blocks[i];
+      const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
+      if (std::none_of(first, first + block.quadCount, isMeant)) continue;
       shared.fill(context.topology, block);
       const Coord& origin = context.blocks.origin(block.block);
       forQuads(context, block, [&](const QuadPlace& place) {
         const Quad& quad = mesh.quads[place.quad];
+        if (!isMeant(quad)) return;
         const auto [x, y, z] = place.start;
         const Position start = context.affine.position(origin, x, y, z);
         const Vec3 lower(start.x, start.y, start.z);

@@ -23,9 +23,9 @@ namespace tufa::intersect {
 ///
 /// Candidates are the quads that fail this, that touch a cell of several vertices, or that have a
 /// vertex out of its cell. Every intersecting pair contains one. Cost: one pass over the quads, two
-/// planes each.
-[[nodiscard]] std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context,
-                                                        const Mesh& mesh, double margin,
-                                                        base::Job& job);
+/// planes each. With `marked`, only quads with a marked vertex are looked at.
+[[nodiscard]] std::vector<std::uint32_t> findCandidates(
+    const uniform::SurfaceView& context, const Mesh& mesh, double margin, base::Job& job,
+    const std::vector<std::uint8_t>* marked = nullptr);
 
 }  // namespace tufa::intersect

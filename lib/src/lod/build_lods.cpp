@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "base/box.h"
 #include "base/job.h"
@@ -12,6 +13,7 @@
 #include "refine/adapt.h"
 #include "refine/finish.h"
 #include "refine/surface_model.h"
+#include "refine/surface_reduction.h"
 
 namespace tufa {
 namespace {
@@ -127,39 +129,63 @@ void setCoverage(LodChain& chain, const LodOptions& options) {
   }
 }
 
+// Makes the LODs one after the other: by reducing the one before, or each by a cut of its own.
+class ChainMaker {
+ public:
+  ChainMaker(refine::SurfaceModel& model, const octree::CutRule& rule, const LodOptions& options,
+             base::Job& job)
+      : model_(model), rule_(rule), drops_(options.allowTopologyChange), job_(job) {
+    if (octree::maySimplify(options.contour)) {
+      job.beginStage("reference", kForestEnd);
+      reduction_.emplace(model, rule_, job);
+    } else {
+      job.beginStage("forest", kForestEnd);
+      model.buildClusters(rule, job);
+      repair_ = model.repair(job);
+    }
+  }
+
+  refine::AdaptiveMesh next(const Target& target) {
+    if (!reduction_) {
+      rule_.tolerance = target.tolerance;
+      return refine::adapt(model_, rule_, {repair_ ? &*repair_ : nullptr, drops_}, job_);
+    }
+    return target.triangles > 0 ? reduction_->toCount(target.triangles, drops_)
+                                : reduction_->toTolerance(target.tolerance, drops_);
+  }
+
+ private:
+  refine::SurfaceModel& model_;
+  octree::CutRule rule_;
+  bool drops_;
+  base::Job& job_;
+  std::optional<refine::SurfaceReduction> reduction_;
+  std::optional<refine::Repair> repair_;
+};
+
 LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, ContourReport& report,
                     base::Job& job) {
   const Clock::time_point start = Clock::now();
   const std::vector<Target> targets = targetsOf(options);
   ContourOptions contour = options.contour;
   contour.uniform = false;
-  octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid));
+  const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid));
   job.beginStage("blocks", kEnds.blocks);
   refine::SurfaceModel model(grid::openVolume(grid, contour, job), contour, kEnds, job);
   report = model.report();
   LodChain chain;
   chain.voxelSize = model.affine().voxelSize();
   if (model.mesh().positions.empty()) return chain;
-  job.beginStage("forest", kForestEnd);
-  model.buildClusters(rule, job);
-  const auto repair = model.repair(job);
+  ChainMaker maker(model, rule, options, job);
   chain.sharedSeconds = secondsSince(start);
 
-  const bool collapses = octree::maySimplify(contour);
-  refine::Measured kept;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Clock::time_point begin = Clock::now();
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
     job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
     const Target& target = targets[i];
     const std::size_t most = i > 0 ? tooMany(target, chain.levels.back()) : 0;
-    const refine::Goal goal{target.triangles, target.triangles > 0 ? 0 : most};
-    const refine::AdaptOptions how{repair ? &*repair : nullptr, collapses, goal,
-                                   options.allowTopologyChange};
-    rule.tolerance = target.triangles > 0 && i > 0 ? rule.tolerance : target.tolerance;
-    refine::AdaptiveMesh adaptive = i > 0 && collapses ? coarsen(model, rule, how, job, kept)
-                                                       : adapt(model, rule, how, job, &kept);
-    rule.tolerance = adaptive.tolerance;
+    refine::AdaptiveMesh adaptive = maker.next(target);
     const std::size_t triangles = adaptive.extracted.mesh.triangleCount();
     const bool coarser = i == 0 || triangles < most;
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {

@@ -12,7 +12,7 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   partition_ = &partition;
   number_ = number;
   limits_ = limits;
-  squaredDistance_ = limits.distance * limits.distance;
+  setDistance(limits.distance);
   box_ = partition.box(number);
   const auto vertices = partition.vertices(number);
   vertexCount_ = static_cast<Index>(vertices.size());

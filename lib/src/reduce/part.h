@@ -107,6 +107,12 @@ class Part {
 
   // part_distance.cpp.
   Outcome distanceGuard(Index a, Index b);
+  void setDistance(float distance) {
+    distance_ = distance;
+    squaredDistance_ = distance * distance;
+  }
+  bool scaleTolerance(std::span<const Index> triangles, Index vertex);
+  bool scaleStarTolerance(Index a);
   bool samplesNear(Index t);
   bool sampleNearGraph(Index s, Vec3f p);
   bool sampleNearStar(Index s, Vec3f p);
@@ -140,7 +146,7 @@ class Part {
   PhaseLimits limits_;
   OperationCounts counts_;
   Index number_ = 0, vertexCount_ = 0, triangleCount_ = 0;
-  float squaredDistance_ = 0;
+  float distance_ = 0, squaredDistance_ = 0;  ///< allowed at the attempt at hand
   Box3f box_;
 
   // For each vertex.

@@ -22,6 +22,7 @@ namespace tufa::reduce {
 
 Outcome Part::distanceGuard(Index a, Index b) {
   taken_.clear();
+  if (reference_->isScaled() && !scaleStarTolerance(a)) return Outcome::Sample;
   bool isNear = true;
   for (int i = 0; i < size_ && isNear; ++i) isNear = samplesNear(at_[i] / 3);
   if (!isNear || !samplesNear(left_ / 3) || !samplesNear(right_ / 3)) return Outcome::Sample;
@@ -29,6 +30,32 @@ Outcome Part::distanceGuard(Index a, Index b) {
   if (isOn(Outcome::Crossing) && !crossingsNear()) return Outcome::Crossing;
   if (isOn(Outcome::Face) && !facesNear()) return Outcome::Face;
   return Outcome::Done;
+}
+
+// Sets the tolerance of the attempt to the least one at the samples of some triangles and at the
+// reference below a vertex of them. Whether there is any left.
+bool Part::scaleTolerance(std::span<const Index> triangles, Index vertex) {
+  if (face_[vertex] == kNone) return false;
+  const auto& below = reference_->faces()[face_[vertex]].vertex;
+  float scale = reference_->scaleAt(below[0]);
+  for (const Index r : below) scale = std::min(scale, reference_->scaleAt(r));
+  for (const Index t : triangles) {
+    for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
+      scale = std::min(scale, reference_->scaleAt(sampleIds_[s]));
+    }
+  }
+  setDistance(limits_.distance * scale);
+  return scale > 0;
+}
+
+// The same for the triangles that a collapse changes.
+bool Part::scaleStarTolerance(Index a) {
+  std::array<Index, kMostRing + 2> triangles;
+  for (int i = 0; i < size_; ++i) triangles[static_cast<std::size_t>(i)] = at_[i] / 3;
+  const auto count = static_cast<std::size_t>(size_);
+  triangles[count] = left_ / 3;
+  triangles[count + 1] = right_ / 3;
+  return scaleTolerance({triangles.data(), count + 2}, a);
 }
 
 // All samples of a triangle that changes; notes the new triangles that take them. One that is too
@@ -57,7 +84,7 @@ bool Part::sampleNearGraph(Index s, Vec3f p) {
   taken_.push_back({s, at_[w] / 3});
   const bool isOutside =
       (z_[w + 1].x - z_[w].x) * (q.y - z_[w].y) - (z_[w + 1].y - z_[w].y) * (q.x - z_[w].x) < 0;
-  if (!isOutside && std::abs(dot(q, slope_[w])) <= limits_.distance) return true;
+  if (!isOutside && std::abs(dot(q, slope_[w])) <= distance_) return true;
   return squaredDistanceToTriangle(q, {}, z_[w], z_[w + 1]) <= squaredDistance_;
 }
 
@@ -92,7 +119,7 @@ bool Part::apexNear(Index a, Index b) {
   if (start == kNone) return false;
   apexFace_ = reference_->locate(start, place_, n_, kMostSteps);
   if (apexFace_ == kNone) return false;
-  return reference_->distance(apexFace_, place_) <= limits_.distance || !isOn(Outcome::Apex);
+  return reference_->distance(apexFace_, place_) <= distance_ || !isOn(Outcome::Apex);
 }
 
 // All crossings of the spokes with edges of the reference; the sharpest spoke first, as it is the

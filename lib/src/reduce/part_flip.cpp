@@ -120,7 +120,9 @@ bool Part::flipDistance(const Index* v) {
   const Vec3f y = position_[v[0]], u = position_[v[1]], w = position_[v[2]], x = position_[v[3]];
   const Index t0 = flip_[0] / 3, t1 = flip_[1] / 3;
   taken_.clear();
-  for (const Index t : {t0, t1}) {
+  const std::array<Index, 2> both{t0, t1};
+  if (reference_->isScaled() && !scaleTolerance(both, v[0])) return false;
+  for (const Index t : both) {
     for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
       const Vec3f p = samples_[s].p;
       const float d0 = squaredDistanceToTriangle(p, y, u, x);

@@ -30,10 +30,10 @@ constexpr float kMostStep = 1.6f;
 }  // namespace
 
 Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor,
-                     Options options, base::Job& job)
+                     std::vector<float> scales, Options options, base::Job& job)
     : options_(std::move(options)),
       job_(job),
-      reference_(reference.positions, reference.triangles, job),
+      reference_(reference.positions, reference.triangles, std::move(scales), job),
       surface_(makeSurface(input.positions, input.triangles, job)) {
   surface_.rounded = options_.rounded;
   locateAll(surface_, reference_, standsFor, job);
@@ -155,7 +155,7 @@ Certificate Reduction::certificate() const {
 }
 
 ReducedMesh Reduction::mesh() const {
-  return {surface_.position, surface_.triangles, surface_.source};
+  return {surface_.position, surface_.triangles, surface_.source, surface_.face};
 }
 
 }  // namespace tufa::reduce

@@ -30,6 +30,8 @@ struct ReducedMesh {
   std::vector<Triangle> triangles;
   /// For each position the input's vertex that it still is, or kNone if it was placed anew.
   std::vector<Index> sources;
+  /// For each position the face of the reference below it.
+  std::vector<Index> faces;
 };
 
 struct Options {
@@ -54,7 +56,7 @@ struct Options {
 /// Reduces a triangle mesh to a distance from a reference, or to a number of triangles, in one pass
 /// of local operations, each of them guarded: what is made stays.
 ///
-///     Reduction reduction(input, reference, standsFor, options, job);
+///     Reduction reduction(input, reference, standsFor, scales, options, job);
 ///     reduction.toTolerance(0.1f);  // again with a larger one: the next level of a chain
 ///     const Certificate certificate = reduction.certificate();
 ///     const ReducedMesh mesh = reduction.mesh();
@@ -69,9 +71,10 @@ struct Options {
 class Reduction {
  public:
   /// `standsFor`: for each reference vertex the input vertex that stands for it; empty if the input
-  /// is the reference. `job` must outlive this.
-  Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor, Options options,
-            base::Job& job);
+  /// is the reference. `scales`: for each reference vertex what the tolerance is multiplied with
+  /// there, 0: nothing may change; empty: 1 everywhere. `job` must outlive this.
+  Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor,
+            std::vector<float> scales, Options options, base::Job& job);
   ~Reduction();
   Reduction(const Reduction&) = delete;
   Reduction& operator=(const Reduction&) = delete;

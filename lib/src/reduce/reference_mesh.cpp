@@ -2,6 +2,8 @@
 
 #include "reduce/star.h"
 
+#include <utility>
+
 namespace tufa::reduce {
 namespace {
 
@@ -11,11 +13,12 @@ constexpr float kRoughCosine = 0.65f;
 }  // namespace
 
 ReferenceMesh::ReferenceMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
-                             base::Job& job)
+                             std::vector<float> scales, base::Job& job)
     : positions_(positions.begin(), positions.end()),
       faces_(triangles.size()),
       cornerOf_(positions.size(), kNone),
-      rough_(positions.size(), 0) {
+      rough_(positions.size(), 0),
+      scales_(std::move(scales)) {
   const std::vector<Index> opposite = oppositeCorners(positions.size(), triangles, job);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {

@@ -19,13 +19,18 @@ class ReferenceMesh {
     std::array<Index, 3> opposite;  ///< the corner across the edge opposite each corner, or kNone
   };
 
+  /// `scales`: see scaleAt(); one for each position, or none.
   ReferenceMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
-                base::Job& job);
+                std::vector<float> scales, base::Job& job);
 
   [[nodiscard]] std::span<const Vec3f> positions() const { return positions_; }
   [[nodiscard]] std::span<const Face> faces() const { return faces_; }
   /// One of a vertex's corners, or kNone.
   [[nodiscard]] Index cornerOf(Index vertex) const { return cornerOf_[vertex]; }
+  /// Whether the tolerance differs from place to place.
+  [[nodiscard]] bool isScaled() const { return !scales_.empty(); }
+  /// What the tolerance is multiplied with at a vertex.
+  [[nodiscard]] float scaleAt(Index vertex) const { return isScaled() ? scales_[vertex] : 1; }
   /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
   /// what is seen along one axis may not be all.
   [[nodiscard]] bool isRough(Index vertex) const { return rough_[vertex] != 0; }
@@ -130,6 +135,7 @@ class ReferenceMesh {
   std::vector<Face> faces_;
   std::vector<Index> cornerOf_;
   std::vector<std::uint8_t> rough_;
+  std::vector<float> scales_;
 };
 
 }  // namespace tufa::reduce

@@ -11,22 +11,6 @@
 namespace tufa::refine {
 namespace {
 
-// A mesh whose edges will be collapsed is cut at this share of the tolerance.
-constexpr double kCutShare = 0.5;
-// A mesh that is to have a number of triangles is cut with kLeastCut to kMostCut times as many, at
-// a tolerance found in kMostSteps steps from kFirstTolerance, voxels. Edges are then collapsed at
-// kFirstShare of that to begin with, or kLeastTolerance.
-constexpr double kLeastCut = 2, kMostCut = 4;
-constexpr int kMostSteps = 12;
-constexpr double kFirstTolerance = 0.1;
-constexpr double kFirstShare = 0.25;
-constexpr double kLeastTolerance = 0.01;
-// Cells along creases need far more triangles than collapsed edges: a cut at more than this is
-// worse than what comes of collapsing a finer one.
-constexpr double kMostTolerance = 0.25;
-// Components are left out for a number of triangles up to so many times the size of the smallest.
-constexpr double kDropStep = 2;
-
 std::vector<VertexIndex> baseVerticesOf(const octree::Cut& cut) {
   std::vector<VertexIndex> vertices;
   vertices.reserve(cut.clusters.size());
@@ -82,53 +66,6 @@ Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::ClusterFo
   }
 }
 
-// The tolerance of a cut with two to four times so many triangles, found from the errors stored in
-// the forest, without making a mesh; 0 if all cells together give no more.
-double toleranceFor(std::size_t triangles, const octree::ClusterForest& forest,
-                    const uniform::CellTopology& topology, octree::CutRule rule, base::Job& job) {
-  const octree::CellFlags none(forest);
-  const auto wanted = static_cast<double>(triangles);
-  // A closed mesh has two triangles for each vertex.
-  if (2.0 * static_cast<double>(topology.vertexCount) <= kLeastCut * wanted) return 0;
-  double low = 0, high = 0;
-  rule.tolerance = kFirstTolerance;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const octree::CellFlags merged = octree::mergeCells(forest, rule, none, job);
-    const auto found =
-        2.0 * static_cast<double>(octree::makeCut(forest, topology, merged, job).clusters.size());
-    if (found >= kLeastCut * wanted && found <= kMostCut * wanted) break;
-    (found > kLeastCut * wanted ? low : high) = rule.tolerance;
-    // On curved surfaces the number goes with the inverse of the tolerance.
-    const double guess = rule.tolerance * found / (std::sqrt(kLeastCut * kMostCut) * wanted);
-    const bool between = guess > low && (high == 0 || guess < high);
-    rule.tolerance = between ? guess : (high > 0 ? 0.5 * (low + high) : 2 * low);
-  }
-  return rule.tolerance;
-}
-
-// Collapses edges, without the components that may be dropped.
-Measured collapseRest(const uniform::SurfaceView& base, Measured mesh, octree::CutRule& rule,
-                      const AdaptOptions& options, distance::Certifier& certifier,
-                      std::vector<Dropped>& dropped, base::Job& job) {
-  octree::CutRule sizes = rule;
-  double next = options.drop ? dropComponents(base, sizes, mesh, dropped) : 0;
-  if (!options.simplify) {
-    if (!dropped.empty()) repairAndMeasure(certifier, options.repair, mesh, job);
-    return mesh;
-  }
-  for (;;) {
-    octree::CutRule own = rule;
-    Measured collapsed = simplifyCut(base, mesh, own, options.goal, options.repair, certifier, job);
-    const std::size_t count = collapsed.made.mesh.triangleCount();
-    if (options.goal.triangles == 0 || count <= options.goal.triangles || next == 0) {
-      rule = own;
-      return collapsed;
-    }
-    sizes.tolerance = kDropStep * std::max(next, sizes.tolerance);
-    next = dropComponents(base, sizes, mesh, dropped);
-  }
-}
-
 // The share of uniform vertices and quads that a mesh stands for; the others count as without
 // error.
 double presentShare(const Mesh& base, const octree::Cut& cut, const std::vector<std::uint8_t>& used,
@@ -150,7 +87,6 @@ double presentShare(const Mesh& base, const octree::Cut& cut, const std::vector<
 
 AdaptiveMesh finish(const SurfaceModel& model, const octree::CutRule& rule, Measured mesh,
                     AdaptiveMesh adaptive, base::Job& job) {
-  adaptive.tolerance = rule.tolerance;
   adaptive.largestError = mesh.deviation.largest;
   adaptive.meanError = mesh.deviation.mean;
   if (!mesh.deviation.coarse.empty() || !mesh.deviation.farPoints.empty()) {
@@ -175,33 +111,17 @@ AdaptiveMesh finish(const SurfaceModel& model, const octree::CutRule& rule, Meas
 }  // namespace
 
 AdaptiveMesh adapt(const SurfaceModel& model, const octree::CutRule& rule,
-                   const AdaptOptions& options, base::Job& job, Measured* kept) {
+                   const AdaptOptions& options, base::Job& job) {
   const uniform::SurfaceView base = model.view();
   const octree::ClusterForest& forest = model.forest();
   AdaptiveMesh adaptive;
-  octree::CutRule cutRule = rule, last = rule;
-  if (options.simplify) cutRule.tolerance *= kCutShare;
-  if (options.simplify && options.goal.triangles > 0) {
-    cutRule.tolerance = std::min(
-        kMostTolerance, toleranceFor(options.goal.triangles, forest, base.topology, rule, job));
-    last.tolerance = std::max(kFirstShare * cutRule.tolerance, kLeastTolerance);
+  distance::Certifier certifier(base, model.reference(), rule, job);
+  Measured mesh = cutAndMeasure(base, forest, rule, options.repair, certifier, adaptive, job);
+  if (options.drop) {
+    (void)dropComponents(base, rule, mesh, adaptive.dropped);
+    if (!adaptive.dropped.empty()) repairAndMeasure(certifier, options.repair, mesh, job);
   }
-  distance::Certifier certifier(base, model.reference(), cutRule, job);
-  Measured mesh = cutAndMeasure(base, forest, cutRule, options.repair, certifier, adaptive, job);
-  mesh = collapseRest(base, std::move(mesh), last, options, certifier, adaptive.dropped, job);
-  if (kept != nullptr) *kept = mesh;
-  return finish(model, last, std::move(mesh), std::move(adaptive), job);
-}
-
-AdaptiveMesh coarsen(const SurfaceModel& model, const octree::CutRule& rule,
-                     const AdaptOptions& options, base::Job& job, Measured& kept) {
-  const uniform::SurfaceView base = model.view();
-  AdaptiveMesh adaptive;
-  octree::CutRule last = rule;
-  distance::Certifier certifier(base, model.reference(), last, job);
-  kept = collapseRest(base, std::move(kept), last, options, certifier, adaptive.dropped, job);
-  adaptive.rounds = 1;
-  return finish(model, last, kept, std::move(adaptive), job);
+  return finish(model, rule, std::move(mesh), std::move(adaptive), job);
 }
 
 Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "intersect/candidates.h"
 #include "refine/lone_samples.h"
 #include "refine/rounding.h"
+#include "refine/withdraw_placements.h"
 #include "topology/misplaced.h"
 #include "uniform/place_vertices.h"
 #include "uniform/quads.h"
@@ -25,8 +25,11 @@ class UniformRepair {
     report_.movedVertices = unfoldLoneComponents(mesh_, sourceOf(surface_, job_), job_);
     // Rounding may move both polygons of a pair.
     const double margin = 2 * kMostRounding * surface_.affine().leastHeight();
-    candidates_ = intersect::findCandidates(surface_.view(), mesh_, margin, job_);
-    repairCandidates();
+    Withdrawal withdrawn = withdrawPlacements(surface_, margin, job_);
+    candidates_ = std::move(withdrawn.candidates);
+    report_.intersectionsFound = withdrawn.pairsFound;
+    report_.movedVertices += withdrawn.vertices;
+    if (withdrawn.left > 0) repairCandidates();
     for (int i = 0; i < kMostReturns && putBackComponents(); ++i) repairCandidates();
     return std::move(candidates_);
   }
@@ -87,8 +90,9 @@ class UniformRepair {
 Source sourceOf(const uniform::UniformSurface& surface, base::Job& job) {
   Source source;
   source.massPoints = [&surface, &job](const std::vector<VertexIndex>& vertices) {
-    return uniform::massPoints(surface.volume.blocks, surface.volume.scale, surface.topology,
-                               surface.affine(), vertices, job);
+    return uniform::fallbackPoints(uniform::Fallback::MassPoint, surface.volume.blocks,
+                                   surface.volume.scale, surface.topology, surface.affine(),
+                                   vertices, job);
   };
   source.crossings = [&surface, &job](const std::vector<intersect::PolygonIndex>& polygons) {
     return uniform::quadCrossings(surface.view(), polygons, job);

@@ -182,6 +182,10 @@ void BlockVertices::solveVertices() {
   }
 }
 
+Vector BlockVertices::plainPoint(std::size_t vertex) const {
+  return solve(qefs_[vertex + 1].seenFrom(centers_[vertex]), kHalfCell);
+}
+
 void BlockVertices::placeAtCrease(std::size_t vertex) {
   const int cell = cells_[vertex];
   const Qef local = qefs_[vertex + 1].seenFrom(centers_[vertex]);

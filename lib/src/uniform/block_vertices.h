@@ -25,7 +25,7 @@ class BlockVertices {
   void place(const grid::Blocks& blocks, const CellTopology& topology, const SurfaceBlock& block,
              grid::Accessor& accessor);
 
-  /// The first half of place(): what massPoint() needs.
+  /// The first half of place(): what massPoint() and plainPoint() need.
   void gather(const grid::Blocks& blocks, const CellTopology& topology, const SurfaceBlock& block,
               grid::Accessor& accessor);
 
@@ -35,6 +35,8 @@ class BlockVertices {
   [[nodiscard]] const std::vector<Vector>& points() const { return points_; }
   /// The mean of the crossings of a vertex, in voxels from the block's first lattice point.
   [[nodiscard]] Vector massPoint(std::size_t vertex) const { return qefs_[vertex + 1].massPoint(); }
+  /// The point that a vertex's QEF alone gives, in voxels from the middle of its cell.
+  [[nodiscard]] Vector plainPoint(std::size_t vertex) const;
   /// The sum of the normals gathered at each vertex, in index space.
   [[nodiscard]] const std::vector<Vector>& normals() const { return normals_; }
   /// A vertex on a crease or corner, and the normals of the sheets that meet there, in index space.

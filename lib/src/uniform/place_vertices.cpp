@@ -19,6 +19,13 @@ MeetingSheets worldSheets(const BlockVertices::Meeting& meeting, const grid::Aff
   return sheets;
 }
 
+// A point given in voxels from the middle of a cell of a block.
+Position inCell(const grid::Affine& affine, const Coord& origin, int cell, const Vector& point) {
+  return affine.position(origin, (cell >> 6) + 0.5 + static_cast<double>(point[0]),
+                         ((cell >> 3) & 7) + 0.5 + static_cast<double>(point[1]),
+                         (cell & 7) + 0.5 + static_cast<double>(point[2]));
+}
+
 }  // namespace
 
 VertexSheets placeVertices(const grid::Blocks& blocks, const grid::FieldScale& scale,
@@ -38,10 +45,7 @@ VertexSheets placeVertices(const grid::Blocks& blocks, const grid::FieldScale& s
       for (std::size_t v = 0; v < work.cells().size(); ++v) {
         const int cell = work.cells()[v];
         const Vector& point = work.points()[v];
-        mesh.positions[block.firstVertex + v] =
-            affine.position(origin, (cell >> 6) + 0.5 + static_cast<double>(point[0]),
-                            ((cell >> 3) & 7) + 0.5 + static_cast<double>(point[1]),
-                            (cell & 7) + 0.5 + static_cast<double>(point[2]));
+        mesh.positions[block.firstVertex + v] = inCell(affine, origin, cell, point);
         if (!normals) continue;
         const Vector& n = work.normals()[v];
         mesh.normals[block.firstVertex + v] = affine.normal(n[0], n[1], n[2]);
@@ -62,9 +66,10 @@ VertexSheets placeVertices(const grid::Blocks& blocks, const grid::FieldScale& s
   return sheets;
 }
 
-std::vector<Position> massPoints(const grid::Blocks& blocks, const grid::FieldScale& scale,
-                                 const CellTopology& topology, const grid::Affine& affine,
-                                 const std::vector<VertexIndex>& vertices, base::Job& job) {
+std::vector<Position> fallbackPoints(Fallback which, const grid::Blocks& blocks,
+                                     const grid::FieldScale& scale, const CellTopology& topology,
+                                     const grid::Affine& affine,
+                                     const std::vector<VertexIndex>& vertices, base::Job& job) {
   std::vector<Position> points(vertices.size());
   job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
     const auto accessor = blocks.accessor();
@@ -77,10 +82,16 @@ std::vector<Position> massPoints(const grid::Blocks& blocks, const grid::FieldSc
       if (next == vertices.end() || *next >= last) continue;
       work.gather(blocks, topology, block, *accessor);
       for (; next != vertices.end() && *next < last; ++next) {
-        const Vector point = work.massPoint(*next - block.firstVertex);
-        points[static_cast<std::size_t>(next - vertices.begin())] =
-            affine.position(blocks.origin(block.block), static_cast<double>(point[0]),
-                            static_cast<double>(point[1]), static_cast<double>(point[2]));
+        const std::size_t vertex = *next - block.firstVertex;
+        Position& at = points[static_cast<std::size_t>(next - vertices.begin())];
+        const Coord& origin = blocks.origin(block.block);
+        if (which == Fallback::Plain) {
+          at = inCell(affine, origin, work.cells()[vertex], work.plainPoint(vertex));
+        } else {
+          const Vector point = work.massPoint(vertex);
+          at = affine.position(origin, static_cast<double>(point[0]), static_cast<double>(point[1]),
+                               static_cast<double>(point[2]));
+        }
       }
     }
   });

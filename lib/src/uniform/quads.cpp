@@ -134,6 +134,29 @@ LatticeCrossing crossingOf(const SurfaceView& context, const SurfaceBlock& block
   return {{point.x, point.y, point.z}, context.affine.axis(axis) * (place.upward ? 1.0 : -1.0)};
 }
 
+// Chooses the diagonals of the quads that `isMeant`.
+template <class IsMeant>
+void splitWhere(const SurfaceView& context, const IsMeant& isMeant, Mesh& mesh, base::Job& job) {
+  const CellTopology& topology = context.topology;
+  job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    const auto accessor = context.blocks.accessor();
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = topology.blocks[i];
+      const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
+      if (std::none_of(first, first + block.quadCount, isMeant)) continue;
+      forQuads(context, block, [&](const QuadPlace& place) {
+        Quad& quad = mesh.quads[place.quad];
+        if (!isMeant(quad)) return;
+        const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
+        if (chooser.isSecondDiagonalBetterAtCrease(
+                context.sheets, [&] { return crossingOf(context, block, place, *accessor); })) {
+          turn(quad);
+        }
+      });
+    }
+  });
+}
+
 }  // namespace
 
 void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job) {
@@ -161,27 +184,19 @@ void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job) {
 }
 
 void splitAtCreases(const SurfaceView& context, Mesh& mesh, base::Job& job) {
-  const CellTopology& topology = context.topology;
-  job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-    const auto accessor = context.blocks.accessor();
-    for (std::size_t i = begin; i < end; ++i) {
-      const SurfaceBlock& block = topology.blocks[i];
-      const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
-      if (std::none_of(first, first + block.quadCount,
-                       [&](const Quad& quad) { return isNearCrease(context.sheets, quad); })) {
-        continue;
-      }
-      forQuads(context, block, [&](const QuadPlace& place) {
-        Quad& quad = mesh.quads[place.quad];
-        if (!isNearCrease(context.sheets, quad)) return;
-        const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
-        if (chooser.isSecondDiagonalBetterAtCrease(
-                context.sheets, [&] { return crossingOf(context, block, place, *accessor); })) {
-          turn(quad);
-        }
-      });
-    }
-  });
+  splitWhere(
+      context, [&](const Quad& quad) { return isNearCrease(context.sheets, quad); }, mesh, job);
+}
+
+void splitAgain(const SurfaceView& context, const std::vector<std::uint8_t>& marked, Mesh& mesh,
+                base::Job& job) {
+  splitWhere(
+      context,
+      [&](const Quad& quad) {
+        return std::any_of(quad.vertices.begin(), quad.vertices.end(),
+                           [&](VertexIndex vertex) { return marked[vertex] != 0; });
+      },
+      mesh, job);
 }
 
 std::vector<Position> quadCrossings(const SurfaceView& context,

@@ -18,6 +18,10 @@ void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job);
 /// where they will stay.
 void splitAtCreases(const SurfaceView& context, Mesh& mesh, base::Job& job);
 
+/// The same for all quads with a marked vertex.
+void splitAgain(const SurfaceView& context, const std::vector<std::uint8_t>& marked, Mesh& mesh,
+                base::Job& job);
+
 /// Where the surface crosses the lattice edges of some quads, given in rising order, by linear
 /// interpolation.
 [[nodiscard]] std::vector<Position> quadCrossings(const SurfaceView& context,

@@ -50,6 +50,12 @@ class VertexSheets {
     kinds_[vertex] = Kind::Meeting;
     meeting_[vertex] = sheets;
   }
+  /// Takes back a place at a crease: the vertex is in its cell again, and on no known crease.
+  void withdraw(VertexIndex vertex) {
+    outOfCell_[vertex] = 0;
+    if (isSharp(vertex)) kinds_[vertex] = Kind::Unknown;
+    meeting_.erase(vertex);
+  }
   /// The sheets of a vertex; count 0 if they are unknown.
   [[nodiscard]] MeetingSheets sheets(const Mesh& mesh, VertexIndex vertex) const;
   /// Number of vertices on creases and corners.

@@ -1,0 +1,219 @@
+#include "refine/surface_reduction.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/box.h"
+#include "base/polygons.h"
+#include "distance/certifier.h"
+#include "topology/misplaced.h"
+
+namespace tufa::refine {
+namespace {
+
+using base::Vec3f;
+
+constexpr std::size_t kGrain = 16384;
+
+std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
+  std::vector<Triangle> faces(2 * mesh.quads.size());
+  job.forRanges(mesh.quads.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& v = mesh.quads[i].vertices;
+      faces[2 * i] = {v[0], v[1], v[2]};
+      faces[2 * i + 1] = {v[0], v[2], v[3]};
+    }
+  });
+  return faces;
+}
+
+// What the rule multiplies the tolerance with at each vertex; none if that is 1 everywhere.
+std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
+                            const octree::CutRule& rule, base::Job& job) {
+  if (!rule.scale) return {};
+  octree::CutRule one = rule;
+  one.tolerance = 1;
+  std::vector<float> scales(mesh.positions.size());
+  job.forRanges(scales.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double scale = distance::toleranceAt(one, affine, Vec3(mesh.positions[i]));
+      scales[i] = static_cast<float>(std::max(0.0, scale));
+    }
+  });
+  return scales;
+}
+
+// The normal of the uniform mesh at the point of a face next to p.
+Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
+  const Vec3 a(mesh.positions[face.vertices[0]]), b(mesh.positions[face.vertices[1]]),
+      c(mesh.positions[face.vertices[2]]);
+  const Vec3 normal = (b - a).cross(c - a);
+  const double weights[3] = {(c - b).cross(p - b).dot(normal), (a - c).cross(p - c).dot(normal),
+                             (b - a).cross(p - a).dot(normal)};
+  Vec3 sum(0.0);
+  for (int i = 0; i < 3; ++i) {
+    sum += Vec3(mesh.normals[face.vertices[i]]) * std::max(0.0, weights[i]);
+  }
+  if (!(sum.squaredLength() > 0)) return mesh.normals[face.vertices[0]];
+  const Vec3 unit = sum.unitOrX();
+  return {static_cast<float>(unit[0]), static_cast<float>(unit[1]), static_cast<float>(unit[2])};
+}
+
+}  // namespace
+
+SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutRule& rule,
+                                   base::Job& job)
+    : model_(model), rule_(rule), job_(job), faces_(facesOf(model.mesh(), job)) {
+  const Mesh& mesh = model.mesh();
+  base::Box box = base::Box::empty();
+  for (const Position& p : mesh.positions) box.add(Vec3(p));
+  middle_ = box.centre();
+  size_ = box.size().length() / model.affine().voxelSize();
+  std::vector<Vec3f> positions(mesh.positions.size());
+  const double perVoxel = 1 / model.affine().voxelSize();
+  job.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      positions[i] = Vec3f((Vec3(mesh.positions[i]) - middle_) * perVoxel);
+    }
+  });
+  const reduce::MeshView view{positions, faces_};
+  reduction_.emplace(view, view, std::span<const reduce::Index>(),
+                     scalesOf(mesh, model.affine(), rule, job), reduce::Options(), job);
+}
+
+Position SurfaceReduction::positionOf(const Vec3f& local) const {
+  const Vec3 p = middle_ + Vec3(local) * model_.affine().voxelSize();
+  return {p[0], p[1], p[2]};
+}
+
+AdaptiveMesh SurfaceReduction::toTolerance(double tolerance, bool drops) {
+  reduction_->toTolerance(static_cast<float>(tolerance));
+  AdaptiveMesh adaptive;
+  const reduce::ReducedMesh reduced = extract(adaptive);
+  if (!drops) return adaptive;
+  findComponents();
+  std::vector<std::uint8_t> isDropped(components_.size());
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    isDropped[i] = components_[i].size <= tolerance * components_[i].scale ? 1 : 0;
+  }
+  drop(isDropped, reduced, adaptive);
+  return adaptive;
+}
+
+AdaptiveMesh SurfaceReduction::toCount(std::size_t triangles, bool drops) {
+  const auto count = static_cast<reduce::Index>(
+      std::min<std::size_t>(triangles, std::numeric_limits<reduce::Index>::max()));
+  reduction_->toCount(count, static_cast<float>(size_));
+  AdaptiveMesh adaptive;
+  const reduce::ReducedMesh reduced = extract(adaptive);
+  std::size_t left = reduced.triangles.size();
+  if (!drops || left <= triangles) return adaptive;
+  findComponents();
+  const std::vector<std::size_t> counts = trianglesOfComponents(reduced);
+  std::vector<std::uint32_t> order(components_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return components_[a].size < components_[b].size;
+  });
+  std::vector<std::uint8_t> isDropped(components_.size());
+  for (const std::uint32_t component : order) {
+    if (left <= triangles) break;
+    if (components_[component].scale == 0) continue;
+    isDropped[component] = 1;
+    left -= counts[component];
+  }
+  drop(isDropped, reduced, adaptive);
+  return adaptive;
+}
+
+reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
+  const Mesh& base = model_.mesh();
+  const reduce::Certificate certificate = reduction_->certificate();
+  adaptive.largestError = static_cast<double>(certificate.largest);
+  adaptive.meanError = static_cast<double>(certificate.mean);
+  adaptive.rounds = 1;
+  reduce::ReducedMesh reduced = reduction_->mesh();
+  ExtractedMesh& extracted = adaptive.extracted;
+  Mesh& mesh = extracted.mesh;
+  const std::size_t count = reduced.positions.size();
+  mesh.positions.resize(count);
+  mesh.normals.resize(count);
+  extracted.baseVertices.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const reduce::Index source = reduced.sources[i];
+    extracted.baseVertices[i] = source == reduce::kNone ? octree::kNone : source;
+    if (source != reduce::kNone) {
+      mesh.positions[i] = base.positions[source];
+      mesh.normals[i] = base.normals[source];
+      continue;
+    }
+    mesh.positions[i] = positionOf(reduced.positions[i]);
+    mesh.normals[i] = normalOn(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
+  }
+  mesh.triangles = reduced.triangles;
+  extracted.baseQuads.assign(mesh.triangles.size(), octree::kNone);
+  extracted.candidates.resize(mesh.triangles.size());
+  std::iota(extracted.candidates.begin(), extracted.candidates.end(), 0);
+  return reduced;
+}
+
+// The components of the uniform mesh that may be left out have a scale above 0; that of most
+// vertices has none.
+void SurfaceReduction::findComponents() {
+  if (!components_.empty()) return;
+  const Mesh& mesh = model_.mesh();
+  const std::vector<VertexIndex> lowest = topology::connectedComponentsOf(mesh);
+  componentOf_.resize(lowest.size());
+  std::vector<base::Box> boxes;
+  std::vector<std::size_t> counts;
+  octree::CutRule one = rule_;
+  one.tolerance = 1;
+  for (std::size_t i = 0; i < lowest.size(); ++i) {
+    if (lowest[i] == i) {
+      componentOf_[i] = static_cast<std::uint32_t>(components_.size());
+      components_.push_back({Vec3(0.0), 0, std::numeric_limits<double>::infinity()});
+      boxes.push_back(base::Box::empty());
+      counts.push_back(0);
+    }
+    const std::uint32_t component = componentOf_[i] = componentOf_[lowest[i]];
+    const Vec3 point(mesh.positions[i]);
+    boxes[component].add(point);
+    ++counts[component];
+    double& scale = components_[component].scale;
+    scale = std::min(scale, std::max(0.0, distance::toleranceAt(one, model_.affine(), point)));
+  }
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    components_[i].centre = boxes[i].centre();
+    components_[i].size = boxes[i].size().length() / model_.affine().voxelSize();
+  }
+  const auto largest = std::max_element(counts.begin(), counts.end()) - counts.begin();
+  components_[static_cast<std::size_t>(largest)].scale = 0;
+}
+
+std::vector<std::size_t> SurfaceReduction::trianglesOfComponents(
+    const reduce::ReducedMesh& reduced) const {
+  std::vector<std::size_t> counts(components_.size());
+  for (const Triangle& triangle : reduced.triangles) {
+    ++counts[componentAt(reduced, triangle.vertices[0])];
+  }
+  return counts;
+}
+
+void SurfaceReduction::drop(const std::vector<std::uint8_t>& isDropped,
+                            const reduce::ReducedMesh& reduced, AdaptiveMesh& adaptive) const {
+  ExtractedMesh& extracted = adaptive.extracted;
+  std::erase_if(extracted.mesh.triangles, [&](const Triangle& triangle) {
+    return isDropped[componentAt(reduced, triangle.vertices[0])] != 0;
+  });
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    if (isDropped[i] != 0) adaptive.dropped.push_back({components_[i].centre, components_[i].size});
+  }
+  const std::size_t left = extracted.mesh.triangles.size();
+  extracted.baseQuads.resize(left);
+  extracted.candidates.resize(left);
+  (void)removeUnused(extracted.mesh, extracted.baseVertices);
+}
+
+}  // namespace tufa::refine

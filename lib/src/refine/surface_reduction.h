@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/job.h"
+#include "base/vec3.h"
+#include "base/vec3f.h"
+#include "octree/cut_rule.h"
+#include "reduce/reduction.h"
+#include "refine/adapt.h"
+#include "refine/surface_model.h"
+
+namespace tufa::refine {
+
+/// The uniform mesh of a surface model, reduced to one tolerance after the other, see
+/// reduce/reduction.h. Rounding to single precision comes after it and moves vertices by
+/// kMostRounding at most; so the result is the same wherever in the world the grid lies.
+class SurfaceReduction {
+ public:
+  /// The rule's scale holds for all tolerances. All arguments must outlive this.
+  SurfaceReduction(const SurfaceModel& model, const octree::CutRule& rule, base::Job& job);
+
+  /// As few triangles as can be found within a tolerance, voxels. `drop`: leave out components
+  /// smaller than the tolerance where they lie, but for the largest one.
+  [[nodiscard]] AdaptiveMesh toTolerance(double tolerance, bool drop);
+
+  /// At most `triangles`, at the least tolerance that allows so few; more if the topology does not
+  /// allow so few. `drop`: then leave out as many components as necessary, the smallest first.
+  [[nodiscard]] AdaptiveMesh toCount(std::size_t triangles, bool drop);
+
+ private:
+  struct Component {
+    Vec3 centre{0.0};
+    double size = 0;   ///< diagonal of the box of its uniform vertices, voxels
+    double scale = 0;  ///< the least of the rule at one of its uniform vertices
+  };
+
+  [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
+  [[nodiscard]] reduce::ReducedMesh extract(AdaptiveMesh& adaptive) const;
+  [[nodiscard]] Normal normalAt(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
+  void findComponents();
+  [[nodiscard]] std::vector<std::size_t> trianglesOfComponents(
+      const reduce::ReducedMesh& reduced) const;
+  void drop(const std::vector<std::uint8_t>& isDropped, const reduce::ReducedMesh& reduced,
+            AdaptiveMesh& adaptive) const;
+  [[nodiscard]] std::uint32_t componentAt(const reduce::ReducedMesh& reduced,
+                                          std::size_t vertex) const {
+    return componentOf_[faces_[reduced.faces[vertex]].vertices[0]];
+  }
+
+  const SurfaceModel& model_;
+  const octree::CutRule& rule_;
+  base::Job& job_;
+  Vec3 middle_{0.0};             ///< of the mesh, counted like its positions
+  double size_ = 0;              ///< diagonal of the mesh's box, voxels
+  std::vector<Triangle> faces_;  ///< the uniform mesh's, two for each quad
+  std::optional<reduce::Reduction> reduction_;
+  std::vector<std::uint32_t> componentOf_;  ///< of each uniform vertex
+  std::vector<Component> components_;       ///< empty until needed
+};
+
+}  // namespace tufa::refine

@@ -1,0 +1,338 @@
+#include "refine/withdraw_placements.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "intersect/candidates.h"
+#include "intersect/surface.h"
+#include "uniform/place_vertices.h"
+#include "uniform/quads.h"
+
+namespace tufa::refine {
+namespace {
+
+using uniform::Fallback;
+
+// A vertex moves twice at most, so rounds end by themselves; this many are a sign of a fault.
+constexpr int kMostRounds = 64;
+// Faces whose normals have a smaller cosine (140 degrees) make a fold.
+constexpr double kFold = -0.766;
+// An edge folded by more than 140 degrees has a face more than 70 degrees off the normal of each
+// of its ends. Cosine of slightly less.
+constexpr double kOffNormal = 0.36;
+// Vertices nearer to each other than this, in voxels, stand for the same point of a crease.
+constexpr double kSamePoint = 0.1;
+// A face within this cosine (45 degrees) of a sheet lies on it.
+constexpr double kOnSheet = 0.7;
+
+// The vertices of a fold or of an intersecting pair.
+struct Conflict {
+  std::array<VertexIndex, 8> vertices;
+  int count = 0;
+  void add(VertexIndex vertex) {
+    const auto* end = vertices.begin() + count;
+    if (std::find(vertices.begin(), vertices.begin() + count, vertex) == end)
+      vertices[count++] = vertex;
+  }
+};
+
+// A face at an edge, the edge's ends in rising order.
+struct EdgeFace {
+  VertexIndex low, high;
+  std::uint32_t face;  // twice the quad, plus 1 for its second triangle
+  friend auto operator<=>(const EdgeFace&, const EdgeFace&) = default;
+};
+
+class PlacementGuard {
+ public:
+  PlacementGuard(uniform::UniformSurface& surface, double margin, base::Job& job)
+      : surface_(surface), mesh_(surface.mesh), margin_(margin), job_(job), polygons_(mesh_, job) {}
+
+  Withdrawal run() {
+    steps_.assign(mesh_.positions.size(), 0);
+    moved_.assign(mesh_.positions.size(), 0);
+    if (withdrawFrom(findCoincident())) uniform::splitAgain(surface_.view(), moved_, mesh_, job_);
+    for (int round = 0; round < kMostRounds; ++round) {
+      const std::vector<Conflict> conflicts = findConflicts(round == 0);
+      std::fill(moved_.begin(), moved_.end(), 0);
+      if (!withdrawFrom(conflicts)) break;
+      uniform::splitAgain(surface_.view(), moved_, mesh_, job_);
+      findTouched();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] Triangle cornersOf(std::uint32_t face) const {
+    const auto& v = mesh_.quads[face / 2].vertices;
+    return face % 2 == 0 ? Triangle{v[0], v[1], v[2]} : Triangle{v[0], v[2], v[3]};
+  }
+  [[nodiscard]] Vec3 pointOf(VertexIndex vertex) const { return Vec3(mesh_.positions[vertex]); }
+  [[nodiscard]] Vec3 normalOf(std::uint32_t face) const {
+    const Triangle t = cornersOf(face);
+    const Vec3 a = pointOf(t.vertices[0]);
+    return (pointOf(t.vertices[1]) - a).cross(pointOf(t.vertices[2]) - a);
+  }
+  [[nodiscard]] bool touches(std::size_t quad, const std::vector<std::uint8_t>& marks) const {
+    const auto& v = mesh_.quads[quad].vertices;
+    return marks[v[0]] != 0 || marks[v[1]] != 0 || marks[v[2]] != 0 || marks[v[3]] != 0;
+  }
+
+  // The indices below `count` that `isMeant`, in rising order.
+  template <class IsMeant>
+  std::vector<std::uint32_t> collect(std::size_t count, const IsMeant& isMeant) {
+    std::vector<std::uint32_t> all;
+    std::mutex mutex;
+    job_.forRanges(count, 4096, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> found;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (isMeant(static_cast<std::uint32_t>(i))) found.push_back(static_cast<std::uint32_t>(i));
+      }
+      const std::scoped_lock lock(mutex);
+      all.insert(all.end(), found.begin(), found.end());
+    });
+    base::parallelSort(all.begin(), all.end(), std::less<>());
+    return all;
+  }
+
+  // Whether a triangle is more than 70 degrees off the normal of one of its vertices.
+  [[nodiscard]] bool isOff(std::uint32_t face) const {
+    const Vec3 normal = normalOf(face);
+    const double least = kOffNormal * kOffNormal * normal.squaredLength();
+    for (const VertexIndex vertex : cornersOf(face).vertices) {
+      const double along = normal.dot(Vec3(mesh_.normals[vertex]));
+      if (along <= 0 || along * along < least) return true;
+    }
+    return false;
+  }
+
+  // Vertices of one quad that were placed at the same point of a crease, at least one of them out
+  // of its cell.
+  std::vector<Conflict> findCoincident() {
+    const double least = std::pow(kSamePoint * surface_.affine().voxelSize(), 2);
+    const uniform::VertexSheets& sheets = surface_.sheets;
+    const auto coincide = [&](VertexIndex a, VertexIndex b) {
+      return (sheets.isOutOfCell(a) || sheets.isOutOfCell(b)) && sheets.isSharp(a) &&
+             sheets.isSharp(b) && (pointOf(a) - pointOf(b)).squaredLength() < least;
+    };
+    std::vector<Conflict> conflicts;
+    const auto visit = [&](std::uint32_t quad, const auto& found) {
+      const auto& v = mesh_.quads[quad].vertices;
+      for (int i = 0; i < 4; ++i) {
+        for (int j = i + 1; j < 4; ++j) {
+          if (coincide(v[i], v[j])) found(v[i], v[j]);
+        }
+      }
+    };
+    for (const std::uint32_t quad : collect(mesh_.quads.size(), [&](std::uint32_t at) {
+           bool any = false;
+           visit(at, [&](VertexIndex, VertexIndex) { any = true; });
+           return any;
+         })) {
+      visit(quad, [&](VertexIndex a, VertexIndex b) {
+        Conflict& conflict = conflicts.emplace_back();
+        conflict.add(a);
+        conflict.add(b);
+      });
+    }
+    return conflicts;
+  }
+
+  std::vector<Conflict> findConflicts(bool first) {
+    std::vector<Conflict> conflicts;
+    if (!mesh_.normals.empty()) findFolds(first, conflicts);
+    if (first) result_.foldsFound = conflicts.size();
+    const std::size_t folds = conflicts.size();
+    findPairs(first, conflicts);
+    if (first) result_.pairsFound = conflicts.size() - folds;
+    return conflicts;
+  }
+
+  // Edges between a triangle that is off and any other one.
+  void findFolds(bool first, std::vector<Conflict>& conflicts) {
+    const std::vector<std::uint32_t> off = collect(2 * mesh_.quads.size(), [&](std::uint32_t face) {
+      return (first || touches(face / 2, moved_)) && isOff(face);
+    });
+    if (off.empty()) return;
+    std::vector<std::uint8_t> marks(mesh_.positions.size());
+    for (const std::uint32_t face : off) {
+      for (const VertexIndex vertex : cornersOf(face).vertices) marks[vertex] = 1;
+    }
+    std::vector<EdgeFace> edges;
+    for (const std::uint32_t face : collect(2 * mesh_.quads.size(), [&](std::uint32_t at) {
+           const auto& v = cornersOf(at).vertices;
+           return marks[v[0]] + marks[v[1]] + marks[v[2]] >= 2;
+         })) {
+      const auto& v = cornersOf(face).vertices;
+      for (int i = 0; i < 3; ++i) {
+        const VertexIndex a = v[i], b = v[(i + 1) % 3];
+        if (marks[a] != 0 && marks[b] != 0) edges.push_back({std::min(a, b), std::max(a, b), face});
+      }
+    }
+    base::parallelSort(edges.begin(), edges.end(), std::less<>());
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+      const EdgeFace& a = edges[i];
+      const EdgeFace& b = edges[i + 1];
+      if (a.low != b.low || a.high != b.high || !isFold(a, b)) continue;
+      Conflict conflict;
+      for (const std::uint32_t face : {a.face, b.face}) {
+        for (const VertexIndex vertex : cornersOf(face).vertices) conflict.add(vertex);
+      }
+      conflicts.push_back(conflict);
+    }
+  }
+
+  [[nodiscard]] bool isFold(const EdgeFace& a, const EdgeFace& b) const {
+    const Vec3 na = normalOf(a.face), nb = normalOf(b.face);
+    const double cosine = na.dot(nb);
+    if (cosine >= 0 || cosine * cosine < kFold * kFold * na.squaredLength() * nb.squaredLength())
+      return false;
+    return !isSharpAt(a.low, na, nb) || !isSharpAt(a.high, na, nb);
+  }
+
+  // Whether the two faces lie on two of the sheets known at a vertex.
+  [[nodiscard]] bool isSharpAt(VertexIndex vertex, const Vec3& na, const Vec3& nb) const {
+    const uniform::MeetingSheets sheets = surface_.sheets.sheets(mesh_, vertex);
+    if (sheets.count < 2) return false;
+    const auto sheetOf = [&](const Vec3& normal) {
+      int best = -1;
+      double most = kOnSheet * normal.length();
+      for (int i = 0; i < sheets.count; ++i) {
+        const double along = normal.dot(Vec3(sheets.normals[i]));
+        if (along < most) continue;
+        most = along;
+        best = i;
+      }
+      return best;
+    };
+    const int first = sheetOf(na), second = sheetOf(nb);
+    return first >= 0 && second >= 0 && first != second;
+  }
+
+  void findPairs(bool first, std::vector<Conflict>& conflicts) {
+    std::vector<std::uint32_t> fresh =
+        intersect::findCandidates(surface_.view(), mesh_, margin_, job_, first ? nullptr : &moved_);
+    std::vector<intersect::PolygonPair> pairs;
+    if (first) {
+      result_.candidates = std::move(fresh);
+      pairs = intersect::findPairs(polygons_, result_.candidates, job_);
+    } else {
+      std::vector<std::uint32_t> all;
+      std::erase_if(result_.candidates, [&](std::uint32_t quad) { return touches(quad, moved_); });
+      std::set_union(result_.candidates.begin(), result_.candidates.end(), fresh.begin(),
+                     fresh.end(), std::back_inserter(all));
+      result_.candidates = std::move(all);
+      // Pairs of which neither quad was moved were there before, and were left.
+      const auto isCandidate = [&](std::uint32_t quad) {
+        return std::binary_search(result_.candidates.begin(), result_.candidates.end(), quad);
+      };
+      pairs = intersect::findPairs(
+          polygons_, touched_, job_,
+          [&](std::uint32_t a, std::uint32_t b) { return isCandidate(a) || isCandidate(b); });
+    }
+    for (const intersect::PolygonPair& pair : pairs) {
+      Conflict conflict;
+      for (const intersect::PolygonIndex quad : {pair.a, pair.b}) {
+        for (const VertexIndex vertex : mesh_.quads[quad].vertices) conflict.add(vertex);
+      }
+      conflicts.push_back(conflict);
+    }
+  }
+
+  // Moves the vertex of each conflict that is farthest from its next place there. Whether any could
+  // be moved.
+  bool withdrawFrom(const std::vector<Conflict>& conflicts) {
+    std::vector<VertexIndex> vertices;
+    for (const Conflict& conflict : conflicts) {
+      vertices.insert(vertices.end(), conflict.vertices.begin(),
+                      conflict.vertices.begin() + conflict.count);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const std::vector<Position> plain = fallbacks(Fallback::Plain, vertices);
+    const std::vector<Position> mass = fallbacks(Fallback::MassPoint, vertices);
+    const auto slotOf = [&](VertexIndex vertex) {
+      return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
+                                      vertices.begin());
+    };
+    for (const std::size_t slot : chosenOf(conflicts, plain, mass, slotOf)) {
+      const VertexIndex vertex = vertices[slot];
+      if (steps_[vertex] == 0) ++result_.vertices;
+      const bool toPlain = steps_[vertex] == 0 && !(plain[slot] == mesh_.positions[vertex]);
+      mesh_.positions[vertex] = toPlain ? plain[slot] : mass[slot];
+      steps_[vertex] = toPlain ? 1 : 2;
+      surface_.sheets.withdraw(vertex);
+      moved_[vertex] = 1;
+    }
+    return std::find(moved_.begin(), moved_.end(), 1) != moved_.end();
+  }
+
+  template <class SlotOf>
+  std::vector<std::size_t> chosenOf(const std::vector<Conflict>& conflicts,
+                                    const std::vector<Position>& plain,
+                                    const std::vector<Position>& mass, const SlotOf& slotOf) {
+    std::vector<std::size_t> chosen;
+    for (const Conflict& conflict : conflicts) {
+      std::optional<std::size_t> best;
+      // Vertices at creases go first, those out of their cells before others.
+      std::pair<int, double> most{};
+      for (int i = 0; i < conflict.count; ++i) {
+        const VertexIndex vertex = conflict.vertices[i];
+        if (steps_[vertex] == 2) continue;
+        const std::size_t slot = slotOf(vertex);
+        const Vec3 at = pointOf(vertex);
+        const bool placed = steps_[vertex] == 0 && !(plain[slot] == mesh_.positions[vertex]);
+        const Vec3 next(placed ? plain[slot] : mass[slot]);
+        const int rank = placed ? (surface_.sheets.isOutOfCell(vertex) ? 2 : 1) : 0;
+        const std::pair<int, double> key{rank, (next - at).squaredLength()};
+        if (best && key <= most) continue;
+        most = key;
+        best = slot;
+      }
+      if (best) {
+        chosen.push_back(*best);
+      } else {
+        ++result_.left;
+      }
+    }
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    return chosen;
+  }
+
+  std::vector<Position> fallbacks(Fallback which, const std::vector<VertexIndex>& vertices) {
+    if (vertices.empty()) return {};
+    return uniform::fallbackPoints(which, surface_.volume.blocks, surface_.volume.scale,
+                                   surface_.topology, surface_.affine(), vertices, job_);
+  }
+
+  void findTouched() {
+    touched_ =
+        collect(mesh_.quads.size(), [&](std::uint32_t quad) { return touches(quad, moved_); });
+    for (const std::uint32_t quad : touched_) polygons_.update(quad);
+  }
+
+  uniform::UniformSurface& surface_;
+  Mesh& mesh_;
+  double margin_;
+  base::Job& job_;
+  intersect::Surface polygons_;
+  std::vector<std::uint8_t> steps_;     // places that each vertex has left
+  std::vector<std::uint8_t> moved_;     // vertices moved in the last round
+  std::vector<std::uint32_t> touched_;  // quads of these
+  Withdrawal result_;
+};
+
+}  // namespace
+
+Withdrawal withdrawPlacements(uniform::UniformSurface& surface, double margin, base::Job& job) {
+  return PlacementGuard(surface, margin, job).run();
+}
+
+}  // namespace tufa::refine
