@@ -1,0 +1,116 @@
+#include "reduce/certificate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "unit/reduce/meshes.h"
+
+namespace tufa::reduce {
+namespace {
+
+// For each reference vertex the corner of the nearest triangle that is nearest to it.
+std::vector<Index> nearestVertices(const test::FineMesh& mesh, const test::FineMesh& reference) {
+  std::vector<Index> nearest;
+  for (const Vec3f p : reference.positions) {
+    float best = std::numeric_limits<float>::max();
+    Index triangle = 0;
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& v = mesh.triangles[t].vertices;
+      const float d2 = squaredDistanceToTriangle(p, mesh.positions[v[0]], mesh.positions[v[1]],
+                                                 mesh.positions[v[2]]);
+      if (d2 < best) best = d2, triangle = t;
+    }
+    Index vertex = mesh.triangles[triangle].vertices[0];
+    for (const Index v : mesh.triangles[triangle].vertices) {
+      if (squaredLength(mesh.positions[v] - p) < squaredLength(mesh.positions[vertex] - p)) {
+        vertex = v;
+      }
+    }
+    nearest.push_back(vertex);
+  }
+  return nearest;
+}
+
+Certificate certified(const test::FineMesh& mesh, const test::FineMesh& reference, float expected) {
+  base::Job job(1, {});
+  const ReferenceMesh to(reference.positions, reference.triangles, {}, job);
+  Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  locateAll(surface, to, nearestVertices(mesh, reference), job);
+  return certify(surface, to, expected, job);
+}
+
+double sampledBothWays(const test::FineMesh& mesh, const test::FineMesh& reference) {
+  const Mesh a = test::toMesh(mesh.positions, mesh.triangles);
+  const Mesh b = test::toMesh(reference.positions, reference.triangles);
+  return std::max(test::sampledDistance(a, b, 2000), test::sampledDistance(b, a, 2000));
+}
+
+TEST(Certificate, OfTheReferenceItselfIsZero) {
+  const test::FineMesh mesh = test::bumpySphere(3, 6, 1, 1);
+  const Certificate c = certified(mesh, mesh, 0.1f);
+  EXPECT_LT(c.largest, 1e-5f);
+  EXPECT_LT(c.mean, 1e-5f);
+}
+
+TEST(Certificate, IsTheHeightOfABump) {
+  const test::FineMesh coarse = test::subdivided(test::box(8, 8, 8), 1);
+  test::FineMesh fine = test::subdivided(test::box(8, 8, 8), 3);
+  std::size_t bump = 0;
+  for (std::size_t v = 0; v < fine.positions.size(); ++v) {
+    if (fine.positions[v] == Vec3f(3, 5, 8)) bump = v;
+  }
+  fine.positions[bump].z += 0.3f;
+  for (const float expected : {0.01f, 0.1f, 0.31f, 1.0f}) {
+    const Certificate c = certified(coarse, fine, expected);
+    EXPECT_GE(c.largest, 0.2999f) << expected;
+    EXPECT_LE(c.largest, std::max(0.3007f, expected)) << expected;
+    EXPECT_NEAR(c.mean, 0.3f / static_cast<float>(fine.positions.size()), 1e-5f);
+  }
+}
+
+// Two meshes of the same vertices: at every one of them the distance is 0, yet their edges pass
+// each other at a distance.
+TEST(Certificate, SeesWhereEdgesCross) {
+  const test::FineMesh ridge{{{-10, 0, 0}, {10, 0, 0}, {0, -6, -1}, {0, 6, -1}, {0, 0, -20}},
+                             {{2, 1, 0}, {3, 0, 1}, {0, 4, 2}, {2, 4, 1}, {1, 4, 3}, {3, 4, 0}}};
+  test::FineMesh valley = ridge;
+  valley.triangles[0] = {2, 3, 0};
+  valley.triangles[1] = {3, 2, 1};
+  const Certificate c = certified(valley, ridge, 0.1f);
+  EXPECT_GE(c.largest, 0.98f);  // the ridge's middle from the two slopes; the edges: 1
+  EXPECT_LE(c.largest, 1.01f);
+  EXPECT_LT(c.mean, 1e-6f);
+}
+
+// What the mesh has in addition is no nearer for the reference's being near the mesh.
+TEST(Certificate, BoundsTheWayBackToo) {
+  const test::FineMesh fine = test::subdivided(test::box(8, 8, 8), 2);
+  test::FineMesh spiked = fine;
+  for (std::size_t v = 0; v < fine.positions.size(); ++v) {
+    if (fine.positions[v] == Vec3f(4, 2, 8)) spiked.positions[v].z += 1.5f;
+  }
+  for (const float expected : {0.01f, 0.4f, 2.0f}) {
+    const Certificate c = certified(spiked, fine, expected);
+    EXPECT_GE(c.largest, 1.5f * 0.99f) << expected;
+    EXPECT_LE(c.largest, std::max(1.6f, expected)) << expected;
+  }
+}
+
+TEST(Certificate, IsNoLessThanTheSampledDistanceOfAnyTwoMeshes) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const float radius = 6;
+    const test::FineMesh fine = test::bumpySphere(3, radius, 1.5f, seed);
+    const test::FineMesh coarse = test::bumpySphere(2, radius, 1.2f, seed);
+    const double sampled = sampledBothWays(coarse, fine);
+    for (const float expected : {0.3f, 1.0f}) {
+      const Certificate c = certified(coarse, fine, expected);
+      EXPECT_GE(c.largest, sampled * 0.9999) << seed;
+      EXPECT_LE(c.largest, sampled * 1.5 + 0.1) << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tufa::reduce

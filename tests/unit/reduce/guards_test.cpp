@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "reduce/reduction.h"
+#include "support/mesh_oracle.h"
+#include "unit/reduce/meshes.h"
+
+namespace tufa::reduce {
+namespace {
+
+struct Result {
+  Mesh mesh;
+  Certificate certificate;
+  OperationCounts counts;
+};
+
+Result reduced(const test::FineMesh& mesh, float tolerance, Outcome switchedOff = Outcome::Done) {
+  base::Job job(1, {});
+  Options options;
+  options.switchedOff = switchedOff;
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+  reduction.toTolerance(tolerance);
+  const ReducedMesh out = reduction.mesh();
+  return {test::toMesh(out.positions, out.triangles), reduction.certificate(), reduction.counts()};
+}
+
+std::uint64_t refused(const OperationCounts& counts, Outcome by) {
+  return counts.collapses[static_cast<std::size_t>(by)];
+}
+
+// A low roof over a deep pyramid. A flip of its ridge, long as it is, would make rounder triangles
+// with the same vertices, one voxel below it.
+const test::FineMesh kRoof{{{-20, 0, 0}, {20, 0, 0}, {0, -6, -1}, {0, 6, -1}, {0, 0, -20}},
+                           {{2, 1, 0}, {3, 0, 1}, {0, 4, 2}, {2, 4, 1}, {1, 4, 3}, {3, 4, 0}}};
+
+TEST(Guards, RefuseAnEdgeThatIsFarWhereNoVertexIs) {
+  const Result kept = reduced(kRoof, 0.3f);
+  EXPECT_EQ(kept.counts.flipped(), 0U);
+  EXPECT_GT(kept.counts.flips[static_cast<std::size_t>(Outcome::Crossing)], 0U);
+  EXPECT_LT(kept.certificate.largest, 0.3f);
+  const Result flipped = reduced(kRoof, 0.3f, Outcome::Crossing);
+  EXPECT_GT(flipped.counts.flipped(), 0U);
+  EXPECT_GT(flipped.certificate.largest, 0.9f);
+  EXPECT_LT(flipped.certificate.mean, 1e-5f);  // at every vertex it is 0
+}
+
+TEST(Guards, AllowWhatKeepsTheTolerance) { EXPECT_GT(reduced(kRoof, 1.1f).counts.flipped(), 0U); }
+
+// A plate whose upper side waves: flattened, it would come through the lower side, which is `gap`
+// below the lowest places.
+test::FineMesh wavingPlate(float gap, float height, float bend) {
+  test::FineMesh plate = test::subdivided(test::box(24, 24, 1), 5);
+  for (Vec3f& p : plate.positions) {
+    const float wave = height * (1 + std::sin(p.x * 1.1f) * std::sin(p.y * 0.9f));
+    p.z = p.z * (gap + wave) + bend * std::sin(p.x * 0.8f);
+  }
+  return plate;
+}
+
+TEST(Guards, RefuseToReachASheetThatIsNear) {
+  const test::FineMesh plate = wavingPlate(0.05f, 0.35f, 0);
+  for (const float tolerance : {0.3f, 1.0f}) {
+    const Result kept = reduced(plate, tolerance);
+    EXPECT_EQ(test::intersectingPairs(kept.mesh), 0U);
+    EXPECT_GT(refused(kept.counts, Outcome::Intersection), 0U);
+    EXPECT_LE(kept.certificate.largest, tolerance * 1.001f);
+    EXPECT_LT(kept.mesh.triangles.size(), plate.triangles.size() / 4);
+  }
+}
+
+TEST(Guards, LetAcuteEdgesCoarsen) {
+  EXPECT_LE(reduced(test::subdivided(test::tetrahedron(20), 4), 0.1f).mesh.triangles.size(), 12U);
+  for (const float degrees : {20.0f, 35.0f, 50.0f, 70.0f}) {
+    const test::FineMesh prism = test::subdivided(test::wedge(16, degrees, 12), 4);
+    const Result result = reduced(prism, 0.1f);
+    EXPECT_LE(result.mesh.triangles.size(), 24U) << degrees;
+    EXPECT_LE(result.certificate.largest, 0.1f) << degrees;
+    EXPECT_EQ(test::intersectingPairs(result.mesh), 0U) << degrees;
+  }
+}
+
+// A sheet with a hole, bent: borders stay, vertex by vertex.
+TEST(Guards, KeepOpenBordersAsTheyAre) {
+  constexpr VertexIndex kSide = 33;
+  test::FineMesh sheet;
+  for (VertexIndex i = 0; i < kSide * kSide; ++i) {
+    const auto x = static_cast<float>(i % kSide), y = static_cast<float>(i / kSide);
+    sheet.positions.emplace_back(x, y, 0.02f * x * x + std::sin(y / 5));
+  }
+  for (VertexIndex y = 0; y + 1 < kSide; ++y) {
+    for (VertexIndex x = 0; x + 1 < kSide; ++x) {
+      if (x > 10 && x < 15 && y > 20 && y < 24) continue;
+      const VertexIndex i = y * kSide + x;
+      sheet.triangles.emplace_back(i, i + 1, i + kSide + 1);
+      sheet.triangles.emplace_back(i, i + kSide + 1, i + kSide);
+    }
+  }
+  const Mesh before = test::toMesh(sheet.positions, sheet.triangles);
+  const auto borderOf = [](const Mesh& mesh) {
+    const auto key = [&](VertexIndex v) {
+      const Position& p = mesh.positions[v];
+      return std::array<double, 3>{p.x, p.y, p.z};
+    };
+    std::multiset<std::pair<std::array<double, 3>, std::array<double, 3>>> edges;
+    for (const Triangle& t : mesh.triangles) {
+      for (int i = 0; i < 3; ++i) edges.emplace(key(t.vertices[i]), key(t.vertices[(i + 1) % 3]));
+    }
+    std::set<std::pair<std::array<double, 3>, std::array<double, 3>>> border;
+    for (const auto& [a, b] : edges) {
+      if (!edges.contains({b, a})) border.emplace(a, b);
+    }
+    return border;
+  };
+  const Result result = reduced(sheet, 0.2f);
+  EXPECT_LT(result.mesh.triangles.size(), sheet.triangles.size() / 4);
+  EXPECT_EQ(borderOf(result.mesh), borderOf(before));
+  EXPECT_TRUE(test::inspect(result.mesh).manifold());
+  EXPECT_LE(result.certificate.largest, 0.2f);
+}
+
+// A wall of the thickness that |f| < `thickness` gives, with tunnels.
+test::FineMesh shell(unsigned seed, double thickness) {
+  const double k = 0.5 + 0.1 * seed;
+  return test::levelSet(14, [=](double x, double y, double z) {
+    const double f = std::sin(k * x + seed) * std::cos(k * y) +
+                     std::sin(k * y) * std::cos(k * z + seed) + std::sin(k * z) * std::cos(k * x);
+    return std::abs(f) - thickness;
+  });
+}
+
+// What an audit of a mesh sees, without a look at how it was made.
+struct Audit {
+  explicit Audit(const Result& result)
+      : largest(result.certificate.largest),
+        pairs(test::intersectingPairs(result.mesh)),
+        folds(test::folds(result.mesh)),
+        smallestAngle(test::anglesOf(result.mesh).smallest) {}
+  float largest;
+  std::size_t pairs, folds;
+  double smallestAngle;
+};
+
+// Each guard switched off in turn, on a mesh where that does harm. Link and Place have no switch:
+// without them the tables themselves would break.
+TEST(Guards, AreFoundMissingByAnAudit) {
+  enum class Harm { Distance, Pairs, Folds, Angles };
+  struct Case {
+    Outcome guard;
+    Harm harm;
+    test::FineMesh mesh;
+    float tolerance;
+  };
+  const Case cases[] = {
+      {Outcome::Sample, Harm::Distance, test::subdivided(test::box(16, 12, 7), 4), 0.2f},
+      {Outcome::Apex, Harm::Distance, test::bumpySphere(4, 10, 1, 1), 0.2f},
+      {Outcome::Crossing, Harm::Distance, test::bumpySphere(4, 10, 1, 1), 0.2f},
+      {Outcome::Face, Harm::Distance, test::noiseSolid(12, 4, 1), 0.2f},
+      {Outcome::Flat, Harm::Distance, shell(2, 0.15), 0.3f},
+      {Outcome::Turn, Harm::Distance, shell(3, 0.4), 0.3f},
+      {Outcome::Fold, Harm::Folds, wavingPlate(0.05f, 0.1f, 0), 0.3f},
+      {Outcome::Star, Harm::Pairs, wavingPlate(0.1f, 0.1f, 2), 1.0f},
+      {Outcome::Intersection, Harm::Pairs, wavingPlate(0.05f, 0.35f, 0), 0.3f},
+      {Outcome::Round, Harm::Angles, test::noiseSolid(14, 6, 1), 0.05f},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(static_cast<int>(c.guard));
+    const Audit on(reduced(c.mesh, c.tolerance)), off(reduced(c.mesh, c.tolerance, c.guard));
+    EXPECT_LE(on.largest, c.tolerance * 1.005f);
+    EXPECT_EQ(on.pairs, 0U);
+    switch (c.harm) {
+      case Harm::Distance:
+        EXPECT_GT(off.largest, c.tolerance * 1.1f);
+        break;
+      case Harm::Pairs:
+        EXPECT_GT(off.pairs, 0U);
+        break;
+      case Harm::Folds:
+        EXPECT_GT(off.folds, on.folds + 5);
+        break;
+      case Harm::Angles:
+        EXPECT_LT(off.smallestAngle, 0.5 * on.smallestAngle);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tufa::reduce

@@ -1,0 +1,256 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "reduce/box_list.h"
+#include "reduce/clearance.h"
+#include "reduce/local_quadric.h"
+#include "reduce/partition.h"
+#include "reduce/reference_mesh.h"
+#include "unit/reduce/meshes.h"
+
+namespace tufa::reduce {
+namespace {
+
+Vec3f randomPoint(std::mt19937& random, float size) {
+  std::uniform_real_distribution<float> uniform(-size, size);
+  return {uniform(random), uniform(random), uniform(random)};
+}
+
+TEST(Triangles, DistanceToATriangleIsThatOfItsNearestPoint) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3f p = randomPoint(random, 2), a = randomPoint(random, 1), b = randomPoint(random, 1),
+                c = randomPoint(random, 1);
+    float best = std::numeric_limits<float>::max();
+    constexpr int kSteps = 60;
+    for (int u = 0; u <= kSteps; ++u) {
+      for (int v = 0; u + v <= kSteps; ++v) {
+        const float s = static_cast<float>(u) / kSteps, t = static_cast<float>(v) / kSteps;
+        best = std::min(best, length(p - (a + (b - a) * s + (c - a) * t)));
+      }
+    }
+    const float d = std::sqrt(squaredDistanceToTriangle(p, a, b, c));
+    EXPECT_LE(d, best + 1e-5f);
+    EXPECT_GE(d, best - 0.04f);
+  }
+}
+
+TEST(Triangles, DistanceOfSegmentsIsThatOfTheirNearestPoints) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3f a = randomPoint(random, 1), b = randomPoint(random, 1), c = randomPoint(random, 1),
+                d = randomPoint(random, 1);
+    float best = std::numeric_limits<float>::max();
+    constexpr int kSteps = 80;
+    for (int u = 0; u <= kSteps; ++u) {
+      for (int v = 0; v <= kSteps; ++v) {
+        const float s = static_cast<float>(u) / kSteps, t = static_cast<float>(v) / kSteps;
+        best = std::min(best, length(a + (b - a) * s - (c + (d - c) * t)));
+      }
+    }
+    const float found = std::sqrt(squaredDistanceOfSegments(a, b, c, d));
+    EXPECT_LE(found, best + 1e-5f);
+    EXPECT_GE(found, best - 0.05f);
+  }
+}
+
+TEST(Triangles, PlanesPartThemWhereTheyAreApart) {
+  const Vec3f floor[3] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+  const Vec3f above[3] = {{0, 0, 0.05f}, {4, 0, 0.05f}, {0, 4, 0.05f}};
+  const Vec3f through[3] = {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}};
+  const Vec3f beside[3] = {{3, 3, 0}, {5, 3, 0}, {3, 5, 0}};
+  const Vec3f over[3] = {{1, 1, 0}, {5, 1, 0}, {1, 5, 0}};
+  EXPECT_TRUE(planeParts(floor, above, 1e-3f));
+  EXPECT_FALSE(planeParts(floor, above, 0.06f));
+  EXPECT_FALSE(planeParts(floor, through, 1e-3f));
+  EXPECT_TRUE(planeParts(floor, beside, 1e-3f));
+  EXPECT_FALSE(planeParts(floor, over, 1e-3f));
+}
+
+TEST(LocalQuadric, IsTheSumOfSquaredDistancesWhereverItIsSeenFrom) {
+  LocalQuadric quadric;
+  const Vec3f normals[3] = {unit(Vec3f(1, 2, 3)), unit(Vec3f(-2, 1, 0.5f)),
+                            unit(Vec3f(0.3f, -1, 2))};
+  const Vec3f places[3] = {{1, 0, 0}, {0, 2, 1}, {-1, 1, 3}};
+  Vec3f from{};
+  for (int i = 0; i < 3; ++i) {  // each seen from its own place first
+    quadric.moveBy(places[i] - from);
+    from = places[i];
+    quadric.addPlane(normals[i], static_cast<float>(i + 1));
+  }
+  const auto exact = [&](Vec3f p) {
+    float sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const float d = dot(normals[i], p - places[i]);
+      sum += static_cast<float>(i + 1) * d * d;
+    }
+    return sum;
+  };
+  EXPECT_NEAR(quadric.at({}), exact(from), 1e-4f);
+  EXPECT_NEAR(quadric.at({2, -1, 1}), exact(from + Vec3f(2, -1, 1)), 1e-3f);
+  EXPECT_NEAR(quadric.weight, 6, 1e-6f);
+  const Vec3f least = quadric.minimum();
+  EXPECT_LT(quadric.at(least), 1e-2f * quadric.at({}));
+}
+
+TEST(LocalQuadric, StaysWhereItsPlanesLeaveItFree) {
+  LocalQuadric quadric;
+  quadric.addPlane({0, 0, 1}, 1);
+  quadric.moveBy({5, 6, 0.5f});
+  const Vec3f least = quadric.minimum();
+  EXPECT_NEAR(least.x, 0, 1e-6f);
+  EXPECT_NEAR(least.y, 0, 1e-6f);
+  EXPECT_NEAR(least.z, -0.5f, 1e-3f);
+}
+
+TEST(BoxList, FindsWhatATestOfAllBoxesFinds) {
+  std::mt19937 random(4);
+  const auto randomBox = [&] {
+    Box3f box;
+    box.add(randomPoint(random, 20));
+    box.add(box.lower + randomPoint(random, 1));
+    return box;
+  };
+  constexpr Index kCount = 700;
+  std::vector<Box3f> boxes(kCount);
+  std::vector<std::pair<Box3f, Index>> items;
+  for (Index i = 0; i < kCount; ++i) {
+    boxes[i] = randomBox();
+    if (i % 7 != 0) items.emplace_back(boxes[i], i);
+  }
+  BoxList list;
+  BoxList::Slots slots(kCount, kNone);
+  list.build(items, slots);
+  for (Index i = 0; i < kCount; i += 7) list.put(i, boxes[i], slots);
+  for (Index i = 0; i < kCount; i += 5) list.put(i, boxes[i] = randomBox(), slots);
+  for (Index i = 0; i < kCount; i += 11) list.remove(i, slots);
+  for (int k = 0; k < 200; ++k) {
+    Box3f query = randomBox();
+    query.growBy(2);
+    std::vector<Index> found, all;
+    list.any(query, [&](Index i, const Box3f&) {
+      found.push_back(i);
+      return false;
+    });
+    for (Index i = 0; i < kCount; ++i) {
+      if (i % 11 != 0 && boxes[i].meets(query)) all.push_back(i);
+    }
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, all);
+  }
+}
+
+class ReferenceMeshTest : public testing::Test {
+ protected:
+  base::Job job{1, {}};
+  test::FineMesh mesh = test::subdivided(test::box(8, 8, 8), 4);
+  ReferenceMesh reference{mesh.positions, mesh.triangles, {}, job};
+
+  // A face at the vertex nearest to p.
+  Index faceAt(Vec3f p) const {
+    Index best = 0;
+    for (Index v = 0; v < mesh.positions.size(); ++v) {
+      if (length(mesh.positions[v] - p) < length(mesh.positions[best] - p)) best = v;
+    }
+    return reference.cornerOf(best) / 3;
+  }
+};
+
+TEST_F(ReferenceMeshTest, IsRoughAtEdgesAndCorners) {
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    int sides = 0;
+    for (int i = 0; i < 3; ++i) sides += mesh.positions[v][i] == 0 || mesh.positions[v][i] == 8;
+    EXPECT_EQ(reference.isRough(v), sides == 3);  // 55 degrees; the sides of an edge have 45
+  }
+}
+
+TEST_F(ReferenceMeshTest, LocatesTheFaceBelow) {
+  const Vec3f p(6.3f, 2.2f, 9);
+  const Index f = reference.locate(faceAt({1, 7, 8}), p, {0, 0, 1});
+  ASSERT_NE(f, kNone);
+  EXPECT_NEAR(reference.distance(f, p), 1, 1e-5f);
+  EXPECT_EQ(reference.locate(faceAt({1, 7, 8}), p, {0, 0, 1}, 2), kNone);  // too far to walk
+}
+
+TEST_F(ReferenceMeshTest, FollowsASectionDownAWall) {
+  // From the top over the edge at x = 8 and down: steep, as seen along the diagonal.
+  const Vec3f start(6.3f, 4.2f, 8);
+  const Index first = reference.locate(faceAt(start), start, {0, 0, 1});
+  ASSERT_NE(first, kNone);
+  std::vector<Vec3f> crossings;
+  const ReferenceMesh::Section section{start, {1.7f, 0.01f, -4}, unit(Vec3f(1, 0, 1)), true};
+  EXPECT_TRUE(reference.follow(first, section, [&](Vec3f m, Vec3f, Vec3f) {
+    crossings.push_back(m + start);
+    return true;
+  }));
+  ASSERT_GT(crossings.size(), 6U);
+  EXPECT_NEAR(crossings.front().z, 8, 1e-4f);
+  EXPECT_NEAR(crossings.back().x, 8, 1e-4f);
+  EXPECT_LT(crossings.back().z, 5);
+  int visits = 0;
+  EXPECT_FALSE(reference.follow(first, section, [&](Vec3f, Vec3f, Vec3f) { return ++visits < 3; }));
+  EXPECT_EQ(visits, 3);
+}
+
+TEST(Partition, OwnsEachVertexAndTriangleOnce) {
+  const test::FineMesh mesh = test::bumpySphere(5, 20, 1, 1);
+  base::Job job(1, {});
+  const ReferenceMesh reference(mesh.positions, mesh.triangles, {}, job);
+  Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  locateAll(surface, reference, {}, job);
+  Partition partition;
+  partition.build(surface, 500, 0.5f, job);
+  ASSERT_GT(partition.size(), 8U);
+  std::vector<int> vertices(mesh.positions.size()), triangles(mesh.triangles.size()),
+      foreign(mesh.triangles.size());
+  std::size_t samples = 0;
+  for (Index p = 0; p < partition.size(); ++p) {
+    EXPECT_LE(partition.vertices(p).size(), 500U);
+    for (const Index v : partition.vertices(p)) ++vertices[v];
+    for (const Index t : partition.triangles(p)) ++triangles[t];
+    for (const Index t : partition.foreign(p)) ++foreign[t];
+    samples += partition.samples(p).size();
+    for (const Index v : partition.vertices(p)) {
+      EXPECT_TRUE(!partition.isInner(v) || partition.box(p).hasInside(mesh.positions[v]));
+    }
+  }
+  EXPECT_EQ(std::count(vertices.begin(), vertices.end(), 1), std::ssize(vertices));
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    EXPECT_TRUE(triangles[t] == 1 ? foreign[t] == 0 : foreign[t] >= 2);
+  }
+  EXPECT_LT(samples, mesh.positions.size());
+  EXPECT_GT(samples, mesh.positions.size() / 2);
+}
+
+// Marks of a plate of this thickness.
+std::size_t marksOfPlate(float thickness, float reach) {
+  test::FineMesh mesh = test::subdivided(test::box(16, 16, thickness), 5);
+  base::Job job(1, {});
+  const ReferenceMesh reference(mesh.positions, mesh.triangles, {}, job);
+  Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  locateAll(surface, reference, {}, job);
+  Partition partition;
+  partition.build(surface, 500, 0.5f, job);
+  surface.flags.assign(surface.flags.size(), 0);
+  markNarrow(surface, partition, reach, job);
+  std::size_t marks = 0;
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3f p = mesh.positions[v];
+    const bool isInside = std::min({p.x, p.y, 16 - p.x, 16 - p.y}) > 6;
+    marks += isInside && (surface.flags[v] & kNarrow) != 0;
+  }
+  return marks;
+}
+
+TEST(Clearance, MarksSurfaceThatOtherSurfaceIsNear) {
+  EXPECT_GT(marksOfPlate(1, 0.8f), 50U);
+  EXPECT_GT(marksOfPlate(0.05f, 0.4f), 50U);
+  EXPECT_EQ(marksOfPlate(6, 0.4f), 0U);
+}
+
+}  // namespace
+}  // namespace tufa::reduce

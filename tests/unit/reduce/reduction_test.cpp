@@ -1,0 +1,191 @@
+#include "reduce/reduction.h"
+
+#include <gtest/gtest.h>
+#include <tufa/error.h>
+
+#include <cmath>
+
+#include "support/mesh_oracle.h"
+#include "unit/reduce/meshes.h"
+
+namespace tufa::reduce {
+namespace {
+
+// What must hold of any result, by oracles that know nothing of the engine.
+void expectSound(const test::FineMesh& before, const ReducedMesh& after,
+                 const Certificate& certificate) {
+  const Mesh reference = test::toMesh(before.positions, before.triangles);
+  const Mesh mesh = test::toMesh(after.positions, after.triangles);
+  const test::MeshTopology was = test::inspect(reference), is = test::inspect(mesh);
+  EXPECT_TRUE(is.manifold()) << is;
+  EXPECT_TRUE(is.closed()) << is;
+  EXPECT_EQ(is.euler(), was.euler());
+  EXPECT_EQ(is.components, was.components);
+  EXPECT_EQ(test::intersectingPairs(mesh), 0U);
+  const double there = test::sampledDistance(mesh, reference, 500);
+  const double back = test::sampledDistance(reference, mesh, 500);
+  EXPECT_LE(std::max(there, back), certificate.largest * 1.0001 + 1e-4);
+}
+
+ReducedMesh reduced(const test::FineMesh& mesh, float tolerance, int threads) {
+  base::Job job(threads, {});
+  ReducedMesh out;
+  job.run([&] {
+    Options options;
+    options.partVertices = 500;  // so that there are several parts
+    Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+    reduction.toTolerance(tolerance);
+    out = reduction.mesh();
+  });
+  return out;
+}
+
+class RandomMeshes : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomMeshes, StaySound) {
+  const unsigned seed = GetParam();
+  const double wavelength = 3.5 + seed % 5 * 1.5;
+  const test::FineMesh mesh = seed % 3 == 0
+                                  ? test::bumpySphere(4, 8, static_cast<float>(seed % 4), seed)
+                                  : test::noiseSolid(10, wavelength, seed);
+  const float tolerance = 0.03f * std::pow(1.6f, static_cast<float>(seed * 7 % 8));
+  base::Job job(1, {});
+  Options options;
+  options.partVertices = seed % 2 == 0 ? 4096 : 300;
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+  reduction.toTolerance(tolerance);
+  Certificate certificate = reduction.certificate();
+  EXPECT_LE(certificate.largest, tolerance * 1.15f) << tolerance;
+  expectSound(mesh, reduction.mesh(), certificate);
+  // On to a count in the same run.
+  const Index count = reduction.triangleCount() / 2;
+  reduction.toCount(count, 3);
+  certificate = reduction.certificate();
+  expectSound(mesh, reduction.mesh(), certificate);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomMeshes, testing::Range(1U, 19U));
+
+TEST(Reduction, GivesTheSameBytesForAnyThreads) {
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const test::FineMesh mesh = test::noiseSolid(16, 6, seed);
+    const ReducedMesh one = reduced(mesh, 0.2f, 1), four = reduced(mesh, 0.2f, 4);
+    EXPECT_EQ(one.positions, four.positions);
+    EXPECT_EQ(one.triangles, four.triangles);
+    EXPECT_EQ(one.sources, four.sources);
+  }
+}
+
+TEST(Reduction, SaysWhichVerticesAreTheInputs) {
+  const test::FineMesh mesh = test::noiseSolid(10, 6, 3);
+  const ReducedMesh out = reduced(mesh, 0.02f, 1);
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < out.positions.size(); ++v) {
+    if (out.sources[v] == kNone) continue;
+    ++kept;
+    EXPECT_EQ(out.positions[v], mesh.positions[out.sources[v]]);
+  }
+  EXPECT_GT(kept, 10U);
+  EXPECT_LT(kept, out.positions.size());
+}
+
+TEST(Reduction, PlacesVerticesAsTheyWillBeWritten) {
+  const test::FineMesh mesh = test::bumpySphere(4, 8, 1, 2);
+  base::Job job(1, {});
+  Options options;
+  options.rounded = [](const Vec3f& p) {
+    const auto toSixteenths = [](float x) { return std::round(x * 16) / 16; };
+    return Vec3f(toSixteenths(p.x), toSixteenths(p.y), toSixteenths(p.z));
+  };
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+  reduction.toTolerance(0.3f);
+  const ReducedMesh out = reduction.mesh();
+  for (std::size_t v = 0; v < out.positions.size(); ++v) {
+    if (out.sources[v] != kNone) continue;
+    EXPECT_EQ(out.positions[v], options.rounded(out.positions[v]));
+  }
+  EXPECT_LE(reduction.certificate().largest, 0.3f);
+}
+
+TEST(Reduction, OfAChainGoesOnFromLevelToLevel) {
+  const test::FineMesh mesh = test::bumpySphere(4, 8, 1, 4);
+  base::Job job(1, {});
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  Index last = reduction.triangleCount();
+  EXPECT_EQ(last, mesh.triangles.size());
+  EXPECT_LT(reduction.certificate().largest, 1e-5f);
+  for (const float tolerance : {0.1f, 0.2f, 0.4f, 0.8f}) {
+    reduction.toTolerance(tolerance);
+    EXPECT_LT(reduction.triangleCount(), last);
+    last = reduction.triangleCount();
+    EXPECT_LE(reduction.certificate().largest, tolerance);
+  }
+}
+
+TEST(Reduction, ReachesACount) {
+  const test::FineMesh mesh = test::bumpySphere(4, 8, 1, 4);
+  for (const Index count : {1000U, 300U, 60U}) {
+    base::Job job(1, {});
+    Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+    const float tolerance = reduction.toCount(count, 8);
+    EXPECT_LE(reduction.triangleCount(), count + 1);
+    EXPECT_GE(reduction.triangleCount(), count * 95 / 100);
+    EXPECT_LE(reduction.certificate().largest, tolerance);
+    EXPECT_LT(tolerance, 8);
+  }
+}
+
+TEST(Reduction, GivesUpACountOutOfReach) {
+  const test::FineMesh mesh = test::bumpySphere(3, 8, 1, 4);
+  base::Job job(1, {});
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  EXPECT_EQ(reduction.toCount(10, 0.2f), 0.2f);
+  EXPECT_GT(reduction.triangleCount(), 10U);
+  EXPECT_LE(reduction.certificate().largest, 0.2f);
+}
+
+// Starts from a cut, each of whose vertices stands for some of the reference's.
+TEST(Reduction, MeasuresToAReferenceThatIsNotItsInput) {
+  const test::FineMesh fine = test::bumpySphere(5, 8, 0.6f, 4);
+  const test::FineMesh coarse = test::bumpySphere(4, 8, 0.6f, 4);
+  std::vector<Index> standsFor;
+  for (const Vec3f p : fine.positions) {
+    Index nearest = 0;
+    for (Index v = 1; v < coarse.positions.size(); ++v) {
+      if (length(coarse.positions[v] - p) < length(coarse.positions[nearest] - p)) nearest = v;
+    }
+    standsFor.push_back(nearest);
+  }
+  base::Job job(1, {});
+  Reduction reduction(coarse.view(), fine.view(), standsFor, {}, {}, job);
+  reduction.toTolerance(0.3f);
+  EXPECT_LT(reduction.triangleCount(), coarse.triangles.size() / 2);
+  const Certificate certificate = reduction.certificate();
+  EXPECT_LE(certificate.largest, 0.3f);
+  expectSound(fine, reduction.mesh(), certificate);
+}
+
+TEST(Reduction, StopsWhenItIsCancelled) {
+  const test::FineMesh mesh = test::noiseSolid(14, 5, 3);
+  int calls = 0;
+  base::Job job(1, [&](std::string_view, double) { return ++calls < 20; });
+  job.beginStage("collapse", 1);
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  try {
+    reduction.toTolerance(0.5f);
+    FAIL() << "was not cancelled";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+  }
+}
+
+TEST(Reduction, OfNothingIsNothing) {
+  base::Job job(1, {});
+  Reduction reduction({}, {}, {}, {}, {}, job);
+  reduction.toTolerance(0.1f);
+  EXPECT_EQ(reduction.certificate().largest, 0);
+  EXPECT_TRUE(reduction.mesh().triangles.empty());
+}
+
+}  // namespace
+}  // namespace tufa::reduce
