@@ -27,9 +27,11 @@ struct Measured {
   double sum = 0;
   Index halved = 0, worst = kNone;
   std::vector<Gap> gaps;
+  std::vector<Index> beyond;
 
-  void see(float value, Index face) {
+  void see(float value, Index face, float expected) {
     if (value > largest) largest = value, worst = face;
+    if (value > expected) beyond.push_back(face);
   }
 };
 
@@ -114,7 +116,7 @@ class Measure {
       if (s_.owner[r] == kNone) continue;
       const float d = distance(reference_.positions()[r], s_.owner[r]);
       measured.sum += static_cast<double>(d);
-      measured.largest = std::max(measured.largest, d);
+      measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, expected_);
     }
   }
 
@@ -125,7 +127,7 @@ class Measure {
           reference_.cornersOf(f), v, {s_.owner[v[0]], s_.owner[v[1]], s_.owner[v[2]]}};
       if (face.hasOneOwner()) continue;
       const float way = std::sqrt(overlayBound2(*this, face, expected_ * expected_));
-      measured.see(way > expected_ ? halve(f, face, measured) : way, f);
+      measured.see(way > expected_ ? halve(f, face, measured) : way, f, expected_);
     }
   }
 
@@ -153,7 +155,7 @@ class Measure {
     const auto toFace = [&](Vec3f q, Index f) { return reference_.distance(f, q); };
     const Index t = gap.triangle;
     const Corners p{s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2)};
-    measured.see(Halving(toFace, about, expected_).bound(p, candidates), gap.face);
+    measured.see(Halving(toFace, about, expected_).bound(p, candidates), gap.face, expected_);
   }
 
   // As overlay_path.h sees a mesh.
@@ -252,7 +254,9 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     if (p.largest > all.largest) all.largest = p.largest, all.worst = p.worst;
     sum += p.sum;
     all.halved += p.halved;
+    all.beyond.insert(all.beyond.end(), p.beyond.begin(), p.beyond.end());
   }
+  sortUnique(all.beyond);
   all.mean = vertices == 0 ? 0 : static_cast<float>(sum / static_cast<double>(vertices));
   return all;
 }

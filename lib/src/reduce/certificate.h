@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "base/job.h"
 #include "reduce/reference_mesh.h"
 #include "reduce/surface.h"
@@ -12,6 +14,8 @@ struct Certificate {
   float mean = 0;       ///< of the reference vertices from their owners, voxels
   Index halved = 0;     ///< faces of the reference whose bound had to be found by halving
   Index worst = kNone;  ///< a face of the reference at the largest distance
+  /// The faces of the reference where it is more than expected, in rising order.
+  std::vector<Index> beyond;
 };
 
 /// Measures a surface.

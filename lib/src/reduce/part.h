@@ -118,10 +118,10 @@ class Part {
   bool sampleNearStar(Index s, Vec3f p);
   [[nodiscard]] int wedgeOf(Vec3f s) const;
   bool apexNear(Index a, Index b);
-  [[nodiscard]] bool crossingsNear() const;
-  [[nodiscard]] bool edgeNear(Index face, const ReferenceMesh::Section& section) const;
+  bool crossingsNear();
+  bool edgeNear(Index face, const ReferenceMesh::Section& section);
   bool facesNear();
-  [[nodiscard]] bool facesNearAt(Index referenceVertex) const;
+  [[nodiscard]] bool faceNear(Index face) const;
   [[nodiscard]] Index ownerAfter(Index referenceVertex) const;
 
   // part_intersect.cpp.
@@ -191,6 +191,7 @@ class Part {
   int newSlivers_ = 0;
   LocalQuadric sum_;
   std::vector<Taken> taken_;
+  std::vector<Index> roughFaces_;  ///< of the reference, to be tested
   NewAxis newAxis_[kMostRing];
   int newAxes_ = 0;
   Index apexFace_ = kNone;

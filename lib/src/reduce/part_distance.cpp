@@ -22,6 +22,7 @@ namespace tufa::reduce {
 
 Outcome Part::distanceGuard(Index a, Index b) {
   taken_.clear();
+  roughFaces_.clear();
   if (reference_->isScaled() && !scaleStarTolerance(a)) return Outcome::Sample;
   bool isNear = true;
   for (int i = 0; i < size_ && isNear; ++i) isNear = samplesNear(at_[i] / 3);
@@ -124,7 +125,7 @@ bool Part::apexNear(Index a, Index b) {
 
 // All crossings of the spokes with edges of the reference; the sharpest spoke first, as it is the
 // likeliest to be too far.
-bool Part::crossingsNear() const {
+bool Part::crossingsNear() {
   int sharpest = 0;
   float leastCosine = 2;
   for (int i = 0; i < size_; ++i) {
@@ -141,13 +142,14 @@ bool Part::crossingsNear() const {
 // Whether an edge stays near the reference, walking from the face below its start. Where the
 // reference bends away around a crease just before the end, the section never passes the end: it
 // then is enough that it came near it, as all triangles around the end have that in common.
-bool Part::edgeNear(Index face, const ReferenceMesh::Section& section) const {
+bool Part::edgeNear(Index face, const ReferenceMesh::Section& section) {
   constexpr float kArrived = 0.5f;  // voxels from the end, and twice the distance allowed
   const Vec3f z = section.along;
   const float scale = 1 / squaredLength(z);
   const float close2 = std::min(kArrived * kArrived, 4 * squaredDistance_);
   bool hasArrived = false;
-  const auto isNear = [&](Vec3f m, Vec3f right, Vec3f left) {
+  const auto isNear = [&](Index crossed, Vec3f m, Vec3f right, Vec3f left) {
+    if (reference_->isHeld(crossed)) roughFaces_.push_back(crossed);
     const float share = std::clamp(dot(m, z) * scale, 0.0f, 1.0f);
     const bool ok = squaredLength(m - z * share) <= squaredDistance_ ||
                     squaredDistanceOfSegments(right, left, {}, z) <= squaredDistance_;
@@ -207,34 +209,37 @@ Index Part::ownerAfter(Index r) const {
   return s.stamp == now_ ? s.taker : s.owner;
 }
 
-// Faces of the reference at rough vertices that change their owner.
+// Faces of the reference at rough vertices that change their owner, and held ones below an edge
+// that changes.
 bool Part::facesNear() {
-  bool isRough = false;
-  for (const Taken& t : taken_) isRough |= reference_->isRough(sampleIds_[t.sample]);
-  if (!isRough) return true;
+  for (const Taken& t : taken_) {
+    const Index r = sampleIds_[t.sample];
+    if (!reference_->isRough(r)) continue;
+    reference_->allAround(r, [&](Index f) {
+      roughFaces_.push_back(f);
+      return true;
+    });
+  }
+  if (roughFaces_.empty()) return true;
+  std::sort(roughFaces_.begin(), roughFaces_.end());
+  roughFaces_.erase(std::unique(roughFaces_.begin(), roughFaces_.end()), roughFaces_.end());
   for (const Taken& t : taken_) {
     samples_[t.sample].stamp = now_;
     samples_[t.sample].taker = t.triangle;
   }
-  for (const Taken& t : taken_) {
-    const Index r = sampleIds_[t.sample];
-    if (reference_->isRough(r) && !facesNearAt(r)) return false;
-  }
-  return true;
+  return std::all_of(roughFaces_.begin(), roughFaces_.end(), [&](Index f) { return faceNear(f); });
 }
 
-bool Part::facesNearAt(Index referenceVertex) const {
+bool Part::faceNear(Index face) const {
   const Changed mesh{*this};
-  return reference_->allAround(referenceVertex, [&](Index f) {
-    const auto& v = reference_->faces()[f].vertex;
-    OwnedFace face{
-        reference_->cornersOf(f), v, {ownerAfter(v[0]), ownerAfter(v[1]), ownerAfter(v[2])}};
-    for (const Index owner : face.owners) {
-      if (owner == kNone) return false;
-    }
-    return face.hasOneOwner() || overlayBound2(mesh, face, squaredDistance_) <= squaredDistance_ ||
-           wholeFace2(mesh, face) <= squaredDistance_;
-  });
+  const auto& v = reference_->faces()[face].vertex;
+  const OwnedFace owned{
+      reference_->cornersOf(face), v, {ownerAfter(v[0]), ownerAfter(v[1]), ownerAfter(v[2])}};
+  for (const Index owner : owned.owners) {
+    if (owner == kNone) return false;
+  }
+  return owned.hasOneOwner() || overlayBound2(mesh, owned, squaredDistance_) <= squaredDistance_ ||
+         (!reference_->isHeld(face) && wholeFace2(mesh, owned) <= squaredDistance_);
 }
 
 }  // namespace tufa::reduce

@@ -2,50 +2,95 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace tufa::reduce {
+namespace {
 
-void Partition::build(const Surface& surface, Index most, float share, base::Job& job) {
-  const std::size_t count = surface.position.size();
-  items_.resize(count);
-  for (Index i = 0; i < count; ++i) items_[i] = {surface.position[i], i};
-  nodes_.clear(), boxes_.clear(), ranges_.assign(1, 0);
+Box3f everywhere() {
   Box3f all;
   std::swap(all.lower, all.upper);
-  split(0, static_cast<Index>(count), all, most, share);
+  return all;
+}
+
+const Box3f kEverywhere = everywhere();
+
+}  // namespace
+
+void Partition::build(const Surface& surface, Index most, float share, base::Job& job) {
+  begin(surface);
+  nodes_.clear();
+  split(0, static_cast<Index>(items_.size()), kEverywhere, most, share);
+  finish(surface, job);
+}
+
+void Partition::build(const Surface& surface, const std::vector<Node>& tree, base::Job& job) {
+  begin(surface);
+  nodes_ = tree;
+  splitAlong(0, 0, static_cast<Index>(items_.size()), kEverywhere);
+  finish(surface, job);
+}
+
+void Partition::begin(const Surface& surface) {
+  items_.resize(surface.position.size());
+  for (Index i = 0; i < items_.size(); ++i) items_[i] = {surface.position[i], i};
+  boxes_.clear(), ranges_.assign(1, 0);
+}
+
+void Partition::finish(const Surface& surface, base::Job& job) {
   numberVertices(job);
   shareTriangles(surface);
   shareSamples(surface);
 }
 
+Index Partition::addPart(Index end, const Box3f& box) {
+  boxes_.push_back(box);
+  ranges_.push_back(end);
+  return static_cast<Index>(boxes_.size() - 1);
+}
+
+// Items below a plane go first; the end of them. Those on it are the upper side's, but may not
+// move.
+Index Partition::moveBelow(Index begin, Index end, int axis, float plane) {
+  const auto middle = std::partition(items_.begin() + begin, items_.begin() + end,
+                                     [&](const Item& i) { return i.p[axis] < plane; });
+  return static_cast<Index>(middle - items_.begin());
+}
+
 Index Partition::split(Index begin, Index end, const Box3f& box, Index most, float share) {
   const Index me = static_cast<Index>(nodes_.size());
   nodes_.push_back({-1, 0, 0, 0});
-  const auto leaf = [&] {
-    nodes_[me].low = static_cast<Index>(boxes_.size());
-    boxes_.push_back(box);
-    ranges_.push_back(end);
-    return me;
-  };
-  if (end - begin <= most) return leaf();
+  if (end - begin <= most) return nodes_[me].low = addPart(end, box), me;
   Box3f bounds;
   for (Index i = begin; i < end; ++i) bounds.add(items_[i].p);
   const Vec3f d = bounds.upper - bounds.lower;
   const int axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
   const auto first = items_.begin() + begin, last = items_.begin() + end;
-  auto middle = first + static_cast<std::ptrdiff_t>(static_cast<float>(end - begin) * share);
+  const auto middle = first + static_cast<std::ptrdiff_t>(static_cast<float>(end - begin) * share);
   std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
     return a.p[axis] < b.p[axis] || (a.p[axis] == b.p[axis] && a.vertex < b.vertex);
   });
-  const float plane = middle->p[axis];  // vertices on it are the upper side's, but may not move
-  middle = std::partition(first, middle, [&](const Item& i) { return i.p[axis] < plane; });
-  if (middle == first) return leaf();
+  const float plane = middle->p[axis];
+  const Index cut = moveBelow(begin, end, axis, plane);
+  if (cut == begin) return nodes_[me].low = addPart(end, box), me;
   Box3f low = box, high = box;
   low.upper[axis] = plane, high.lower[axis] = plane;
-  const Index cut = static_cast<Index>(middle - items_.begin());
   const Index l = split(begin, cut, low, most, share), h = split(cut, end, high, most, share);
   nodes_[me] = {axis, plane, l, h};
   return me;
+}
+
+void Partition::splitAlong(Index node, Index begin, Index end, const Box3f& box) {
+  const Node n = nodes_[node];
+  if (n.axis < 0) {
+    nodes_[node].low = addPart(end, box);
+    return;
+  }
+  const Index cut = moveBelow(begin, end, n.axis, n.at);
+  Box3f low = box, high = box;
+  low.upper[n.axis] = n.at, high.lower[n.axis] = n.at;
+  splitAlong(n.low, begin, cut, low);
+  splitAlong(n.high, cut, end, high);
 }
 
 void Partition::numberVertices(base::Job& job) {

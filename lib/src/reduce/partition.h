@@ -22,6 +22,17 @@ class Partition {
   /// have at most `most`. Depends on the surface alone. Cost: n log n.
   void build(const Surface& surface, Index most, float share, base::Job& job);
 
+  /// The tree of the parts.
+  struct Node {
+    int axis;  ///< -1: a part, whose number is `low`
+    float at;
+    Index low, high;
+  };
+  [[nodiscard]] const std::vector<Node>& tree() const { return nodes_; }
+  /// Cuts as a tree did, wherever the vertices are: so what changes in one place of a surface does
+  /// not change the parts elsewhere.
+  void build(const Surface& surface, const std::vector<Node>& tree, base::Job& job);
+
   [[nodiscard]] std::size_t size() const { return boxes_.size(); }
   [[nodiscard]] const Box3f& box(Index part) const { return boxes_[part]; }
   /// Vertices of a part, in rising order. Numbers in the part are places in these lists.
@@ -60,16 +71,16 @@ class Partition {
     Vec3f p;
     Index vertex;
   };
-  struct Node {
-    int axis;  ///< -1: a part, whose number is `low`
-    float at;
-    Index low, high;
-  };
   static std::span<const Index> of(const std::vector<Index>& all, const std::vector<Index>& first,
                                    Index part) {
     return {all.data() + first[part], all.data() + first[part + 1]};
   }
+  void begin(const Surface& surface);
+  void finish(const Surface& surface, base::Job& job);
+  [[nodiscard]] Index addPart(Index end, const Box3f& box);
+  [[nodiscard]] Index moveBelow(Index begin, Index end, int axis, float plane);
   Index split(Index begin, Index end, const Box3f& box, Index most, float share);
+  void splitAlong(Index node, Index begin, Index end, const Box3f& box);
   void numberVertices(base::Job& job);
   void shareTriangles(const Surface& surface);
   void shareSamples(const Surface& surface);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "reduce/clearance.h"
@@ -26,6 +27,22 @@ constexpr Index kLittle = 16;
 constexpr float kFirstTolerance = 0.02f;
 constexpr float kLeastStep = 1.06f;
 constexpr float kMostStep = 1.6f;
+// What was beyond the tolerance is held within so many tolerances and voxels.
+constexpr float kHeldTolerances = 2;
+constexpr float kHeldVoxels = 2;
+// What is left of the tolerance there in the first, the second and further attempts.
+constexpr float kHeldShares[] = {1, 0.5f, 0};
+
+Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::Job& job) {
+  std::vector<Triangle> triangles(reference.faces().size());
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    triangles[f].vertices = reference.faces()[f].vertex;
+  }
+  Surface surface = makeSurface(reference.positions(), triangles, job);
+  surface.rounded = options.rounded;
+  locateAll(surface, reference, {}, job);
+  return surface;
+}
 
 }  // namespace
 
@@ -34,16 +51,44 @@ Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> 
     : options_(std::move(options)),
       job_(job),
       reference_(reference.positions, reference.triangles, std::move(scales), job),
-      surface_(makeSurface(input.positions, input.triangles, job)) {
+      surface_(makeSurface(input.positions, input.triangles, job)),
+      isReference_(standsFor.empty()) {
   surface_.rounded = options_.rounded;
   locateAll(surface_, reference_, standsFor, job);
 }
 
 Reduction::~Reduction() = default;
 
+// Where the certificate is beyond the tolerance, the mesh is reduced again, with a smaller tolerance
+// around there and at last with none.
+void Reduction::toTolerance(float tolerance) {
+  if (tolerance < kLeastTolerance) return;
+  const std::vector<float> scales = reference_.scales();
+  const bool wasReference = isReference_;
+  std::optional<Surface> before;
+  if (!wasReference) before = surface_;
+  trees_.clear();
+  for (int i = 0;; ++i) {
+    nextTree_ = 0;
+    descendTo(tolerance);
+    measure(tolerance_);
+    fprintf(stderr,"DBG attempt %d: %u tri, cert %g, beyond %zu halved %u\n",i,triangleCount(),certificate_.largest,certificate_.beyond.size(),certificate_.halved);
+    if (certificate_.beyond.empty() || i == options_.attempts) break;
+    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance + kHeldVoxels,
+                    kHeldShares[std::min(i, 2)]);
+    if (before) {
+      surface_ = *before;
+    } else {
+      surface_ = surfaceOf(reference_, options_, job_);
+    }
+  }
+  reference_.releaseAll();
+  reference_.setScales(scales);
+}
+
 // Large tolerances by way of smaller ones: most collapses are cheap there, as little surface is
 // near other surface and triangles hold few samples.
-void Reduction::toTolerance(float tolerance) {
+void Reduction::descendTo(float tolerance) {
   std::vector<float> way{tolerance};
   while (way.back() * kRamp > std::max(tolerance_, kRampEnd)) way.push_back(way.back() * kRamp);
   for (std::size_t i = way.size(); i-- > 1;) reduce(way[i], 0, kRampPhases);
@@ -67,8 +112,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
     limits.errorShare = isLast ? kLargeErrorShare : kErrorShare;
     limits.allPlaces = isLast;
     const Index before = triangleCount();
-    partition_.build(surface_, options_.partVertices, phaseNumber_ % 2 == 0 ? 1.0f / 3 : 0.5f,
-                     job_);
+    buildParts();
     if (i == 0) markNarrow(surface_, partition_, options_.clearance * tolerance, job_);
     runPhase(limits, count);
     const bool isLittle = triangleCount() > before - before / kLittle;
@@ -78,13 +122,28 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   }
 }
 
+// The parts of a further attempt are those of the first one, so that it takes another course only
+// near what is held.
+void Reduction::buildParts() {
+  if (nextTree_ == trees_.size()) {
+    partition_.build(surface_, options_.partVertices, phaseNumber_ % 2 == 0 ? 1.0f / 3 : 0.5f,
+                     job_);
+    trees_.push_back(partition_.tree());
+  } else {
+    partition_.build(surface_, trees_[nextTree_], job_);
+  }
+  ++nextTree_;
+}
+
 // Growing tolerances, in small steps once the count is near: each is spent before the next one, so
 // the error at the count is at most a step over that of the tolerance that gives as many triangles.
 float Reduction::toCount(Index count, float mostTolerance) {
   float tolerance = std::max(tolerance_, kFirstTolerance);
+  trees_.clear(), nextTree_ = 0;
   for (;;) {
     reduce(std::min(tolerance, mostTolerance), count, options_.phases);
     if (triangleCount() <= count + 1 || tolerance >= mostTolerance) {
+      measure(tolerance_);
       return std::min(tolerance, mostTolerance);
     }
     const float ratio =
@@ -146,12 +205,13 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
     returnPart(std::move(part));
   });
   counts_ += lastCounts_;
+  isReference_ = false;
   compact(surface_, dead);
   ++phaseNumber_;
 }
 
-Certificate Reduction::certificate() const {
-  return certify(surface_, reference_, tolerance_, job_);
+void Reduction::measure(float expected) {
+  certificate_ = isReference_ ? Certificate() : certify(surface_, reference_, expected, job_);
 }
 
 ReducedMesh Reduction::mesh() const {

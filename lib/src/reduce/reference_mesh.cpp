@@ -52,9 +52,43 @@ void ReferenceMesh::markRough(base::Job& job) {
       } while (c != first && c != kNone && n < kMost);
       float leastCosine;
       static_cast<void>(commonAxis(normalsAround, n, leastCosine));
-      rough_[v] = c == kNone || leastCosine < kRoughCosine;
+      rough_[v] = c == kNone || leastCosine < kRoughCosine ? kRough : 0;
     }
   });
+}
+
+void ReferenceMesh::hold(std::span<const Index> faces, float radius, float factor) {
+  std::vector<Index> seenFrom(positions_.size(), kNone), reached;
+  std::vector<std::uint8_t> isNew(positions_.size(), 0);
+  for (const Index face : faces) {
+    const auto corners = cornersOf(face);
+    const Vec3f middle = (corners[0] + corners[1] + corners[2]) * (1.0f / 3);
+    reached.clear();
+    const auto reach = [&](Index f) {
+      for (const Index v : faces_[f].vertex) {
+        if (seenFrom[v] == face) continue;
+        seenFrom[v] = face;
+        reached.push_back(v);
+      }
+      return true;
+    };
+    reach(face);
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      const Index v = reached[i];
+      isNew[v] = 1;
+      if (squaredLength(positions_[v] - middle) <= radius * radius) allAround(v, reach);
+    }
+  }
+  if (factor != 1 && scales_.empty()) scales_.assign(positions_.size(), 1);
+  for (std::size_t v = 0; v < isNew.size(); ++v) {
+    if (isNew[v] == 0) continue;
+    rough_[v] |= kHeld;
+    if (factor != 1) scales_[v] *= factor;
+  }
+}
+
+void ReferenceMesh::releaseAll() {
+  for (std::uint8_t& flags : rough_) flags &= kRough;
 }
 
 Index ReferenceMesh::locate(Index start, Vec3f p, Vec3f axis, int steps) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/job.h"
@@ -11,7 +12,8 @@
 
 namespace tufa::reduce {
 
-/// The mesh that distances are measured to, the uniform one. It never changes.
+/// The mesh that distances are measured to, the uniform one. Only what is held and scales
+/// may be set anew.
 class ReferenceMesh {
  public:
   struct Face {
@@ -31,6 +33,17 @@ class ReferenceMesh {
   [[nodiscard]] bool isScaled() const { return !scales_.empty(); }
   /// What the tolerance is multiplied with at a vertex.
   [[nodiscard]] float scaleAt(Index vertex) const { return isScaled() ? scales_[vertex] : 1; }
+  [[nodiscard]] const std::vector<float>& scales() const { return scales_; }
+  void setScales(std::vector<float> scales) { scales_ = std::move(scales); }
+  /// Holds faces near others: within `radius` voxels of them, over connected faces, all vertices
+  /// count as rough, and scales are multiplied with `factor`.
+  void hold(std::span<const Index> faces, float radius, float factor);
+  void releaseAll();
+  /// Whether a vertex of a face is held.
+  [[nodiscard]] bool isHeld(Index face) const {
+    const auto& v = faces_[face].vertex;
+    return ((rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) & kHeld) != 0;
+  }
   /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
   /// what is seen along one axis may not be all.
   [[nodiscard]] bool isRough(Index vertex) const { return rough_[vertex] != 0; }
@@ -79,9 +92,9 @@ class ReferenceMesh {
   };
 
   /// Follows the section of the mesh with the plane through `start` that `along` and `axis` span,
-  /// from face `first` to where it passes the end. visit(m, right, left) is called where it crosses
-  /// the edge from right to left, at m, all as seen from the start; the walk ends when that returns
-  /// false. Returns whether the end was reached.
+  /// from face `first` to where it passes the end. visit(face, m, right, left) is called where it
+  /// leaves a face across the edge from right to left, at m, all as seen from the start; the walk
+  /// ends when that returns false. Returns whether the end was reached.
   ///
   /// The section is followed by the sides of the edges' ends alone, so that it needs no graph: it
   /// goes up and down walls, over creases, and past its own start if the surface does.
@@ -109,7 +122,7 @@ class ReferenceMesh {
       const float share = sr / (sr - sl);
       const Vec3f m = right + (left - right) * share;
       if (dot(m, forward) >= end) return true;
-      if (!visit(m, right, left)) return false;
+      if (!visit(face, m, right, left)) return false;
       const Index c = faces_[face].opposite[static_cast<std::size_t>(out)];
       if (c == kNone) return false;
       face = c / 3;
@@ -128,13 +141,14 @@ class ReferenceMesh {
 
  private:
   static constexpr int kMostSteps = 2000;
+  static constexpr std::uint8_t kRough = 1, kHeld = 2;
 
   void markRough(base::Job& job);
 
   std::vector<Vec3f> positions_;
   std::vector<Face> faces_;
   std::vector<Index> cornerOf_;
-  std::vector<std::uint8_t> rough_;
+  std::vector<std::uint8_t> rough_;  ///< of kRough and kHeld
   std::vector<float> scales_;
 };
 

@@ -28,6 +28,9 @@ constexpr double kFold = -0.766;
 constexpr double kOffNormal = 0.36;
 // Vertices nearer to each other than this, in voxels, stand for the same point of a crease.
 constexpr double kSamePoint = 0.1;
+// Square voxels; a smaller face that is folded over, as beside vertices that stand close together on
+// a crease, is let be: to move them off the crease would change the surface more.
+constexpr double kLeastArea = 0.02;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
 
@@ -190,6 +193,8 @@ class PlacementGuard {
 
   [[nodiscard]] bool isFold(const EdgeFace& a, const EdgeFace& b) const {
     const Vec3 na = normalOf(a.face), nb = normalOf(b.face);
+    const double least = 2 * kLeastArea * std::pow(surface_.affine().voxelSize(), 2);
+    if (std::min(na.squaredLength(), nb.squaredLength()) < least * least) return false;
     const double cosine = na.dot(nb);
     if (cosine >= 0 || cosine * cosine < kFold * kFold * na.squaredLength() * nb.squaredLength())
       return false;

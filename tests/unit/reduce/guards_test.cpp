@@ -21,6 +21,7 @@ Result reduced(const test::FineMesh& mesh, float tolerance, Outcome switchedOff 
   base::Job job(1, {});
   Options options;
   options.switchedOff = switchedOff;
+  if (switchedOff != Outcome::Done) options.attempts = 0;
   Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
   reduction.toTolerance(tolerance);
   const ReducedMesh out = reduction.mesh();
