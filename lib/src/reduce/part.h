@@ -104,6 +104,7 @@ class Part {
   bool ringGuard(Index a, Index b);
   [[nodiscard]] Link linkAfterCollapse(Index v, Index a, Index b) const;
   bool starGuard(Index v, const Link& link);
+  [[nodiscard]] bool sideGuard(Index a, Index b) const;
 
   // part_distance.cpp.
   Outcome distanceGuard(Index a, Index b);
@@ -119,7 +120,8 @@ class Part {
   [[nodiscard]] int wedgeOf(Vec3f s) const;
   bool apexNear(Index a, Index b);
   bool crossingsNear();
-  bool edgeNear(Index face, const ReferenceMesh::Section& section);
+  bool edgeNear(Index face, const ReferenceMesh::Section& section, Index end);
+  [[nodiscard]] bool isBelow(Index face, Index vertex, Vec3f axis) const;
   bool facesNear();
   [[nodiscard]] bool faceNear(Index face) const;
   [[nodiscard]] Index ownerAfter(Index referenceVertex) const;

@@ -134,21 +134,24 @@ bool Part::crossingsNear() {
   }
   for (int k = 0; k < size_; ++k) {
     const int i = sharpest + k < size_ ? sharpest + k : sharpest + k - size_;
-    if (!edgeNear(apexFace_, {place_, spoke_[i], n_, !isGraph_})) return false;
+    if (!edgeNear(apexFace_, {place_, spoke_[i], n_, !isGraph_}, ring_[i])) return false;
   }
   return true;
 }
 
 // Whether an edge stays near the reference, walking from the face below its start. Where the
 // reference bends away around a crease just before the end, the section never passes the end: it
-// then is enough that it came near it, as all triangles around the end have that in common.
-bool Part::edgeNear(Index face, const ReferenceMesh::Section& section) {
+// then is enough that it came near it, as all triangles around the end have that in common. The end
+// is at the vertex `end`.
+bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end) {
   constexpr float kArrived = 0.5f;  // voxels from the end, and twice the distance allowed
   const Vec3f z = section.along;
   const float scale = 1 / squaredLength(z);
   const float close2 = std::min(kArrived * kArrived, 4 * squaredDistance_);
   bool hasArrived = false;
+  Index last = face;
   const auto isNear = [&](Index crossed, Vec3f m, Vec3f right, Vec3f left) {
+    last = crossed;
     if (reference_->isHeld(crossed)) roughFaces_.push_back(crossed);
     const float share = std::clamp(dot(m, z) * scale, 0.0f, 1.0f);
     const bool ok = squaredLength(m - z * share) <= squaredDistance_ ||
@@ -156,7 +159,22 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section) {
     hasArrived |= ok && squaredLength(m - z) <= close2;
     return ok;
   };
-  return reference_->follow(face, section, isNear) || hasArrived;
+  if (!reference_->follow(face, section, isNear) && !hasArrived) return false;
+  return (flags_[end] & kNarrow) == 0 || isBelow(last, end, section.axis);
+}
+
+// Whether a vertex is over the sheet of the reference that a face is on: a way along an edge may
+// end on another sheet that is as near. Then the surface between would be over no part of the
+// reference.
+bool Part::isBelow(Index face, Index vertex, Vec3f axis) const {
+  const Index own = face_[vertex];
+  const Index found =
+      reference_->locate(face, position_[vertex], hasAxis(vertex) ? axis_[vertex] : axis);
+  if (found == own || found == kNone || own == kNone) return found == own && own != kNone;
+  const auto& f = reference_->faces()[found].vertex;
+  const auto& g = reference_->faces()[own].vertex;
+  return std::any_of(f.begin(), f.end(),
+                     [&](Index v) { return v == g[0] || v == g[1] || v == g[2]; });
 }
 
 // The mesh as it would be, for overlay_path.h. What collapse and flip change in the tables is few

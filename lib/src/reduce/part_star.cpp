@@ -201,4 +201,35 @@ bool Part::starGuard(Index v, const Link& link) {
   return true;
 }
 
+// Small components keep their inside. Larger ones cannot be turned inside out without an
+// intersection on the way; in one of few triangles all may share a vertex with the star, so that
+// there is no pair to test.
+bool Part::sideGuard(Index a, Index b) const {
+  constexpr int kMost = 16;  // triangles
+  if (size_ > kMost / 2) return true;
+  Index found[kMost] = {left_ / 3};
+  int count = 1;
+  for (int k = 0; k < count; ++k) {
+    for (Index i = 0; i < 3; ++i) {
+      const Index d = opposite_[3 * found[k] + i];
+      if (d == kNone) return true;
+      if (std::find(found, found + count, d / 3) != found + count) continue;
+      if (count == kMost) return true;
+      found[count++] = d / 3;
+    }
+  }
+  float before = 0, after = 0;
+  for (int k = 0; k < count; ++k) {
+    Vec3f p[3], q[3];
+    for (Index i = 0; i < 3; ++i) {
+      const Index v = vertex_[3 * found[k] + i];
+      p[i] = position_[v] - place_;
+      q[i] = v == a || v == b ? Vec3f() : p[i];
+    }
+    before += dot(p[0], cross(p[1], p[2]));
+    after += dot(q[0], cross(q[1], q[2]));
+  }
+  return before > 0 ? after > 0 : after < 0;
+}
+
 }  // namespace tufa::reduce

@@ -59,8 +59,8 @@ Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> 
 
 Reduction::~Reduction() = default;
 
-// Where the certificate is beyond the tolerance, the mesh is reduced again, with a smaller tolerance
-// around there and at last with none.
+// Where the certificate is beyond the tolerance, the mesh is reduced again, with a smaller
+// tolerance around there and at last with none.
 void Reduction::toTolerance(float tolerance) {
   if (tolerance < kLeastTolerance) return;
   const std::vector<float> scales = reference_.scales();
@@ -72,7 +72,6 @@ void Reduction::toTolerance(float tolerance) {
     nextTree_ = 0;
     descendTo(tolerance);
     measure(tolerance_);
-    fprintf(stderr,"DBG attempt %d: %u tri, cert %g, beyond %zu halved %u\n",i,triangleCount(),certificate_.largest,certificate_.beyond.size(),certificate_.halved);
     if (certificate_.beyond.empty() || i == options_.attempts) break;
     reference_.hold(certificate_.beyond, kHeldTolerances * tolerance + kHeldVoxels,
                     kHeldShares[std::min(i, 2)]);

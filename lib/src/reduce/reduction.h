@@ -48,7 +48,7 @@ struct Options {
   int phases = 8;              ///< most at one tolerance
   float firstShare = 0.5f;     ///< of the tolerance, for the first phase
   bool flips = true;
-  int attempts = 6;  ///< most to reduce less where the certificate is beyond the tolerance
+  int attempts = 6;     ///< most to reduce less where the certificate is beyond the tolerance
   float clearance = 4;  ///< of other surface, in tolerances, that needs no intersection test
   /// Of the tolerance that guards allow. The rest is for crossings that walks along an axis do not
   /// see exactly.
@@ -123,7 +123,7 @@ class Reduction {
   std::vector<std::unique_ptr<Part>> parts_;  ///< as many as threads have been at work
   OperationCounts counts_, lastCounts_;
   Certificate certificate_;
-  bool isReference_;  ///< the mesh is the reference still
+  bool isReference_;                                 ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance
   std::size_t nextTree_ = 0;
   int phaseNumber_ = 0;

@@ -183,7 +183,7 @@ TEST_F(ReferenceMeshTest, FollowsASectionDownAWall) {
   ASSERT_NE(first, kNone);
   std::vector<Vec3f> crossings;
   const ReferenceMesh::Section section{start, {1.7f, 0.01f, -4}, unit(Vec3f(1, 0, 1)), true};
-  EXPECT_TRUE(reference.follow(first, section, [&](Vec3f m, Vec3f, Vec3f) {
+  EXPECT_TRUE(reference.follow(first, section, [&](Index, Vec3f m, Vec3f, Vec3f) {
     crossings.push_back(m + start);
     return true;
   }));
@@ -192,7 +192,8 @@ TEST_F(ReferenceMeshTest, FollowsASectionDownAWall) {
   EXPECT_NEAR(crossings.back().x, 8, 1e-4f);
   EXPECT_LT(crossings.back().z, 5);
   int visits = 0;
-  EXPECT_FALSE(reference.follow(first, section, [&](Vec3f, Vec3f, Vec3f) { return ++visits < 3; }));
+  EXPECT_FALSE(
+      reference.follow(first, section, [&](Index, Vec3f, Vec3f, Vec3f) { return ++visits < 3; }));
   EXPECT_EQ(visits, 3);
 }
 
