@@ -10,7 +10,8 @@ namespace tufa {
 ///
 /// `stage` names the present stage ("signs", "vertices", ...), `fraction` is the share of the whole
 /// call that is done, from 0 to 1, never falling. Return false to cancel: the call then throws
-/// Error with ErrorCode::Cancelled and frees everything it holds.
+/// Error with ErrorCode::Cancelled and frees everything it holds. It is the only way to stop a
+/// call: one inside a group of TBB's tasks goes on to its end when that group is cancelled.
 using Progress = std::function<bool(std::string_view stage, double fraction)>;
 
 /// A Progress that asks an interrupter as OpenVDB's own tools take it, such as

@@ -62,8 +62,10 @@ void Job::tell(std::string_view stage, double inStage) {
       }
       whole_->tell(stage, sum / static_cast<double>(whole_->shares_->size()));
     }
-  } else if (progress_ && !progress_(stage, lastFraction_)) {
-    stopped_ = true;
+  } else if (progress_) {
+    bool goOn = true;
+    runIsolated([&] { goOn = progress_(stage, lastFraction_); });
+    if (!goOn) stopped_ = true;
   }
   throwIfStopped();
 }

@@ -216,7 +216,7 @@ class ChunkBuilder {
       for (const ChunkLevelEntry& level : entry.levels) {
         report_.intersectionsLeft += level.intersectionsLeft;
       }
-      sink_(index, std::move(made.chunk));
+      base::runIsolated([&] { sink_(index, std::move(made.chunk)); });
       entries_.push_back(std::move(entry));
     }
   }

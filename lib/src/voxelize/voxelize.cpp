@@ -51,7 +51,9 @@ class ProgressInterrupter final : public openvdb::util::NullInterrupter {
   bool wasInterrupted(int percent = -1) override {
     if (progress_ && std::this_thread::get_id() == caller_) {
       fraction_ = std::max(fraction_, std::min(percent / 100.0, 1.0));
-      if (!progress_("voxelizing", fraction_)) cancelled_ = true;
+      bool goOn = true;
+      base::runIsolated([&] { goOn = progress_("voxelizing", fraction_); });
+      if (!goOn) cancelled_ = true;
     }
     return cancelled_;
   }

@@ -295,12 +295,14 @@ void writeLods(const LodChain& chain, const std::filesystem::path& path,
                const LodWriteOptions& options, LodWriteReport* report) {
   io::requireInRange(options);
   LodWriteReport found;
-  io::LodWriter writer(chain, options, found);
-  if (io::namesMany(path)) {
-    writer.writeMany(path);
-  } else {
-    writer.writeOne(path);
-  }
+  base::runIsolated([&] {
+    io::LodWriter writer(chain, options, found);
+    if (io::namesMany(path)) {
+      writer.writeMany(path);
+    } else {
+      writer.writeOne(path);
+    }
+  });
   if (report != nullptr) *report = std::move(found);
 }
 

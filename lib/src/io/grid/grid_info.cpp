@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "io/grid/grid_traits.h"
 #include "io/grid/vdb_reader.h"
 
@@ -65,9 +66,7 @@ void addValues(const openvdb::GridBase& base, GridInfo& info) {
   }
 }
 
-}  // namespace
-
-GridInfo describeGrid(const openvdb::GridBase& grid) {
+GridInfo describe(const openvdb::GridBase& grid) {
   GridInfo info;
   info.name = grid.getName();
   info.valueType = grid.valueType();
@@ -92,6 +91,14 @@ GridInfo describeGrid(const openvdb::GridBase& grid) {
   return info;
 }
 
+}  // namespace
+
+GridInfo describeGrid(const openvdb::GridBase& grid) {
+  GridInfo info;
+  base::runIsolated([&] { info = describe(grid); });  // OpenVDB counts in parallel
+  return info;
+}
+
 std::string io::whyNotMeshable(const openvdb::GridBase& grid) {
   if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>()) {
     return "its values are of type " + grid.valueType() + ", not float or double";
@@ -104,7 +111,8 @@ std::vector<GridInfo> describeGrids(const std::filesystem::path& path) {
   io::VdbReader reader(path);
   std::vector<GridInfo> infos;
   for (std::size_t n = 0; n < reader.gridCount(); ++n) {
-    infos.push_back(describeGrid(*reader.readGrid(n)));
+    // OpenVDB frees the nodes of a tree in parallel too.
+    base::runIsolated([&] { infos.push_back(describe(*reader.readGrid(n))); });
     infos.back().name = reader.gridName(n);  // tells grids of one name apart
   }
   return infos;

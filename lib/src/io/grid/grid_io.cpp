@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "base/parallel.h"
 #include "io/grid/grid_traits.h"
 #include "io/grid/vdb_reader.h"
 #include "io/output_file.h"
@@ -75,7 +76,8 @@ void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
   try {
-    VdbWriter().writeTo(stream, grids, file.seekable());
+    // OpenVDB counts voxels in parallel for the metadata.
+    base::runIsolated([&] { VdbWriter().writeTo(stream, grids, file.seekable()); });
   } catch (const Error&) {
     throw;
   } catch (const openvdb::Exception& error) {
