@@ -271,6 +271,31 @@ std::string assetName(const std::filesystem::path& path) {
   return name.empty() ? "mesh" : name;
 }
 
+/// Whether two names lead to one file, be it there or not. Devices can be shared.
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  if (std::filesystem::is_other(std::filesystem::status(a, error))) return false;
+  if (std::filesystem::equivalent(a, b, error) && !error) return true;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(a), error) ==
+         std::filesystem::weakly_canonical(std::filesystem::absolute(b), error);
+}
+
+/// Throws Error(InvalidArgument) if the report would take the place of the volume or of a mesh.
+void requireReportApart(const LodArguments& arguments) {
+  std::vector<std::filesystem::path> others = {arguments.input};
+  const std::size_t levels =
+      std::max({static_cast<std::size_t>(arguments.lod.levels), arguments.tolerances.size(),
+                arguments.lod.triangles.size()});
+  for (std::size_t level = 0; level < levels; ++level) {
+    others.push_back(lodFile(arguments.output, level));
+  }
+  for (const std::filesystem::path& other : others) {
+    if (!sameFile(*arguments.report, other)) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                "--report " + *arguments.report + " would overwrite " + other.string());
+  }
+}
+
 /// Reads options that depend on each other. Throws Error(InvalidArgument).
 void settle(LodArguments& arguments, const CLI::App& command) {
   if (arguments.separate) arguments.output = withBraces(arguments.output).string();
@@ -288,7 +313,10 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   }
   if (arguments.check || arguments.report) requireChecker();
   requireWritable(lodFile(arguments.output, 0));
-  if (arguments.report) requireWritable(*arguments.report);
+  if (arguments.report) {
+    requireWritable(*arguments.report);
+    requireReportApart(arguments);
+  }
   arguments.writing.name = assetName(arguments.output);
   arguments.writing.up = arguments.up == "z" ? UpAxis::Z : UpAxis::Y;
   if (arguments.quantize) arguments.writing.compression = LodCompression::Quantized;

@@ -111,6 +111,34 @@ TEST_F(Command, LodDrawsAPageThatNeedsNoOther) {
   EXPECT_EQ(page.find("://"), std::string::npos);
 }
 
+/// What stands beside the report, under whatever name, is none of its business.
+TEST_F(Command, LodReportTouchesNoOtherFile) {
+  makeSphere();
+  writeBytes(folder / "page.html.tmp", "a user's");
+  writeBytes(folder / "victim", "as it was");
+  std::filesystem::create_symlink("victim", folder / "linked.html.tmp");
+  std::filesystem::create_directory(folder / "empty.html.tmp");
+  for (const char* page : {"page.html", "linked.html", "empty.html"}) {
+    const std::string report = std::string(" --report ") + page;
+    EXPECT_EQ(run("lod s.vdb -o s.glb --levels 1 --quiet" + report).exitCode, 0) << page;
+  }
+  EXPECT_EQ(readBytes(folder / "page.html.tmp"), "a user's");
+  EXPECT_EQ(readBytes(folder / "victim"), "as it was");
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "empty.html.tmp"));
+  // A device stays one, and gets the page.
+  const Outcome outcome = run("lod s.vdb -o s.glb --levels 1 --quiet --report /dev/stdout | cat");
+  EXPECT_NE(outcome.out.find("</html>"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Command, LodReportIsNoOtherFileOfTheRun) {
+  makeSphere();
+  std::filesystem::create_symlink("s.vdb", folder / "link.html");
+  expectFailure("lod s.vdb -o s.glb --report s.vdb", 2, "overwrite s.vdb");
+  expectFailure("lod s.vdb -o s.glb --report link.html", 2, "overwrite s.vdb");
+  expectFailure("lod s.vdb -o s.glb --report ./s.glb", 2, "overwrite s.glb");
+  expectFailure("lod s.vdb -o 's{}.glb' --report s3.glb", 2, "overwrite s3.glb");
+}
+
 TEST_F(Command, LodRefusesWhatItCannotDo) {
   makeSphere();
   expectFailure("lod s.vdb -o s.ply", 2, "--separate");

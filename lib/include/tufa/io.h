@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tufa {
@@ -83,5 +84,9 @@ struct GridInfo {
 /// Writes grids to a .vdb file, whole or not at all. Throws Error(UnwritableFile).
 TUFA_API void writeGrids(const std::vector<std::shared_ptr<const openvdb::GridBase>>& grids,
                          const std::filesystem::path& path);
+
+/// Writes bytes, such as a report beside a mesh, as write() writes meshes: whole or not at all, and
+/// directly to a pipe or a device. Throws Error(UnwritableFile).
+TUFA_API void writeFile(std::string_view bytes, const std::filesystem::path& path);
 
 }  // namespace tufa

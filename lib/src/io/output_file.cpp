@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <tufa/error.h>
+#include <tufa/io.h>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -179,3 +180,13 @@ OutputFileBuffer::pos_type OutputFileBuffer::seekpos(pos_type position,
 }
 
 }  // namespace tufa::io
+
+namespace tufa {
+
+void writeFile(std::string_view bytes, const std::filesystem::path& path) {
+  io::OutputFile file(path);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+}  // namespace tufa

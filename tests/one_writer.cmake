@@ -1,0 +1,26 @@
+# cmake -DPROJECT=. -P one_writer.cmake: fails if the library or the command writes files otherwise than
+# through io/output_file, which lets them appear whole or not at all and follows no planted name.
+cmake_minimum_required(VERSION 3.25)
+set(writes "ofstream|std::fstream|fopen|std::FILE|O_CREAT|O_WRONLY|O_RDWR|png_image_write_to_file")
+set(writer "^lib/src/io/output_file\\.cpp$")
+
+file(GLOB_RECURSE sources RELATIVE ${PROJECT}
+  ${PROJECT}/lib/*.h ${PROJECT}/lib/*.cpp ${PROJECT}/tools/*.h ${PROJECT}/tools/*.cpp)
+list(LENGTH sources count)
+if(count LESS 200)
+  message(FATAL_ERROR "only ${count} sources found in ${PROJECT}: is this the right folder?")
+endif()
+set(broken "")
+foreach(source IN LISTS sources)
+  if(source MATCHES "${writer}")
+    continue()
+  endif()
+  file(STRINGS ${PROJECT}/${source} lines REGEX "${writes}")
+  foreach(line IN LISTS lines)
+    string(APPEND broken "${source}: ${line}\n")
+  endforeach()
+endforeach()
+if(broken)
+  message(FATAL_ERROR "files are written by io/output_file alone:\n${broken}")
+endif()
+message(STATUS "${count} sources, one of which writes files")
