@@ -107,7 +107,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   ChunksRun run;
   std::shared_ptr<openvdb::GridBase> grid;
-  run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
+  run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   requireVoxels(*grid, arguments.input);
   const ChunkOptions options = chunkOptions(arguments, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;

@@ -1,6 +1,7 @@
 #include "console.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <tufa/error.h>
 #include <array>
@@ -41,6 +42,11 @@ void print(const std::string& text) {
 }
 
 void printNote(const std::string& text) { std::fprintf(stderr, "tufa: %s\n", text.c_str()); }
+
+void endAtOnce(int exitCode) {
+  std::fflush(nullptr);
+  ::_exit(exitCode);
+}
 
 std::string formatCount(std::size_t count) {
   std::string digits = std::to_string(count);

@@ -8,7 +8,7 @@
 
 #include "commands.h"
 #include "console.h"
-#include "crash_guard.h"
+#include "volume.h"
 
 namespace tufa::tools {
 namespace {
@@ -72,11 +72,7 @@ std::string describe(const GridInfo& info) {
 }
 
 int runInfo(const InfoArguments& arguments) {
-  std::vector<GridInfo> grids;
-  {
-    const CrashGuard guard(arguments.input);
-    grids = describeGrids(arguments.input);
-  }
+  const std::vector<GridInfo> grids = describeVolumes(arguments.input);
   if (arguments.json) {
     Json json;
     json["file"] = arguments.input;

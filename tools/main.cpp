@@ -29,6 +29,7 @@ int runGuarded(const Command& command) {
     return command();
   } catch (const tufa::Error& error) {
     printNote(error.what());
+    if (error.code() == tufa::ErrorCode::UnreadableFile) endAtOnce(exitCodeOf(error));
     return exitCodeOf(error);
   } catch (const std::bad_alloc&) {
     printNote("out of memory");

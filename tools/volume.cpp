@@ -41,6 +41,11 @@ std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
   return readGrid(file, name);
 }
 
+std::vector<GridInfo> describeVolumes(const std::string& file) {
+  const CrashGuard guard(file);
+  return describeGrids(file);
+}
+
 std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
                                                            const std::string& name) {
   const openvdb::GridBase::Ptr grid = readVolume(file, name);

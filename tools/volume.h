@@ -2,11 +2,13 @@
 
 #include <tufa/check.h>
 #include <tufa/contour.h>
+#include <tufa/io.h>
 #include <tufa/openvdb_fwd.h>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -23,12 +25,13 @@ void addContourOptions(CLI::App& app, ContourOptions& options);
 [[nodiscard]] double readTolerance(const std::string& option, const std::string& text,
                                    const openvdb::GridBase& grid);
 
-/// readGrid(), under a CrashGuard.
+/// readGrid() and describeGrids(), under a CrashGuard: the only ways to the volumes of a file.
 [[nodiscard]] std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
                                                             const std::optional<std::string>& name);
+[[nodiscard]] std::vector<GridInfo> describeVolumes(const std::string& file);
 
-/// The same for a grid that multiplies the tolerance. Throws Error(UnsupportedGrid) if its values
-/// are no floats: contour() would find that only after much work.
+/// readVolume() for a grid that multiplies the tolerance. Throws Error(UnsupportedGrid) if its
+/// values are no floats: contour() would find that only after much work.
 [[nodiscard]] std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
                                                                          const std::string& name);
 
