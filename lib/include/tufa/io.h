@@ -77,7 +77,8 @@ struct GridInfo {
 
 /// Reads one grid of a .vdb file: by name, or, without one, the first level set that can be meshed,
 /// else the first grid that can be meshed. Throws Error: UnreadableFile, UnknownGrid (the message
-/// lists the names there are), UnsupportedGrid (nothing in the file can be meshed).
+/// lists the names there are), UnsupportedGrid (nothing in the file can be meshed, or the transform
+/// of the grid of that name is out of range).
 [[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> readGrid(
     const std::filesystem::path& path, const std::optional<std::string>& name = {});
 

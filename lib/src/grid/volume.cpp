@@ -23,6 +23,13 @@ void requireScalar(const openvdb::GridBase& grid) {
   }
 }
 
+void requireRange(const openvdb::GridBase& grid) {
+  const std::string why = base::whyOutOfRange(transformOf(grid).lattice());
+  if (why.empty()) return;
+  throw Error(ErrorCode::UnsupportedGrid,
+              "grid \"" + grid.getName() + "\" cannot be meshed: " + why);
+}
+
 void requireCoordinates(const openvdb::GridBase& grid) {
   // Cells and nodes of the tree reach that far beyond the data at most.
   constexpr std::int64_t kMargin = 4096;
@@ -52,6 +59,7 @@ Coord lowestOrigin(const Blocks& blocks) {
 
 void requireMeshable(const openvdb::GridBase& grid) {
   requireScalar(grid);
+  requireRange(grid);
   requireCoordinates(grid);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/lattice_range.h"
 #include "base/number_text.h"
 #include "shapes/fields.h"
 #include "shapes/random_volumes.h"
@@ -72,7 +73,7 @@ std::optional<Shape> shapeByName(std::string_view name) {
 }
 
 openvdb::FloatGrid::Ptr makeShape(Shape shape, const ShapeOptions& options) {
-  requirePositive("voxel size", options.voxelSize, 0);
+  base::requireVoxelSize(options.voxelSize);
   requirePositive("half width", options.halfWidth, 1);
   openvdb::initialize();
   openvdb::FloatGrid::Ptr grid;

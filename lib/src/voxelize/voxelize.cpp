@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/job.h"
+#include "base/lattice_range.h"
 #include "base/number_text.h"
 
 namespace tufa {
@@ -100,10 +101,7 @@ void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
 }  // namespace
 
 openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
-  if (!std::isfinite(options.voxelSize) || options.voxelSize <= 0) {
-    throw Error(ErrorCode::InvalidArgument, "voxel size must be a finite number above 0, not " +
-                                                base::numberText(options.voxelSize));
-  }
+  base::requireVoxelSize(options.voxelSize);
   if (!std::isfinite(options.halfWidth) || options.halfWidth < 1) {
     throw Error(ErrorCode::InvalidArgument,
                 "half width must be a finite number of 1 or more voxels, not " +

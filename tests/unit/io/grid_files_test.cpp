@@ -186,5 +186,30 @@ TEST(GridFiles, ReadTheSampleVolumes) {
   EXPECT_EQ(readGrid(folder / "zeno_sphere.vdb")->activeVoxelCount(), 40404u);
 }
 
+TEST(GridFiles, OfScalesOutOfRangeAreRefusedByName) {
+  const ScratchFolder folder;
+  writeGrids({makeBall("ball")}, folder / "m.vdb");
+  std::string bytes = test::readBytes(folder / "m.vdb");
+  const auto pattern = [](double voxelSize) {
+    return std::string(reinterpret_cast<const char*>(&voxelSize), sizeof voxelSize);
+  };
+  const double voxelSize = makeBall("ball")->voxelSize()[0];
+  for (const double scale : {1e-40, 1e300, 0.0, std::nan("")}) {
+    std::string damaged = bytes;
+    std::size_t places = 0;
+    for (std::size_t at = 0; (at = damaged.find(pattern(voxelSize), at)) != std::string::npos;
+         ++at) {
+      damaged.replace(at, sizeof scale, pattern(scale));
+      ++places;
+    }
+    ASSERT_GE(places, 6u);
+    test::writeBytes(folder / "m.vdb", damaged);
+    expectError(ErrorCode::UnsupportedGrid, "m.vdb", [&] { (void)readGrid(folder / "m.vdb"); });
+    expectError(ErrorCode::UnsupportedGrid, "m.vdb cannot be meshed: its",
+                [&] { (void)readGrid(folder / "m.vdb", "ball"); });
+    EXPECT_FALSE(describeGrids(folder / "m.vdb").at(0).meshable);
+  }
+}
+
 }  // namespace
 }  // namespace tufa

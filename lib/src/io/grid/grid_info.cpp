@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/lattice_range.h"
 #include "base/parallel.h"
 #include "io/grid/grid_traits.h"
 #include "io/grid/vdb_reader.h"
@@ -104,7 +105,20 @@ std::string io::whyNotMeshable(const openvdb::GridBase& grid) {
     return "its values are of type " + grid.valueType() + ", not float or double";
   }
   if (!grid.transform().isLinear()) return "its transform is a frustum, not linear";
-  return {};
+  return whyOutOfRange(grid);
+}
+
+std::string io::whyOutOfRange(const openvdb::GridBase& grid) {
+  if (!grid.transform().isLinear()) return {};
+  const openvdb::Vec3d origin = grid.transform().indexToWorld(openvdb::Vec3d(0));
+  base::Lattice lattice{{origin[0], origin[1], origin[2]}, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d unit(0);
+    unit[axis] = 1;
+    const openvdb::Vec3d step = grid.transform().baseMap()->applyJacobian(unit);
+    lattice.steps[axis] = {step[0], step[1], step[2]};
+  }
+  return base::whyOutOfRange(lattice);
 }
 
 std::vector<GridInfo> describeGrids(const std::filesystem::path& path) {

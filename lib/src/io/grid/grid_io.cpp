@@ -65,7 +65,14 @@ openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
   if (reader.gridCount() == 0) {
     throw Error(ErrorCode::UnreadableFile, "cannot read " + path.string() + ": it holds no grid");
   }
-  return reader.readGrid(name ? findNamed(reader, *name, path) : findMeshable(reader, path));
+  if (!name) return reader.readGrid(findMeshable(reader, path));
+  const std::size_t index = findNamed(reader, *name, path);
+  // Of no use for anything: OpenVDB's own functions throw on such transforms.
+  if (const std::string why = io::whyOutOfRange(*reader.readOutline(index)); !why.empty()) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                "grid \"" + *name + "\" in " + path.string() + " cannot be meshed: " + why);
+  }
+  return reader.readGrid(index);
 }
 
 void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
