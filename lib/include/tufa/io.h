@@ -78,7 +78,8 @@ struct GridInfo {
 /// Reads one grid of a .vdb file: by name, or, without one, the first level set that can be meshed,
 /// else the first grid that can be meshed. Throws Error: UnreadableFile, UnknownGrid (the message
 /// lists the names there are), UnsupportedGrid (nothing in the file can be meshed, or the transform
-/// of the grid of that name is out of range).
+/// of the grid of that name is out of range). Grids of points, which cannot be meshed, come with
+/// their active voxels but without the points.
 [[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> readGrid(
     const std::filesystem::path& path, const std::optional<std::string>& name = {});
 
