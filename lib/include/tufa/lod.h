@@ -100,11 +100,11 @@ enum class LodCompression {
   Meshopt,    ///< the same, and packed: EXT_meshopt_compression
 };
 
-/// Options of writeLods(). All but `name`, `threads` and `progress` are for .glb only.
+/// Options of writeLods(). `up`, `scale` and `compression` are for .glb only.
 struct LodWriteOptions {
   std::string name = "mesh";  ///< of nodes and meshes: NAME_LOD0, NAME_LOD1, ...
-  /// Vertices are split where the normals of two faces at an edge differ by more than this angle:
-  /// degrees, 0 to 180; 180 splits none.
+  /// .glb and .obj: normals are split where those of two faces at an edge differ by more than this
+  /// angle: degrees, 0 to 180; 180 splits none. In .glb the vertices there become several.
   double creaseAngle = 40;
   UpAxis up = UpAxis::Y;  ///< of the volume
   double scale = 1;       ///< metres in a world unit; above 0

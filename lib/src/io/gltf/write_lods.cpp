@@ -268,6 +268,8 @@ class LodWriter {
     const Mesh& mesh = chain_.levels[level].mesh;
     WriteOptions options;
     options.name = options_.name + "_LOD" + std::to_string(level);
+    options.creaseAngle = options_.creaseAngle;
+    options.threads = options_.threads;
     tufa::write(mesh, path, options);
     report_.vertices.push_back(mesh.positions.size());
     report_.files.push_back(path);

@@ -59,6 +59,15 @@ std::size_t findMeshable(io::VdbReader& reader, const std::filesystem::path& pat
 
 }  // namespace
 
+std::vector<GridName> listGrids(const std::filesystem::path& path) {
+  io::VdbReader reader(path);
+  std::vector<GridName> grids;
+  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
+    grids.push_back({reader.gridName(n), io::whyNotMeshable(*reader.readOutline(n)).empty()});
+  }
+  return grids;
+}
+
 openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
                                 const std::optional<std::string>& name) {
   io::VdbReader reader(path);

@@ -58,7 +58,7 @@ void VdbReader::guarded(const std::string& what, const std::function<void()>& wo
 void VdbReader::requireVdb() {
   std::error_code error;
   const auto status = std::filesystem::status(path_, error);
-  if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+  if (status.type() == std::filesystem::file_type::not_found) fail(std::strerror(ENOENT));
   if (error) fail(error.message());
   if (std::filesystem::is_directory(status)) fail("it is a folder");
   if (!std::filesystem::is_regular_file(status)) fail("it is not a regular file");
