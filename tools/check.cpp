@@ -23,7 +23,7 @@ struct CheckArguments {
   std::string input;
   std::optional<std::string> against;
   std::optional<std::string> grid;
-  std::optional<double> isovalue;
+  std::optional<std::string> isovalue;
   int threads = 0;
   bool json = false;
   bool quiet = false;
@@ -38,10 +38,11 @@ CheckReport checkMesh(const Mesh& mesh, const CheckArguments& arguments) {
 }
 
 DistanceReport measureDistance(const Mesh& mesh, const openvdb::GridBase& grid,
+                               const std::optional<double>& isovalue,
                                const CheckArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   DistanceOptions options;
-  options.isovalue = arguments.isovalue;
+  options.isovalue = isovalue;
   options.threads = arguments.threads;
   options.progress = bar.callback();
   return checkAgainst(mesh, grid, options);
@@ -52,11 +53,15 @@ int runCheck(const CheckArguments& arguments) {
   // Both files are read before the work begins: a wrong name should not show minutes later.
   const Mesh mesh = readMesh(arguments.input);
   std::shared_ptr<openvdb::GridBase> grid;
-  if (arguments.against) grid = readVolume(*arguments.against, arguments.grid);
+  std::optional<double> isovalue;
+  if (arguments.against) {
+    grid = readVolume(*arguments.against, arguments.grid);
+    isovalue = readIsovalue(arguments.isovalue, *grid, *arguments.against);
+  }
 
   const CheckReport report = checkMesh(mesh, arguments);
   std::optional<DistanceReport> distance;
-  if (grid) distance = measureDistance(mesh, *grid, arguments);
+  if (grid) distance = measureDistance(mesh, *grid, isovalue, arguments);
 
   if (arguments.json) {
     Json json;
@@ -81,8 +86,7 @@ void addCheckCommand(CLI::App& app, Command& chosen) {
       check->add_option("--against", arguments->against,
                         "measure the distance to the isosurface of a grid of this .vdb file");
   check->add_option("--grid", arguments->grid, "the grid's name")->needs(against);
-  check->add_option("--iso", arguments->isovalue, "the grid's value on the surface")
-      ->needs(against);
+  addIsovalueOption(*check, arguments->isovalue)->needs(against);
   addThreadsOption(*check, arguments->threads);
   check->add_flag("--json", arguments->json, "one JSON object on standard output");
   check->add_flag("--quiet", arguments->quiet, "no text, only the exit code");

@@ -18,6 +18,7 @@
 #include "commands.h"
 #include "console.h"
 #include "lod_page.h"
+#include "paths.h"
 #include "progress_bar.h"
 #include "report.h"
 #include "volume.h"
@@ -32,6 +33,7 @@ struct LodArguments {
   std::string output;
   std::optional<std::string> grid;
   LodOptions lod;
+  std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
   std::vector<std::string> tolerances;
   LodWriteOptions writing;
@@ -39,6 +41,7 @@ struct LodArguments {
   bool quantize = false;
   bool compress = false;
   bool separate = false;
+  bool allowEmpty = false;
   std::optional<std::string> report;
   bool check = false;
   bool json = false;
@@ -80,6 +83,7 @@ double smallestAngle(const Mesh& mesh) {
 LodOptions chainOptions(const LodArguments& arguments, const openvdb::GridBase& grid,
                         ProgressBar& bar) {
   LodOptions options = arguments.lod;
+  options.contour.isovalue = readIsovalue(arguments.isovalue, grid, arguments.input);
   options.contour.tolerance = readTolerance("--tolerance", arguments.tolerance, grid);
   for (const std::string& text : arguments.tolerances) {
     options.tolerances.push_back(readTolerance("--tolerances", text, grid));
@@ -94,15 +98,21 @@ LodRun runStages(const LodArguments& arguments) {
   std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   run.gridName = nameOf(*grid);
-  requireVoxels(*grid, arguments.input);
+  if (!arguments.allowEmpty) requireVoxels(*grid, arguments.input);
   const LodOptions options = chainOptions(arguments, *grid, bar);
   run.dropping = options.allowTopologyChange;
   run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
   if (run.chain.levels.empty() && !run.chain.stopped.empty()) {
     throw Error(ErrorCode::InvalidArgument, run.chain.stopped);
   }
-  requireSurface(run.chain.levels.empty() ? Mesh() : run.chain.levels[0].mesh, run.contour.isovalue,
-                 *grid, arguments.input);
+  if (!arguments.quiet) {
+    noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
+    if (!arguments.grid) noteChoice(arguments.input, run.gridName);
+  }
+  if (!arguments.allowEmpty) {
+    requireSurface(run.chain.levels.empty() ? Mesh() : run.chain.levels[0].mesh,
+                   run.contour.isovalue, *grid, arguments.input);
+  }
   if (arguments.report) {
     ContourOptions uniform = options.contour;
     uniform.uniform = true;
@@ -220,15 +230,16 @@ std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
   return rows;
 }
 
-std::string summary(const LodRun& run) {
-  std::string text = layOut(tableOf(run));
-  for (const auto& file : run.written.files)
-    text += (text.back() == '\n' ? "" : ", ") + file.string();
-  text += ": " + formatCount(run.contour.activeVoxels) + " active voxels, read " +
-          shortNumber(run.readSeconds) + " s, chain " + shortNumber(run.chainSeconds) +
-          " s (of which all levels share " + shortNumber(run.chain.sharedSeconds) + " s), ";
-  if (!run.checks.empty()) text += "check " + shortNumber(run.checkSeconds) + " s, ";
-  return text + "write " + shortNumber(run.writeSeconds) + " s\n";
+std::string summary(const LodRun& run, const LodArguments& arguments) {
+  std::string text = (run.gridName.empty() ? "unnamed grid" : "grid \"" + run.gridName + "\"") +
+                     ": " + formatCount(run.contour.activeVoxels) + " active voxels, isovalue " +
+                     formatNumber(run.contour.isovalue) + "\n" + layOut(tableOf(run));
+  text += "read " + shortNumber(run.readSeconds) + " s, chain " + shortNumber(run.chainSeconds) +
+          " s (of which all levels share " + shortNumber(run.chain.sharedSeconds) + " s)";
+  if (!run.checks.empty()) text += ", check " + shortNumber(run.checkSeconds) + " s";
+  std::vector<std::filesystem::path> files = run.written.files;
+  if (arguments.report) files.emplace_back(*arguments.report);
+  return text + "\n" + describeWritten(files, run.writeSeconds);
 }
 
 /// Prints what the user should know to standard error; returns the exit code.
@@ -248,13 +259,6 @@ int judge(const LodRun& run) {
   return exitCode;
 }
 
-bool isGlb(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".glb";
-}
-
 /// The output with braces for the LOD's number, if there is to be a file for each.
 std::filesystem::path withBraces(const std::filesystem::path& path) {
   if (lodFile(path, 0) != path) return path;
@@ -271,37 +275,37 @@ std::string assetName(const std::filesystem::path& path) {
   return name.empty() ? "mesh" : name;
 }
 
-/// Whether two names lead to one file, be it there or not. Devices can be shared.
-bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code error;
-  if (std::filesystem::is_other(std::filesystem::status(a, error))) return false;
-  if (std::filesystem::equivalent(a, b, error) && !error) return true;
-  return std::filesystem::weakly_canonical(std::filesystem::absolute(a), error) ==
-         std::filesystem::weakly_canonical(std::filesystem::absolute(b), error);
-}
-
-/// Throws Error(InvalidArgument) if the report would take the place of the volume or of a mesh.
-void requireReportApart(const LodArguments& arguments) {
-  std::vector<std::filesystem::path> others = {arguments.input};
-  const std::size_t levels =
-      std::max({static_cast<std::size_t>(arguments.lod.levels), arguments.tolerances.size(),
-                arguments.lod.triangles.size()});
-  for (std::size_t level = 0; level < levels; ++level) {
-    others.push_back(lodFile(arguments.output, level));
+/// Throws Error(InvalidArgument) if the file of some LOD, or the page, is the input or another
+/// output.
+void requireDistinctLevels(const LodArguments& arguments) {
+  const LodOptions& lod = arguments.lod;
+  const std::size_t most = std::max({static_cast<std::size_t>(std::max(lod.levels, 0)),
+                                     arguments.tolerances.size(), lod.triangles.size()});
+  std::vector<std::filesystem::path> files;
+  for (std::size_t level = 0; level < most; ++level) {
+    files.push_back(lodFile(arguments.output, level));
+    requireDistinct(files.back(), {arguments.input});
   }
-  for (const std::filesystem::path& other : others) {
-    if (!sameFile(*arguments.report, other)) continue;
+  if (!arguments.report) return;
+  files.emplace_back(arguments.input);
+  for (const std::filesystem::path& file : files) {
+    if (!sameFile(*arguments.report, file)) continue;
     throw Error(ErrorCode::InvalidArgument,
-                "--report " + *arguments.report + " would overwrite " + other.string());
+                "--report " + *arguments.report + " would overwrite " + file.string());
   }
+  requirePageEnding(*arguments.report);
 }
 
 /// Reads options that depend on each other. Throws Error(InvalidArgument).
 void settle(LodArguments& arguments, const CLI::App& command) {
   if (arguments.separate) arguments.output = withBraces(arguments.output).string();
   requireMeshEnding(arguments.output);
-  if (!isGlb(arguments.output)) {
-    for (const char* option : {"--crease", "--up", "--scale", "--quantize", "--compress"}) {
+  const std::string ending = endingOf(arguments.output);
+  if (ending != ".glb") {
+    if (ending != ".obj" && command.count("--crease") > 0) {
+      throw Error(ErrorCode::InvalidArgument, "--crease is for .glb and .obj only");
+    }
+    for (const char* option : {"--up", "--scale", "--quantize", "--compress"}) {
       if (command.count(option) == 0) continue;
       throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for .glb only");
     }
@@ -312,11 +316,9 @@ void settle(LodArguments& arguments, const CLI::App& command) {
     }
   }
   if (arguments.check || arguments.report) requireChecker();
+  requireDistinctLevels(arguments);
   requireWritable(lodFile(arguments.output, 0));
-  if (arguments.report) {
-    requireWritable(*arguments.report);
-    requireReportApart(arguments);
-  }
+  if (arguments.report) requireWritable(*arguments.report);
   arguments.writing.name = assetName(arguments.output);
   arguments.writing.up = arguments.up == "z" ? UpAxis::Z : UpAxis::Y;
   if (arguments.quantize) arguments.writing.compression = LodCompression::Quantized;
@@ -348,7 +350,7 @@ int runLod(const LodArguments& arguments) {
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
-    print(summary(run));
+    print(summary(run, arguments));
   }
   return exitCode;
 }
@@ -385,14 +387,14 @@ void addChainOptions(CLI::App& app, LodArguments& arguments) {
 
 void addGlbOptions(CLI::App& app, LodArguments& arguments) {
   app.add_option("--crease", arguments.writing.creaseAngle,
-                 "normals are split where faces differ by more, in degrees")
+                 ".glb and .obj: normals are split where faces differ by more, in degrees")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   app.add_option("--up", arguments.up, "axis of the volume that points up; glTF's is y")
       ->check(CLI::IsMember({"y", "z"}))
       ->capture_default_str();
   app.add_option("--scale", arguments.writing.scale, "metres in a world unit")
-      ->check(CLI::PositiveNumber)
+      ->check(above0())
       ->capture_default_str();
   app.add_flag("--quantize", arguments.quantize,
                "positions in 16 bits, normals in 8 (KHR_mesh_quantization)");
@@ -413,7 +415,9 @@ void addLodCommand(CLI::App& app, Command& chosen) {
   lod->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);
-  addContourOptions(*lod, arguments->lod.contour);
+  addContourOptions(*lod, arguments->lod.contour, arguments->isovalue);
+  lod->add_flag("--allow-empty", arguments->allowEmpty,
+                "write an empty file where the grid has no surface");
   lod->add_option("--report", arguments->report,
                   checkerHelp("a page of HTML with pictures of all levels"));
   lod->add_flag("--check", arguments->check,
