@@ -108,7 +108,9 @@ std::vector<Chunk> readChunks(const ChunkIndex& index, const Lods& lods, const s
 }
 
 AssembleRun runStages(const AssembleArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+  ProgressBar bar(arguments.quiet, arguments.check
+                                       ? std::vector{kCheckShare, kCheckShare, kWriteShare}
+                                       : std::vector{kCheckShare, kWriteShare});
   AssembleRun run;
   std::vector<Chunk> chunks;
   run.readSeconds = timed([&] {

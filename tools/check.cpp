@@ -29,8 +29,7 @@ struct CheckArguments {
   bool quiet = false;
 };
 
-CheckReport checkMesh(const Mesh& mesh, const CheckArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+CheckReport checkMesh(const Mesh& mesh, const CheckArguments& arguments, ProgressBar& bar) {
   CheckOptions options;
   options.threads = arguments.threads;
   options.progress = bar.callback();
@@ -39,8 +38,7 @@ CheckReport checkMesh(const Mesh& mesh, const CheckArguments& arguments) {
 
 DistanceReport measureDistance(const Mesh& mesh, const openvdb::GridBase& grid,
                                const std::optional<double>& isovalue,
-                               const CheckArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+                               const CheckArguments& arguments, ProgressBar& bar) {
   DistanceOptions options;
   options.isovalue = isovalue;
   options.threads = arguments.threads;
@@ -59,9 +57,11 @@ int runCheck(const CheckArguments& arguments) {
     isovalue = readIsovalue(arguments.isovalue, *grid, *arguments.against);
   }
 
-  const CheckReport report = checkMesh(mesh, arguments);
+  // Distances are measured at many places of both surfaces, about as long as all else takes.
+  ProgressBar bar(arguments.quiet, grid ? std::vector{1.0, 1.0} : std::vector{1.0});
+  const CheckReport report = checkMesh(mesh, arguments, bar);
   std::optional<DistanceReport> distance;
-  if (grid) distance = measureDistance(mesh, *grid, isovalue, arguments);
+  if (grid) distance = measureDistance(mesh, *grid, isovalue, arguments, bar);
 
   if (arguments.json) {
     Json json;

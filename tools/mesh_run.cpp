@@ -1,6 +1,7 @@
 #include "mesh_run.h"
 
 #include <tufa/error.h>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -103,6 +104,15 @@ void requireRoomForAll(const std::vector<std::string>& grids, const std::string&
                   "grid");
 }
 
+/// Of the calls that a run makes: how long each is likely to take.
+std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids) {
+  std::vector<double> shares(grids, kContourShare);
+  if (arguments.check) shares.insert(shares.end(), grids, kCheckShare);
+  const bool oneFile = grids == 1 || !hasBraces(arguments.output);
+  shares.insert(shares.end(), oneFile ? 1 : grids, kWriteShare);
+  return shares;
+}
+
 }  // namespace
 
 void requireFeasible(const MeshArguments& arguments) {
@@ -113,14 +123,17 @@ void requireFeasible(const MeshArguments& arguments) {
 }
 
 MeshRun meshFile(const MeshArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
   MeshRun run;
-  if (arguments.grids.empty()) {
+  std::vector<std::string> names;
+  if (!arguments.grids.empty()) {
+    names = chooseGrids(arguments.input, arguments.grids);
+    requireRoomForAll(names, arguments.output);
+  }
+  ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, names.size())));
+  if (names.empty()) {
     run.grids.push_back(meshGrid(arguments, {}, bar));
     if (!arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);
   } else {
-    const std::vector<std::string> names = chooseGrids(arguments.input, arguments.grids);
-    requireRoomForAll(names, arguments.output);
     for (const std::string& name : names) {
       requireDistinct(outputOf(arguments.output, name), {arguments.input});
       run.grids.push_back(meshGrid(arguments, name, bar));

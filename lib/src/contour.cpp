@@ -11,8 +11,11 @@
 namespace tufa {
 namespace {
 
-constexpr uniform::StageEnds kUniformEnds = {0.15, 0.3, 0.7, 0.85, 0.9, 0.95};
-constexpr uniform::StageEnds kAdaptiveEnds = {0.08, 0.15, 0.36, 0.46, 0.48, 0.5};
+// Shares of the time that stages took on the sample volumes.
+constexpr uniform::StageEnds kUniformEnds = {0.03, 0.06, 0.4, 0.45, 0.5, 0.9};
+constexpr uniform::StageEnds kAdaptiveEnds = {0.01, 0.02, 0.07, 0.08, 0.09, 0.15};
+constexpr double kForestEnd = 0.18;
+constexpr double kCutEnd = 0.96;
 
 Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
                  ContourReport& report, base::Job& job) {
@@ -26,9 +29,9 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
     extracted.candidates = model.candidates();
     extracted.mesh = model.takeMesh();
   } else {
-    job.beginStage("forest", 0.7);
+    job.beginStage("forest", kForestEnd);
     model.buildClusters(rule, job);
-    job.beginStage("cut", 0.95);
+    job.beginStage("cut", kCutEnd, base::Length::Unknown);
     const auto repair = model.repair(job);
     refine::AdaptiveMesh adaptive = refine::adapt(
         model, rule, {repair ? &*repair : nullptr, octree::maySimplify(options)}, job);
