@@ -38,6 +38,7 @@ struct LodArguments {
   std::vector<std::string> tolerances;
   LodWriteOptions writing;
   std::string up = "y";
+  std::string scenes = "one";
   bool quantize = false;
   bool compress = false;
   bool separate = false;
@@ -92,8 +93,7 @@ LodOptions chainOptions(const LodArguments& arguments, const openvdb::GridBase& 
   return options;
 }
 
-LodRun runStages(const LodArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   LodRun run;
   std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
@@ -116,6 +116,7 @@ LodRun runStages(const LodArguments& arguments) {
   if (arguments.report) {
     ContourOptions uniform = options.contour;
     uniform.uniform = true;
+    uniform.progress = bar.callback();
     run.reference = contour(*grid, uniform);
   }
   grid.reset();
@@ -124,9 +125,15 @@ LodRun runStages(const LodArguments& arguments) {
   if (arguments.check) {
     CheckOptions checkOptions;
     checkOptions.threads = options.contour.threads;
-    checkOptions.progress = bar.callback();
     run.checkSeconds = timed([&] {
-      for (const Lod& lod : run.chain.levels) run.checks.push_back(check(lod.mesh, checkOptions));
+      const Progress progress = bar.callback();
+      const auto count = static_cast<double>(run.chain.levels.size());
+      for (std::size_t level = 0; level < run.chain.levels.size(); ++level) {
+        checkOptions.progress = [&](std::string_view stage, double fraction) {
+          return progress(stage, (static_cast<double>(level) + fraction) / count);
+        };
+        run.checks.push_back(check(run.chain.levels[level].mesh, checkOptions));
+      }
     });
   }
   LodWriteOptions writing = arguments.writing;
@@ -305,7 +312,7 @@ void settle(LodArguments& arguments, const CLI::App& command) {
     if (ending != ".obj" && command.count("--crease") > 0) {
       throw Error(ErrorCode::InvalidArgument, "--crease is for .glb and .obj only");
     }
-    for (const char* option : {"--up", "--scale", "--quantize", "--compress"}) {
+    for (const char* option : {"--lod-scenes", "--up", "--scale", "--quantize", "--compress"}) {
       if (command.count(option) == 0) continue;
       throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for .glb only");
     }
@@ -320,13 +327,23 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   requireWritable(lodFile(arguments.output, 0));
   if (arguments.report) requireWritable(*arguments.report);
   arguments.writing.name = assetName(arguments.output);
+  arguments.writing.allLevelsScene = arguments.scenes == "many";
   arguments.writing.up = arguments.up == "z" ? UpAxis::Z : UpAxis::Y;
   if (arguments.quantize) arguments.writing.compression = LodCompression::Quantized;
   if (arguments.compress) arguments.writing.compression = LodCompression::Meshopt;
 }
 
-void writeReport(const LodRun& run, const LodArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+/// Of the calls that a run makes: how long each is likely to take.
+std::vector<double> callShares(const LodArguments& arguments) {
+  std::vector<double> shares{kContourShare};
+  if (arguments.report) shares.push_back(0.2 * kContourShare);  // the uniform mesh
+  if (arguments.check) shares.push_back(kCheckShare);
+  shares.push_back(kWriteShare);
+  if (arguments.report) shares.push_back(kCheckShare);  // pictures
+  return shares;
+}
+
+void writeReport(const LodRun& run, const LodArguments& arguments, ProgressBar& bar) {
   LodPage page;
   page.title = arguments.writing.name + ": levels of detail";
   page.summary = arguments.input + (run.gridName.empty() ? "" : ", grid " + run.gridName) + ", " +
@@ -344,8 +361,12 @@ void writeReport(const LodRun& run, const LodArguments& arguments) {
 }
 
 int runLod(const LodArguments& arguments) {
-  const LodRun run = runStages(arguments);
-  if (arguments.report) writeReport(run, arguments);
+  LodRun run;
+  {
+    ProgressBar bar(arguments.quiet, callShares(arguments));
+    run = runStages(arguments, bar);
+    if (arguments.report) writeReport(run, arguments, bar);
+  }
   const int exitCode = judge(run);
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -389,6 +410,10 @@ void addGlbOptions(CLI::App& app, LodArguments& arguments) {
   app.add_option("--crease", arguments.writing.creaseAngle,
                  ".glb and .obj: normals are split where faces differ by more, in degrees")
       ->check(CLI::Range(0.0, 180.0))
+      ->capture_default_str();
+  app.add_option("--lod-scenes", arguments.scenes,
+                 "many: a second scene of all levels, for programs that find them by name")
+      ->check(CLI::IsMember({"one", "many"}))
       ->capture_default_str();
   app.add_option("--up", arguments.up, "axis of the volume that points up; glTF's is y")
       ->check(CLI::IsMember({"y", "z"}))

@@ -100,12 +100,15 @@ enum class LodCompression {
   Meshopt,    ///< the same, and packed: EXT_meshopt_compression
 };
 
-/// Options of writeLods(). `up`, `scale` and `compression` are for .glb only.
+/// Options of writeLods(). `allLevelsScene`, `up`, `scale` and `compression` are for .glb only.
 struct LodWriteOptions {
   std::string name = "mesh";  ///< of nodes and meshes: NAME_LOD0, NAME_LOD1, ...
   /// .glb and .obj: normals are split where those of two faces at an edge differ by more than this
   /// angle: degrees, 0 to 180; 180 splits none. In .glb the vertices there become several.
   double creaseAngle = 40;
+  /// A second scene of all LODs, NAME_all_levels, for programs that find LODs by their names.
+  /// Without it the nodes of coarser LODs stand in no scene, and MSFT_lod alone leads to them.
+  bool allLevelsScene = false;
   UpAxis up = UpAxis::Y;  ///< of the volume
   double scale = 1;       ///< metres in a world unit; above 0
   /// No vertices are joined: an LOD in which rounding to 16 bits would bring two to one place, or

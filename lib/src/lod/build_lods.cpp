@@ -7,6 +7,7 @@
 
 #include "base/box.h"
 #include "base/job.h"
+#include "base/number_text.h"
 #include "base/run_call.h"
 #include "octree/cut_rule.h"
 #include "refine/adapt.h"
@@ -16,8 +17,10 @@
 namespace tufa {
 namespace {
 
-constexpr uniform::StageEnds kEnds = {0.08, 0.15, 0.33, 0.4, 0.42, 0.45};
-constexpr double kForestEnd = 0.55;
+// Shares of the time that stages took on the sample volumes.
+constexpr uniform::StageEnds kEnds = {0.01, 0.02, 0.07, 0.08, 0.09, 0.14};
+constexpr double kForestEnd = 0.16;
+constexpr double kFirstLevelEnd = 0.85;
 // The triangles of an LOD must fall at least with this power of its tolerance, for tolerances up to
 // this many times that of the LOD before.
 constexpr double kLeastSlope = -0.3;
@@ -82,17 +85,21 @@ std::vector<Target> targetsOf(const LodOptions& options) {
   return targets;
 }
 
-// Why an LOD is no coarser, or not as coarse as asked for, and was left out.
-std::string stopOf(std::size_t level, const Target& target, std::size_t triangles) {
+// Why an LOD is no coarser, or not as coarse as asked for, and was left out: `worthwhile` is what
+// it had to stay below.
+std::string stopOf(std::size_t level, const Target& target, std::size_t triangles,
+                   std::size_t worthwhile, const std::vector<Lod>& before) {
   if (target.triangles > 0) {
     return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
            " triangles: the surface allows no fewer than " + std::to_string(triangles) +
            ", and that level was left out";
   }
-  return "level " + std::to_string(level) + " at a tolerance of " +
-         std::to_string(target.tolerance) + " voxels has " + std::to_string(triangles) +
-         " triangles, hardly fewer than level " + std::to_string(level - 1) +
-         ", and was left out: the surface's topology allows no coarser mesh";
+  return "level " + std::to_string(level) + " was left out: at a tolerance of " +
+         base::numberText(target.tolerance) + " voxels " + std::to_string(triangles) +
+         " triangles were reached, and a level is kept with fewer than " +
+         std::to_string(worthwhile) + ", of the " +
+         std::to_string(before.back().mesh.triangleCount()) + " of level " +
+         std::to_string(level - 1);
 }
 
 // An LOD with so many triangles or more is not worth its error: at four times the tolerance a third
@@ -150,7 +157,8 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Clock::time_point begin = Clock::now();
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
-    job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
+    job.beginStage("level " + std::to_string(i), kFirstLevelEnd + (1 - kFirstLevelEnd) * share,
+                   base::Length::Unknown);
     const Target& target = targets[i];
     const std::size_t most = i > 0 ? tooMany(target, chain.levels.back()) : 0;
     const refine::Goal goal{target.triangles, target.triangles > 0 ? 0 : most};
@@ -163,7 +171,7 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
     const std::size_t triangles = adaptive.extracted.mesh.triangleCount();
     const bool coarser = i == 0 || triangles < most;
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
-      chain.stopped = stopOf(i, target, triangles);
+      chain.stopped = stopOf(i, target, triangles, most, chain.levels);
       break;
     }
     Lod lod;

@@ -147,7 +147,7 @@ class LodDocument {
   }
 
   /// Programs that know MSFT_lod find the other LODs by it; those that do not show the first one
-  /// alone; those that go by names find all in a scene of their own.
+  /// alone; those that go by names find all in a scene of their own, if there is to be one.
   void linkLevels() {
     json_["extensionsUsed"].push_back("MSFT_lod");
     Json all = Json::array(), others = Json::array(), coverage = Json::array();
@@ -159,6 +159,7 @@ class LodDocument {
     Json& first = json_["nodes"][0];
     first["extensions"]["MSFT_lod"]["ids"] = others;
     first["extras"]["MSFT_screencoverage"] = coverage;
+    if (!options_.allLevelsScene) return;
     json_["scenes"].push_back({{"name", options_.name + "_all_levels"}, {"nodes", all}});
   }
 
