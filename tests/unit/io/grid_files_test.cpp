@@ -133,6 +133,19 @@ TEST(GridFiles, DescribeValues) {
   EXPECT_TRUE(info.meshable);
 }
 
+/// No size in their trees can be checked.
+TEST(GridFiles, OfTypesOfApplicationsAreRefusedAlone) {
+  using OtherGrid = openvdb::Grid<openvdb::tree::Tree4<std::uint8_t, 5, 4, 3>::Type>;
+  const ScratchFolder folder;
+  const auto other = makeSingle<OtherGrid>("other", 1);
+  OtherGrid::registerGrid();
+  writeGrids({other, makeBall("ball")}, folder / "m.vdb");
+  EXPECT_EQ(readGrid(folder / "m.vdb")->getName(), "ball");
+  expectError(ErrorCode::UnreadableFile, "grids of type 5_4_3 cannot be checked",
+              [&] { (void)readGrid(folder / "m.vdb", "other"); });
+  OtherGrid::unregisterGrid();
+}
+
 TEST(GridFiles, RefuseForeignFiles) {
   const ScratchFolder folder;
   const auto refuse = [&](const std::string& bytes, const std::string& part) {

@@ -204,7 +204,10 @@ void VdbReader::requireSoundTree(const GridDescriptor& descriptor) {
   head->readMeta(stream_);
   head->readTransform(stream_);
   const auto layout = layoutOf(*head);
-  if (!layout) throw DamagedGrid("its type, " + descriptor.gridType() + ", is not known");
+  if (!layout) {
+    fail("the sizes in grids of type " + descriptor.gridType() +
+         " cannot be checked, as in grid \"" + descriptor.gridName() + "\"");
+  }
   // Programs that write a single grid may leave its end out.
   const bool ends = inputHasGridOffsets() && descriptor.getEndPos() > descriptor.getGridPos();
   const std::uint64_t end = ends ? static_cast<std::uint64_t>(descriptor.getEndPos()) : fileBytes_;
