@@ -68,7 +68,8 @@ class DamagedFiles : public ::testing::Test {
 
   std::vector<std::string> commandFor(const std::string& file) {
     if (file.ends_with(".vdb")) {
-      return {"tufa", "mesh", folder / file, "-o", folder / "m.ply", "--quiet", "--threads", "1"};
+      return {"tufa",  "mesh", folder / file, "-o",        folder / "m.ply",
+              "--iso", "auto", "--quiet",     "--threads", "1"};
     }
     return {"tufa", "check", folder / file, "--quiet", "--threads", "1"};
   }
