@@ -16,8 +16,8 @@ namespace tufa {
 struct LodOptions {
   /// How the surface is read and LOD 0 is made. `tolerance` is that of LOD 0; `uniform` is ignored.
   ContourOptions contour;
-  int levels = 5;     ///< LODs at most, at least 1
-  double factor = 4;  ///< each LOD's tolerance over that of the LOD before; above 1
+  int levels = 5;     ///< LODs at most, 1 to 100
+  double factor = 4;  ///< each LOD's tolerance over that of the LOD before; above 1, to 10^6
   /// Tolerances of all LODs in voxels, rising, in place of `levels` and `factor`.
   std::vector<double> tolerances;
   /// Most triangles of each LOD, falling, in place of tolerances: each LOD has as many, or up to 5

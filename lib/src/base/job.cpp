@@ -8,9 +8,11 @@
 namespace tufa::base {
 
 Job::Job(int threads, Progress progress) : threads_(threads), progress_(std::move(progress)) {
-  if (threads < 0) {
-    throw Error(ErrorCode::InvalidArgument,
-                "threads is " + std::to_string(threads) + ", must be 0 (all) or more");
+  // TBB makes room for as many as it is told.
+  constexpr int kMost = 4096;
+  if (threads < 0 || threads > kMost) {
+    throw Error(ErrorCode::InvalidArgument, "threads is " + std::to_string(threads) +
+                                                ", must be 0 (all) to " + std::to_string(kMost));
   }
 }
 

@@ -62,4 +62,11 @@ void requireVoxelSize(double voxelSize) {
                                               numberText(voxelSize));
 }
 
+void requireHalfWidth(double halfWidth) {
+  constexpr double kMost = 1000;
+  if (halfWidth >= 1 && halfWidth <= kMost) return;
+  throw Error(ErrorCode::InvalidArgument, "half width must be from 1 to " + numberText(kMost) +
+                                              " voxels, not " + numberText(halfWidth));
+}
+
 }  // namespace tufa::base

@@ -22,4 +22,7 @@ struct Lattice {
 /// Throws Error(InvalidArgument) unless grids can be made with voxels of that size.
 void requireVoxelSize(double voxelSize);
 
+/// Throws Error(InvalidArgument) unless narrow bands can be made that wide: from 1 to 1000 voxels.
+void requireHalfWidth(double halfWidth);
+
 }  // namespace tufa::base

@@ -21,6 +21,7 @@ namespace {
 constexpr uniform::StageEnds kEnds = {0.01, 0.02, 0.07, 0.08, 0.09, 0.14};
 constexpr double kForestEnd = 0.16;
 constexpr double kFirstLevelEnd = 0.85;
+constexpr std::size_t kMostLevels = 100;
 // The triangles of an LOD must fall at least with this power of its tolerance, for tolerances up to
 // this many times that of the LOD before.
 constexpr double kLeastSlope = -0.3;
@@ -59,25 +60,27 @@ std::vector<Target> budgetsOf(const LodOptions& options) {
 }
 
 std::vector<Target> targetsOf(const LodOptions& options) {
+  if (std::max(options.triangles.size(), options.tolerances.size()) > kMostLevels) {
+    refuse("a chain has " + std::to_string(kMostLevels) + " levels at most");
+  }
   if (!options.triangles.empty()) return budgetsOf(options);
   std::vector<Target> targets;
   for (const double tolerance : options.tolerances) targets.push_back({tolerance});
   if (targets.empty()) {
-    if (options.levels < 1) {
-      refuse("a chain needs at least 1 level, not " + std::to_string(options.levels));
+    if (options.levels < 1 || static_cast<std::size_t>(options.levels) > kMostLevels) {
+      refuse("a chain has 1 to " + std::to_string(kMostLevels) + " levels, not " +
+             std::to_string(options.levels));
     }
-    if (!(options.factor > 1 && std::isfinite(options.factor))) {
-      refuse("the factor between the tolerances of two levels must be above 1");
-    }
+    octree::requireFactor(options.factor);
     double tolerance = options.contour.tolerance;
-    for (int i = 0; i < options.levels; ++i, tolerance *= options.factor) {
+    // Nothing is coarser than what the largest tolerance gives.
+    for (int i = 0; i < options.levels && (i == 0 || tolerance <= octree::kLargestTolerance); ++i) {
       targets.push_back({tolerance});
+      tolerance *= options.factor;
     }
   }
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (!(std::isfinite(targets[i].tolerance) && targets[i].tolerance >= 0)) {
-      refuse("tolerances must be finite and not negative");
-    }
+    octree::requireTolerance(targets[i].tolerance);
     if (i > 0 && !(targets[i].tolerance > targets[i - 1].tolerance)) {
       refuse("tolerances must rise from level to level");
     }

@@ -102,11 +102,7 @@ void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
 
 openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
   base::requireVoxelSize(options.voxelSize);
-  if (!std::isfinite(options.halfWidth) || options.halfWidth < 1) {
-    throw Error(ErrorCode::InvalidArgument,
-                "half width must be a finite number of 1 or more voxels, not " +
-                    base::numberText(options.halfWidth));
-  }
+  base::requireHalfWidth(options.halfWidth);
   if (mesh.triangleCount() == 0) {
     throw Error(ErrorCode::InvalidArgument, "the mesh has no faces to voxelize");
   }

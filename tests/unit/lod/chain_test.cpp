@@ -302,10 +302,10 @@ TEST(LodChain, RefusesOptionsOutOfTheirRange) {
     change(options);
     expectError(ErrorCode::InvalidArgument, part, [&] { (void)buildLods(*grid, options); });
   };
-  refuses("at least 1", [](LodOptions& o) { o.levels = 0; });
+  refuses("1 to 100 levels", [](LodOptions& o) { o.levels = 0; });
   refuses("factor", [](LodOptions& o) { o.factor = 1; });
   refuses("rise", [](LodOptions& o) { o.tolerances = {0.2, 0.1}; });
-  refuses("not negative", [](LodOptions& o) { o.tolerances = {-1}; });
+  refuses("from 0 to 1e+06", [](LodOptions& o) { o.tolerances = {-1}; });
   refuses("fall", [](LodOptions& o) { o.triangles = {100, 100}; });
   refuses("at least 4", [](LodOptions& o) { o.triangles = {100, 3}; });
   refuses("exclude", [](LodOptions& o) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/job.h"
+#include "base/known_enum.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/lod_streams.h"
 #include "io/mesh/mesh_format.h"
@@ -21,6 +22,8 @@ void requireInRange(const LodWriteOptions& options) {
   if (!(options.scale > 0 && std::isfinite(options.scale))) {
     throw Error(ErrorCode::InvalidArgument, "the scale must be above 0");
   }
+  base::requireKnown(options.up, UpAxis::Z, "the axis that points up");
+  base::requireKnown(options.compression, LodCompression::Meshopt, "the compression");
 }
 
 /// Builds a .glb of some LODs: the document, and the bytes behind it.
