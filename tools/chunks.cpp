@@ -217,10 +217,8 @@ Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
 }
 
 std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
-  const std::string& grid = run.index.grid;
-  std::string text = (grid.empty() ? "unnamed grid" : "grid \"" + grid + "\"") + ": " +
-                     formatCount(run.index.chunks.size()) + " chunks of " +
-                     std::to_string(run.index.chunkSize) + " voxels from " +
+  std::string text = shownGrid(run.index.grid) + ": " + formatCount(run.index.chunks.size()) +
+                     " chunks of " + std::to_string(run.index.chunkSize) + " voxels from " +
                      formatCount(run.contour.activeVoxels) + " active voxels\n";
   for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
     const LevelSum sum = sumOf(run.index, level);

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <thread>
 
+#include "base/printable.h"
+
 namespace tufa::tools {
 namespace {
 
@@ -41,7 +43,13 @@ void print(const std::string& text) {
               std::string("cannot write standard output: ") + std::strerror(errno));
 }
 
-void printNote(const std::string& text) { std::fprintf(stderr, "tufa: %s\n", text.c_str()); }
+void printNote(const std::string& text) {
+  std::fprintf(stderr, "tufa: %s\n", base::printable(text).c_str());
+}
+
+std::string shownGrid(const std::string& name) {
+  return name.empty() ? "unnamed grid" : "grid \"" + base::printable(name) + "\"";
+}
 
 void endAtOnce(int exitCode) {
   std::fflush(nullptr);

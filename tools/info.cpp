@@ -48,7 +48,7 @@ std::string describe(const GridInfo& info) {
     return format(v[0]) + " " + format(v[1]) + " " + format(v[2]);
   };
   const auto integer = [](int value) { return std::to_string(value); };
-  std::string text = "grid \"" + info.name + "\"\n";
+  std::string text = shownGrid(info.name) + "\n";
   const auto line = [&text](const char* label, const std::string& value) {
     text += "  " + std::string(label) + value + "\n";
   };

@@ -109,9 +109,9 @@ std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
 }
 
 std::string describe(const LodRun& run, const LodArguments& arguments) {
-  std::string text = (run.gridName.empty() ? "unnamed grid" : "grid \"" + run.gridName + "\"") +
-                     ": " + formatCount(run.contour.activeVoxels) + " active voxels, isovalue " +
-                     formatNumber(run.contour.isovalue) + "\n" + layOut(tableOf(run));
+  std::string text = shownGrid(run.gridName) + ": " + formatCount(run.contour.activeVoxels) +
+                     " active voxels, isovalue " + formatNumber(run.contour.isovalue) + "\n" +
+                     layOut(tableOf(run));
   text += "read " + shortNumber(run.readSeconds) + " s, chain " + shortNumber(run.chainSeconds) +
           " s (of which all levels share " + shortNumber(run.chain.sharedSeconds) + " s)";
   if (!run.checks.empty()) text += ", check " + shortNumber(run.checkSeconds) + " s";

@@ -68,9 +68,8 @@ std::string describeCertificate(const Certificate& certificate) {
 }
 
 std::string describeGrid(const GridRun& run) {
-  std::string text = (run.grid.empty() ? "unnamed grid" : "grid \"" + run.grid + "\"") + ": " +
-                     formatCount(run.mesh.triangleCount()) + " triangles (" +
-                     formatCount(run.mesh.quads.size()) + " quads), " +
+  std::string text = shownGrid(run.grid) + ": " + formatCount(run.mesh.triangleCount()) +
+                     " triangles (" + formatCount(run.mesh.quads.size()) + " quads), " +
                      formatCount(run.mesh.positions.size()) + " vertices from " +
                      formatCount(run.contour.activeVoxels) + " active voxels\n";
   text += "isovalue " + formatNumber(run.contour.isovalue) + ", inside is " +

@@ -23,7 +23,7 @@ std::string toJson(const WrittenGrid& written) {
 }
 
 std::string describe(const WrittenGrid& written) {
-  std::string text = "grid \"" + written.grid + "\": " + formatCount(written.activeVoxels) +
+  std::string text = shownGrid(written.grid) + ": " + formatCount(written.activeVoxels) +
                      " active voxels of " + formatNumber(written.voxelSize);
   if (!written.input.empty()) text += " from " + formatCount(written.triangles) + " triangles";
   return text + " in " + shortNumber(written.makeSeconds) + " s\n" +
