@@ -102,6 +102,9 @@ void addContourOptions(CLI::App& app, ContourOptions& options,
   app.add_flag("--simplify,!--no-simplify", options.simplify,
                "collapse edges of an adaptive mesh as far as the tolerance allows (default)");
   app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
+  app.add_option("--tile-faces", options.tileFaces,
+                 "most faces of voxels on the surface between tiles; more take gigabytes")
+      ->capture_default_str();
   addThreadsOption(app, options.threads);
 }
 

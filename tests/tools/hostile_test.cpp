@@ -67,5 +67,27 @@ TEST_F(Hostile, NamesOfGridsAreShownEscaped) {
   EXPECT_EQ(json["grids"][0]["name"].get<std::string>().substr(0, 5), name.substr(0, 5));
 }
 
+/// 557 KB that took over 12 seconds.
+TEST_F(Hostile, ManyTilesAtTheRootTakeNoTime) {
+  const auto grid = openvdb::FloatGrid::create(0);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  for (int n = 0; n < 32768; ++n) {
+    const openvdb::Coord place(4096 * (n % 32), 4096 * (n / 32 % 32), 4096 * (n / 1024));
+    grid->tree().addTile(3, place, 1, true);
+  }
+  writeGrids({grid}, folder / "t.vdb");
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome info = run("info t.vdb --json");
+  ASSERT_EQ(info.exitCode, 0) << info.err;
+  const Json json = Json::parse(info.out)["grids"][0];
+  EXPECT_EQ(json["tiles"], 32768);
+  EXPECT_EQ(json["active_voxels"], 32768ull << 36);
+  EXPECT_EQ(json["max_value"], 1);
+  expectFailure("mesh t.vdb -o m.ply --iso auto", 3, "--tile-faces");
+  expectFailure("chunks t.vdb -o d --iso 0.5", 3, "--tile-faces");
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(elapsed.count(), 6);
+}
+
 }  // namespace
 }  // namespace tufa

@@ -45,6 +45,17 @@ void requireCoordinates(const openvdb::GridBase& grid) {
   }
 }
 
+void requireFewTileFaces(std::uint64_t faces, const ContourOptions& options,
+                         const std::string& name) {
+  if (faces <= options.tileFaces) return;
+  throw Error(ErrorCode::LimitExceeded,
+              "grid \"" + name + "\" has about " + std::to_string(faces) +
+                  " faces of voxels on its surface between tiles, more than " +
+                  std::to_string(options.tileFaces) +
+                  "; resample it, or raise the limit (--tile-faces) if there is memory for " +
+                  std::to_string(faces / 5'000'000 + 1) + " GB");
+}
+
 // A grid that is moved by whole blocks keeps its surface in the same place beside this.
 Coord lowestOrigin(const Blocks& blocks) {
   if (blocks.count() == 0) return Coord(0);
@@ -67,7 +78,9 @@ std::string nameOf(const openvdb::GridBase& grid) { return grid.getName(); }
 
 Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options, base::Job& job) {
   const IsoChoice iso = chooseIsovalue(grid, options.isovalue, options.inside);
-  Blocks blocks(treeOf(grid, job), iso, options.nonFinite, job);
+  const std::shared_ptr<const Tree> tree = treeOf(grid, job);
+  requireFewTileFaces(tree->tileSurface(iso, job), options, grid.getName());
+  Blocks blocks(tree, iso, options.nonFinite, job);
   const FieldScale scale = readFieldScale(grid, iso);
   const Transform transform = transformOf(grid);
   const Affine affine(transform, lowestOrigin(blocks));

@@ -50,6 +50,14 @@ void addValue(GridInfo& info, double value, std::size_t count) {
   info.maxValue = std::max(value, info.maxValue.value_or(value));
 }
 
+/// Adds what lies in a node in place of children.
+template <class Node>
+void addTiles(const Node& node, GridInfo& info) {
+  for (auto tile = node.cbeginValueOn(); tile; ++tile) {
+    addValue(info, static_cast<double>(*tile), Node::ChildNodeType::NUM_VOXELS);
+  }
+}
+
 template <class GridT>
 void addValues(const openvdb::GridBase& base, GridInfo& info) {
   if (!base.isType<GridT>()) return;
@@ -60,11 +68,16 @@ void addValues(const openvdb::GridBase& base, GridInfo& info) {
       addValue(info, static_cast<double>(*value), 1);
     }
   }
-  auto tile = tree.cbeginValueOn();
-  tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
-  for (; tile; ++tile) {
-    addValue(info, static_cast<double>(*tile), static_cast<std::size_t>(tile.getVoxelCount()));
-  }
+  using Upper = typename GridT::TreeType::RootNodeType::ChildNodeType;
+  using Lower = typename Upper::ChildNodeType;
+  // Node by node: the iterator of a tree looks for its place in the root's table at each step.
+  addTiles(tree.root(), info);
+  std::vector<const Upper*> uppers;
+  tree.getNodes(uppers);
+  for (const Upper* node : uppers) addTiles(*node, info);
+  std::vector<const Lower*> lowers;
+  tree.getNodes(lowers);
+  for (const Lower* node : lowers) addTiles(*node, info);
 }
 
 GridInfo describe(const openvdb::GridBase& grid) {
