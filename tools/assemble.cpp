@@ -115,6 +115,9 @@ AssembleRun runStages(const AssembleArguments& arguments) {
   std::vector<Chunk> chunks;
   run.readSeconds = timed([&] {
     run.index = readChunkIndex(arguments.folder);
+    if (run.index.chunks.empty()) {
+      throw Error(ErrorCode::UnreadableFile, arguments.folder + " holds no chunks to assemble");
+    }
     run.lods = chooseLods(run.index, arguments);
     chunks = readChunks(run.index, run.lods, arguments.folder, bar);
   });

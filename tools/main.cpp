@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -98,7 +99,14 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    // Not by CLI11, which does not notice a full disk.
+    const auto show = [&] {
+      std::ostringstream text;
+      const int exitCode = app.exit(help, text, text);
+      print(text.str());
+      return exitCode;
+    };
+    return runGuarded(show, failures);
   } catch (const CLI::ParseError& error) {
     failures.tell("invalid_argument", describeMisuse(app, error, words));
     return kWrongUsage;

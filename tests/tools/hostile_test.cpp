@@ -89,5 +89,89 @@ TEST_F(Hostile, ManyTilesAtTheRootTakeNoTime) {
   EXPECT_LT(elapsed.count(), 6);
 }
 
+TEST_F(Hostile, FilesLargerThanMemoryNameThemselves) {
+  for (const char* name : {"s.ply", "s.glb", "s.stl", "s.obj", "s.vdb"}) {
+    writeBytes(folder / name, "ply\n");
+    std::filesystem::resize_file(folder / name, std::uintmax_t{100} << 30);
+    const std::string file = name;
+    expectFailure((file == "s.vdb" ? "info " : "check ") + file, 3, "cannot read " + file);
+    std::filesystem::remove(folder / name);
+  }
+  std::filesystem::create_directory(folder / "d");
+  writeBytes(folder / "d/chunks.json", "{");
+  std::filesystem::resize_file(folder / "d/chunks.json", std::uintmax_t{100} << 30);
+  expectFailure("chunks --assemble d --lods all:0 -o m.ply", 3, "cannot read d/chunks.json");
+}
+
+TEST_F(Hostile, FoldersWithoutChunksAreOneError) {
+  makeSphere();
+  ASSERT_EQ(run("chunks s.vdb -o d --quiet --levels 2").exitCode, 0);
+  Json index = Json::parse(readBytes(folder / "d/chunks.json"));
+  index["chunks"] = Json::array();
+  writeBytes(folder / "d/chunks.json", index.dump());
+  for (const char* lods : {"all:0", "all:1", "random", "random:7", "camera:1,2,3"}) {
+    expectFailure(std::string("chunks --assemble d -o m.ply --lods ") + lods, 3,
+                  "d holds no chunks to assemble");
+  }
+  index["tolerances_voxels"] = Json::array();
+  writeBytes(folder / "d/chunks.json", index.dump());
+  expectFailure("chunks --assemble d -o m.ply --lods random", 3, "it has no levels");
+}
+
+TEST_F(Hostile, LinksOutOfAFolderOfChunksAreRefused) {
+  makeSphere();
+  ASSERT_EQ(run("chunks s.vdb -o d --quiet --levels 2").exitCode, 0);
+  const Json index = Json::parse(readBytes(folder / "d/chunks.json"));
+  const std::string file = index["chunks"][0]["levels"][0]["file"];
+  const std::filesystem::path chunk = folder / "d" / file;
+  std::filesystem::rename(chunk, folder / "outside.glb");
+  std::filesystem::create_symlink("../outside.glb", chunk);
+  expectFailure("chunks --assemble d --lods all:0 -o m.ply", 3, "link out of the folder");
+  // A link within, and a folder that is itself reached by one.
+  std::filesystem::remove(chunk);
+  std::filesystem::rename(folder / "outside.glb", folder / "d/moved.glb");
+  std::filesystem::create_symlink("moved.glb", chunk);
+  std::filesystem::create_directory_symlink("d", folder / "e");
+  EXPECT_EQ(run("chunks --assemble e --lods all:0 -o m.ply").exitCode, 0);
+}
+
+TEST_F(Hostile, ReplacedFilesStayAsClosedAsTheyWere) {
+  makeSphere();
+  using std::filesystem::perms;
+  for (const perms mode : {perms{0600}, perms{0640}, perms{0666}, perms{0755}}) {
+    for (const char* name : {"m.ply", "s2.vdb"}) {
+      writeBytes(folder / name, "");
+      std::filesystem::permissions(folder / name, mode);
+    }
+    ASSERT_EQ(run("mesh s.vdb -o m.ply --quiet").exitCode, 0);
+    ASSERT_EQ(run("make sphere --voxel 0.2 -o s2.vdb --quiet").exitCode, 0);
+    for (const char* name : {"m.ply", "s2.vdb"}) {
+      EXPECT_GT(std::filesystem::file_size(folder / name), 0U);
+      EXPECT_EQ(std::filesystem::status(folder / name).permissions(), mode) << name;
+    }
+  }
+}
+
+TEST_F(Hostile, LinksThatLeadNowhereAreNotReplaced) {
+  makeSphere();
+  std::filesystem::create_symlink("none.ply", folder / "link.ply");
+  std::filesystem::create_symlink("none.vdb", folder / "link.vdb");
+  expectFailure("mesh s.vdb -o link.ply", 3, "leads nowhere");
+  expectFailure("make sphere -o link.vdb", 3, "leads nowhere");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.ply"));
+  writeBytes(folder / "none.ply", "");
+  EXPECT_EQ(run("mesh s.vdb -o link.ply --quiet").exitCode, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.ply"));
+  EXPECT_GT(std::filesystem::file_size(folder / "none.ply"), 0U);
+}
+
+TEST_F(Hostile, HelpTellsOfAFullDevice) {
+  for (const char* arguments : {"--help", "--version", "help", "mesh --help", "help chunks"}) {
+    const Outcome full = run(arguments, ">/dev/full");
+    EXPECT_EQ(full.exitCode, 3) << arguments;
+    EXPECT_NE(full.err.find("cannot write standard output"), std::string::npos) << full.err;
+  }
+}
+
 }  // namespace
 }  // namespace tufa

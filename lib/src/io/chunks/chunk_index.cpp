@@ -75,6 +75,7 @@ class IndexReader {
     for (const Json& tolerance : json.at("tolerances_voxels")) {
       index.tolerances.push_back(error(tolerance));
     }
+    require(!index.tolerances.empty(), "it has no levels");
     index.voxelSize = number(json.at("voxel_size"));
     if (!(index.voxelSize > 0)) input_.fail("the size of voxels is not above 0");
     require(json.at("transform").size() == 4, "the transform has not four rows");
