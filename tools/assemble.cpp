@@ -7,6 +7,7 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
@@ -16,6 +17,7 @@
 #include "commands.h"
 #include "console.h"
 #include "number.h"
+#include "paths.h"
 #include "progress_bar.h"
 #include "report.h"
 #include "volume.h"
@@ -106,11 +108,16 @@ std::vector<Chunk> readChunks(const ChunkIndex& index, const Lods& lods, const s
 }
 
 AssembleRun runStages(const AssembleArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+  ProgressBar bar(arguments.quiet, arguments.check
+                                       ? std::vector{kCheckShare, kCheckShare, kWriteShare}
+                                       : std::vector{kCheckShare, kWriteShare});
   AssembleRun run;
   std::vector<Chunk> chunks;
   run.readSeconds = timed([&] {
     run.index = readChunkIndex(arguments.folder);
+    if (run.index.chunks.empty()) {
+      throw Error(ErrorCode::UnreadableFile, arguments.folder + " holds no chunks to assemble");
+    }
     run.lods = chooseLods(run.index, arguments);
     chunks = readChunks(run.index, run.lods, arguments.folder, bar);
   });
@@ -145,8 +152,8 @@ Json runToJson(const AssembleRun& run, const AssembleArguments& arguments) {
 }
 
 std::string summary(const AssembleRun& run, const AssembleArguments& arguments) {
-  std::string text = arguments.output + ": " + formatCount(run.mesh.triangleCount()) +
-                     " triangles, " + formatCount(run.mesh.positions.size()) + " vertices of " +
+  std::string text = formatCount(run.mesh.triangleCount()) + " triangles, " +
+                     formatCount(run.mesh.positions.size()) + " vertices of " +
                      formatCount(run.index.chunks.size()) + " chunks; of level";
   for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
     const auto count = std::count(run.lods.begin(), run.lods.end(), level);
@@ -155,7 +162,17 @@ std::string summary(const AssembleRun& run, const AssembleArguments& arguments) 
   }
   text += "\n";
   if (run.check) text += describe(*run.check);
-  return text;
+  return text + describeWritten({arguments.output}, run.writeSeconds);
+}
+
+/// What there is in a folder; nothing if it cannot be read, which is told later.
+std::vector<std::filesystem::path> filesIn(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    files.push_back(entry.path());
+  }
+  return files;
 }
 
 }  // namespace
@@ -163,6 +180,7 @@ std::string summary(const AssembleRun& run, const AssembleArguments& arguments) 
 int runAssemble(const AssembleArguments& arguments) {
   if (arguments.check) requireChecker();
   requireMeshEnding(arguments.output);
+  requireDistinct(arguments.output, filesIn(arguments.folder));
   requireWritable(arguments.output);
   const AssembleRun run = runStages(arguments);
   const bool broken = run.check && !run.check->watertight();

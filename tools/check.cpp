@@ -23,14 +23,13 @@ struct CheckArguments {
   std::string input;
   std::optional<std::string> against;
   std::optional<std::string> grid;
-  std::optional<double> isovalue;
+  std::optional<std::string> isovalue;
   int threads = 0;
   bool json = false;
   bool quiet = false;
 };
 
-CheckReport checkMesh(const Mesh& mesh, const CheckArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+CheckReport checkMesh(const Mesh& mesh, const CheckArguments& arguments, ProgressBar& bar) {
   CheckOptions options;
   options.threads = arguments.threads;
   options.progress = bar.callback();
@@ -38,10 +37,10 @@ CheckReport checkMesh(const Mesh& mesh, const CheckArguments& arguments) {
 }
 
 DistanceReport measureDistance(const Mesh& mesh, const openvdb::GridBase& grid,
-                               const CheckArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+                               const std::optional<double>& isovalue,
+                               const CheckArguments& arguments, ProgressBar& bar) {
   DistanceOptions options;
-  options.isovalue = arguments.isovalue;
+  options.isovalue = isovalue;
   options.threads = arguments.threads;
   options.progress = bar.callback();
   return checkAgainst(mesh, grid, options);
@@ -52,11 +51,17 @@ int runCheck(const CheckArguments& arguments) {
   // Both files are read before the work begins: a wrong name should not show minutes later.
   const Mesh mesh = readMesh(arguments.input);
   std::shared_ptr<openvdb::GridBase> grid;
-  if (arguments.against) grid = readVolume(*arguments.against, arguments.grid);
+  std::optional<double> isovalue;
+  if (arguments.against) {
+    grid = readVolume(*arguments.against, arguments.grid);
+    isovalue = readIsovalue(arguments.isovalue, *grid, *arguments.against);
+  }
 
-  const CheckReport report = checkMesh(mesh, arguments);
+  // Distances are measured at many places of both surfaces, about as long as all else takes.
+  ProgressBar bar(arguments.quiet, grid ? std::vector{1.0, 1.0} : std::vector{1.0});
+  const CheckReport report = checkMesh(mesh, arguments, bar);
   std::optional<DistanceReport> distance;
-  if (grid) distance = measureDistance(mesh, *grid, arguments);
+  if (grid) distance = measureDistance(mesh, *grid, isovalue, arguments, bar);
 
   if (arguments.json) {
     Json json;
@@ -81,8 +86,7 @@ void addCheckCommand(CLI::App& app, Command& chosen) {
       check->add_option("--against", arguments->against,
                         "measure the distance to the isosurface of a grid of this .vdb file");
   check->add_option("--grid", arguments->grid, "the grid's name")->needs(against);
-  check->add_option("--iso", arguments->isovalue, "the grid's value on the surface")
-      ->needs(against);
+  addIsovalueOption(*check, arguments->isovalue)->needs(against);
   addThreadsOption(*check, arguments->threads);
   check->add_flag("--json", arguments->json, "one JSON object on standard output");
   check->add_flag("--quiet", arguments->quiet, "no text, only the exit code");

@@ -20,6 +20,7 @@
 #include "commands.h"
 #include "console.h"
 #include "number.h"
+#include "paths.h"
 #include "progress_bar.h"
 #include "volume.h"
 
@@ -33,6 +34,7 @@ struct ChunksArguments {
   std::string output;
   std::optional<std::string> grid;
   ChunkOptions chunks;
+  std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
   std::string format = "glb";
   std::vector<std::string> only;
@@ -64,15 +66,24 @@ tufa::Coord readIndex(const std::string& text) {
 ChunkOptions chunkOptions(const ChunksArguments& arguments, const openvdb::GridBase& grid,
                           ProgressBar& bar) {
   ChunkOptions options = arguments.chunks;
+  options.contour.isovalue = readIsovalue(arguments.isovalue, grid, arguments.input);
   options.contour.tolerance = readTolerance("--tolerance", arguments.tolerance, grid);
   for (const std::string& text : arguments.only) options.only.push_back(readIndex(text));
   options.contour.progress = bar.callback();
   return options;
 }
 
-/// Throws Error(UnwritableFile) if it is certain already that the folder could not be made or
-/// written to.
+/// Throws Error if it is certain already that the folder could not be made or written to, or if its
+/// name is that of a mesh.
 void requireWritableFolder(const std::filesystem::path& folder) {
+  const std::string ending = endingOf(folder);
+  if (!std::filesystem::is_directory(folder) &&
+      (ending == ".glb" || ending == ".ply" || ending == ".obj" || ending == ".stl" ||
+       ending == ".off" || ending == ".vdb")) {
+    throw Error(ErrorCode::InvalidArgument,
+                "chunks are written to a folder, and " + folder.string() +
+                    " is the name of a file; --assemble makes one mesh of a folder of chunks");
+  }
   requireWritable(std::filesystem::is_directory(folder) ? folder / "chunks.json" : folder);
 }
 
@@ -103,11 +114,22 @@ void keepOthers(ChunkIndex& index, const std::string& folder) {
   for (auto& [place, chunk] : chunks) index.chunks.push_back(std::move(chunk));
 }
 
+/// Says on standard error which of the chunks asked for have no surface.
+void noteMissing(const ChunkIndex& index, const std::vector<tufa::Coord>& only) {
+  for (const tufa::Coord& place : only) {
+    const bool found = std::any_of(index.chunks.begin(), index.chunks.end(),
+                                   [&](const ChunkEntry& chunk) { return chunk.index == place; });
+    if (found) continue;
+    printNote("note: there is no surface in chunk " + std::to_string(place[0]) + "," +
+              std::to_string(place[1]) + "," + std::to_string(place[2]) + " of --only");
+  }
+}
+
 ChunksRun build(const ChunksArguments& arguments) {
   ProgressBar bar(arguments.quiet);
   ChunksRun run;
   std::shared_ptr<openvdb::GridBase> grid;
-  run.readSeconds = timed([&] { grid = readGrid(arguments.input, arguments.grid); });
+  run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   requireVoxels(*grid, arguments.input);
   const ChunkOptions options = chunkOptions(arguments, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
@@ -120,6 +142,11 @@ ChunksRun build(const ChunksArguments& arguments) {
   };
   run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
   run.buildSeconds -= run.writeSeconds;
+  if (!arguments.quiet) {
+    noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
+    if (!arguments.grid) noteChoice(arguments.input, run.index.grid);
+  }
+  noteMissing(run.index, options.only);
   for (ChunkEntry& chunk : run.index.chunks) {
     const std::vector<std::string>& names = files.at(chunk.index);
     for (std::size_t i = 0; i < names.size(); ++i) chunk.levels[i].file = names[i];
@@ -190,7 +217,7 @@ Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
 }
 
 std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
-  std::string text = arguments.output + ": " + formatCount(run.index.chunks.size()) +
+  std::string text = shownGrid(run.index.grid) + ": " + formatCount(run.index.chunks.size()) +
                      " chunks of " + std::to_string(run.index.chunkSize) + " voxels from " +
                      formatCount(run.contour.activeVoxels) + " active voxels\n";
   for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
@@ -200,8 +227,15 @@ std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
             formatCount(sum.transition) + " in strips to coarser chunks; within " +
             shortNumber(sum.maxErrorVoxels) + " voxels\n";
   }
+  std::size_t files = 1;  // chunks.json
+  for (const ChunkEntry& chunk : run.index.chunks) {
+    files += static_cast<std::size_t>(
+        std::count_if(chunk.levels.begin(), chunk.levels.end(),
+                      [](const ChunkLevelEntry& level) { return !level.file.empty(); }));
+  }
   return text + "read " + shortNumber(run.readSeconds) + " s, build " +
-         shortNumber(run.buildSeconds) + " s, write " + shortNumber(run.writeSeconds) + " s\n";
+         shortNumber(run.buildSeconds) + " s\nwrote " + formatCount(files) + " files to " +
+         arguments.output + ", in " + shortNumber(run.writeSeconds) + " s\n";
 }
 
 int runBuild(const ChunksArguments& arguments) {
@@ -270,7 +304,7 @@ void addAssembleOptions(CLI::App& app, AssembleArguments& arguments) {
                  "levels of the chunks: all:K, random[:SEED] or camera:X,Y,Z");
   app.add_option("--pixel-error", arguments.pixelError,
                  "with camera: pixels of error, of 1080 in height and 45 degrees")
-      ->check(CLI::PositiveNumber)
+      ->check(above0())
       ->capture_default_str();
   app.add_flag("--check", arguments.check,
                checkerHelp("check the mesh; exit 1 if it is not watertight"));
@@ -289,7 +323,7 @@ void addChunksCommand(CLI::App& app, Command& chosen) {
       ->required();
   addBuildOptions(*chunks, *arguments);
   addAssembleOptions(*chunks, arguments->assemble);
-  addContourOptions(*chunks, arguments->chunks.contour);
+  addContourOptions(*chunks, arguments->chunks.contour, arguments->isovalue);
   chunks->add_flag("--json", arguments->json, "one JSON object on standard output");
   chunks->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   chunks->callback([arguments, chunks, &chosen] {

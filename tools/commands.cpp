@@ -4,9 +4,14 @@
 
 #include <tufa/version.h>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "console.h"
+#include "number.h"
+#include "usage.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -37,6 +42,28 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addLodCommand(app, chosen);
   addChunksCommand(app, chosen);
   addCheckCommand(app, chosen);
+  addHelpCommand(app, chosen);
+}
+
+void addHelpCommand(CLI::App& app, Command& chosen) {
+  const auto name = std::make_shared<std::string>();
+  CLI::App* const help = app.add_subcommand("help", "Print the options of a subcommand");
+  help->add_option("SUBCOMMAND", *name, "which one; none: all of them in short");
+  help->callback([&app, &chosen, name] {
+    chosen = [&app, name] {
+      print(helpOf(app, *name));
+      return kDone;
+    };
+  });
+}
+
+CLI::Validator above0() {
+  return {[](std::string& text) {
+            const auto number = numberIn<double>(text);
+            if (number && *number > 0) return std::string();
+            return text + " is not a number above 0";
+          },
+          "NUMBER > 0"};
 }
 
 void addThreadsOption(CLI::App& app, int& threads) {
@@ -46,10 +73,15 @@ void addThreadsOption(CLI::App& app, int& threads) {
       ->capture_default_str();
 }
 
-void addContourOptions(CLI::App& app, ContourOptions& options) {
-  app.add_option("--iso", options.isovalue,
-                 "value on the surface; default: 0 for level sets, else half way between the "
-                 "least and the greatest value");
+CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isovalue) {
+  return app.add_option("--iso", isovalue,
+                        "value on the surface; default: 0 for level sets; fog volumes need one, or "
+                        "auto: half way between the least and the greatest value");
+}
+
+void addContourOptions(CLI::App& app, ContourOptions& options,
+                       std::optional<std::string>& isovalue) {
+  addIsovalueOption(app, isovalue);
   addChoice<Inside>(app, "--inside", options.inside,
                     {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
                     "which side of the isovalue is solid (default auto)");
@@ -70,6 +102,9 @@ void addContourOptions(CLI::App& app, ContourOptions& options) {
   app.add_flag("--simplify,!--no-simplify", options.simplify,
                "collapse edges of an adaptive mesh as far as the tolerance allows (default)");
   app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
+  app.add_option("--tile-faces", options.tileFaces,
+                 "most faces of voxels on the surface between tiles; more take gigabytes")
+      ->capture_default_str();
   addThreadsOption(app, options.threads);
 }
 

@@ -4,7 +4,8 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace tufa::tools {
 
@@ -23,9 +24,13 @@ void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);
 void addChunksCommand(CLI::App& app, Command& chosen);
 void addCheckCommand(CLI::App& app, Command& chosen);
+void addHelpCommand(CLI::App& app, Command& chosen);
 
 /// Declares `--threads`, which all of them have.
 void addThreadsOption(CLI::App& app, int& threads);
+
+/// For options that take a number above 0.
+[[nodiscard]] CLI::Validator above0();
 
 /// Exit codes of the command.
 inline constexpr int kDone = 0;

@@ -1,6 +1,7 @@
 #include "console.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <tufa/error.h>
 #include <array>
@@ -9,6 +10,8 @@
 #include <cstdio>
 #include <cstring>
 #include <thread>
+
+#include "base/printable.h"
 
 namespace tufa::tools {
 namespace {
@@ -40,7 +43,18 @@ void print(const std::string& text) {
               std::string("cannot write standard output: ") + std::strerror(errno));
 }
 
-void printNote(const std::string& text) { std::fprintf(stderr, "tufa: %s\n", text.c_str()); }
+void printNote(const std::string& text) {
+  std::fprintf(stderr, "tufa: %s\n", base::printable(text).c_str());
+}
+
+std::string shownGrid(const std::string& name) {
+  return name.empty() ? "unnamed grid" : "grid \"" + base::printable(name) + "\"";
+}
+
+void endAtOnce(int exitCode) {
+  std::fflush(nullptr);
+  ::_exit(exitCode);
+}
 
 std::string formatCount(std::size_t count) {
   std::string digits = std::to_string(count);

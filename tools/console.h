@@ -19,6 +19,13 @@ void print(const std::string& text);
 /// One line on standard error, prefixed by the command's name.
 void printNote(const std::string& text);
 
+/// 'grid "NAME"', or "unnamed grid". Names come from files: what a terminal would obey is escaped.
+[[nodiscard]] std::string shownGrid(const std::string& name);
+
+/// Ends the program without freeing what it holds: a file that could not be read may have broken
+/// the heap, and a crash would follow the message.
+[[noreturn]] void endAtOnce(int exitCode);
+
 /// A count with a comma every three digits.
 [[nodiscard]] std::string formatCount(std::size_t count);
 

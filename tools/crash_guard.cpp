@@ -1,9 +1,14 @@
 #include "crash_guard.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstddef>
+#include <exception>
+#include <string>
 
 #include "commands.h"
 
@@ -12,23 +17,72 @@ namespace {
 
 constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-std::string message;  // made beforehand: a signal handler may not
+// What the signal handler needs is made beforehand and lies outside of the heap, which a crash may
+// have overwritten, as is the stack that it runs on: the usual one may have overflowed.
+std::array<char, 8192> message;
+std::size_t messageBytes = 0;
+int standardError = STDERR_FILENO;
+alignas(16) std::array<char, std::size_t{64} << 10> handlerStack;
 
 void refuse(int /*signal*/) {
   // If that fails, nothing more can be done.
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
+  [[maybe_unused]] const ssize_t written = ::write(standardError, message.data(), messageBytes);
   ::_exit(kUnusableFile);
+}
+
+void compose(const std::string& file) {
+  const std::string text = "tufa: cannot read " + file + ": OpenVDB crashed on it, it is damaged\n";
+  messageBytes = std::min(text.size(), message.size());
+  std::copy_n(text.begin(), messageBytes, message.begin());
+}
+
+/// Sends standard error nowhere, but for its copy.
+void muteStandardError() {
+  const int copy = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (copy < 0) return;
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+  if (nowhere >= 0) ::close(nowhere);
+  standardError = copy;
+}
+
+void restoreStandardError() {
+  if (standardError == STDERR_FILENO) return;
+  ::dup2(standardError, STDERR_FILENO);
+  ::close(standardError);
+  standardError = STDERR_FILENO;
+}
+
+void setHandlerStack(int flags) {
+  stack_t stack{};
+  stack.ss_sp = handlerStack.data();
+  stack.ss_size = handlerStack.size();
+  stack.ss_flags = flags;
+  ::sigaltstack(&stack, nullptr);
+}
+
+void handleCrashes(void (*handler)(int), int flags) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = flags;
+  for (const int signal : kCrashes) ::sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
 
-CrashGuard::CrashGuard(const std::string& file) {
-  message = "tufa: cannot read " + file + ": OpenVDB crashed on it, it is damaged\n";
-  for (const int signal : kCrashes) std::signal(signal, refuse);
+CrashGuard::CrashGuard(const std::string& file) : exceptions_(std::uncaught_exceptions()) {
+  compose(file);
+  muteStandardError();
+  setHandlerStack(0);
+  handleCrashes(refuse, SA_ONSTACK);
 }
 
 CrashGuard::~CrashGuard() {
-  for (const int signal : kCrashes) std::signal(signal, SIG_DFL);
+  if (std::uncaught_exceptions() == exceptions_) {
+    handleCrashes(SIG_DFL, 0);
+    setHandlerStack(SS_DISABLE);
+  }
+  restoreStandardError();
 }
 
 }  // namespace tufa::tools

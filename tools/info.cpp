@@ -8,7 +8,7 @@
 
 #include "commands.h"
 #include "console.h"
-#include "crash_guard.h"
+#include "volume.h"
 
 namespace tufa::tools {
 namespace {
@@ -48,7 +48,7 @@ std::string describe(const GridInfo& info) {
     return format(v[0]) + " " + format(v[1]) + " " + format(v[2]);
   };
   const auto integer = [](int value) { return std::to_string(value); };
-  std::string text = "grid \"" + info.name + "\"\n";
+  std::string text = shownGrid(info.name) + "\n";
   const auto line = [&text](const char* label, const std::string& value) {
     text += "  " + std::string(label) + value + "\n";
   };
@@ -72,11 +72,7 @@ std::string describe(const GridInfo& info) {
 }
 
 int runInfo(const InfoArguments& arguments) {
-  std::vector<GridInfo> grids;
-  {
-    const CrashGuard guard(arguments.input);
-    grids = describeGrids(arguments.input);
-  }
+  const std::vector<GridInfo> grids = describeVolumes(arguments.input);
   if (arguments.json) {
     Json json;
     json["file"] = arguments.input;

@@ -2,11 +2,11 @@
 
 #include <tufa/check.h>
 #include <tufa/error.h>
+#include <tufa/io.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "console.h"
 #include "render/scene.h"
@@ -159,19 +159,6 @@ std::string levelSection(const LodChain& chain, std::size_t level, const Mesh& r
          legend(shortNumber(lod.certificate.maxErrorVoxels) + " voxels, the certified error");
 }
 
-/// Writes a text so that the file appears whole or not at all.
-void writeText(const std::string& text, const std::filesystem::path& path) {
-  const std::filesystem::path temporary = path.string() + ".tmp";
-  std::ofstream file(temporary, std::ios::binary);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (file && !error) return;
-  std::filesystem::remove(temporary, error);
-  throw Error(ErrorCode::UnwritableFile, "cannot write " + path.string());
-}
-
 }  // namespace
 
 void writeLodPage(const LodChain& chain, const Mesh& reference, const LodPage& page,
@@ -190,7 +177,7 @@ void writeLodPage(const LodChain& chain, const Mesh& reference, const LodPage& p
     html += levelSection(chain, level, reference, page, view);
   }
   report(page, chain.levels.size(), chain.levels.size());
-  writeText(html + "</body></html>\n", path);
+  writeFile(html + "</body></html>\n", path);
 }
 
 }  // namespace tufa::tools

@@ -1,12 +1,17 @@
 #include <CLI/CLI.hpp>
 
 #include <tufa/error.h>
+#include <algorithm>
 #include <exception>
 #include <new>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "console.h"
+#include "usage.h"
 
 namespace {
 
@@ -23,45 +28,88 @@ int exitCodeOf(const tufa::Error& error) {
   }
 }
 
+/// The name of an error in JSON.
+std::string nameOf(tufa::ErrorCode code) {
+  switch (code) {
+    case tufa::ErrorCode::InvalidArgument:
+      return "invalid_argument";
+    case tufa::ErrorCode::UnsupportedGrid:
+      return "unsupported_grid";
+    case tufa::ErrorCode::NonFiniteValues:
+      return "non_finite_values";
+    case tufa::ErrorCode::UnknownGrid:
+      return "unknown_grid";
+    case tufa::ErrorCode::UnreadableFile:
+      return "unreadable_file";
+    case tufa::ErrorCode::UnwritableFile:
+      return "unwritable_file";
+    case tufa::ErrorCode::LimitExceeded:
+      return "limit_exceeded";
+    case tufa::ErrorCode::Cancelled:
+      return "interrupted";
+  }
+  return "unknown";
+}
+
+/// Where a failure is told: a line on standard error, and with `--json` an object on standard
+/// output.
+struct Failures {
+  bool json = false;
+
+  void tell(const std::string& code, const std::string& message) const {
+    printNote(message);
+    if (!json) return;
+    const nlohmann::ordered_json object = {{"error", {{"code", code}, {"message", message}}}};
+    try {
+      print(object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    } catch (const tufa::Error&) {
+      // Standard output is closed or full, which may be the failure itself: that was told.
+    }
+  }
+};
+
 /// Runs the subcommand; every error becomes one line and an exit code.
-int runGuarded(const Command& command) {
+int runGuarded(const Command& command, const Failures& failures) {
   try {
     return command();
   } catch (const tufa::Error& error) {
-    printNote(error.what());
+    const bool cancelled = error.code() == tufa::ErrorCode::Cancelled;
+    failures.tell(nameOf(error.code()), cancelled ? "interrupted" : error.what());
+    if (error.code() == tufa::ErrorCode::UnreadableFile) endAtOnce(exitCodeOf(error));
     return exitCodeOf(error);
   } catch (const std::bad_alloc&) {
-    printNote("out of memory");
+    failures.tell("out_of_memory", "out of memory");
     return kUnusableFile;
   } catch (const std::exception& error) {
-    printNote(error.what());
+    failures.tell("internal_error", error.what());
     return kUnusableFile;
   }
-}
-
-std::string oneLine(std::string text) {
-  const auto end = text.find_last_not_of(" \n");
-  text.erase(end == std::string::npos ? 0 : end + 1);
-  for (char& c : text) {
-    if (c == '\n') c = ' ';
-  }
-  return text;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   installSignalHandlers();
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  // Also where the command line cannot be read otherwise.
+  const Failures failures{std::find(words.begin(), words.end(), "--json") != words.end()};
   CLI::App app;
   Command chosen;
   declareCommand(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    // Not by CLI11, which does not notice a full disk.
+    const auto show = [&] {
+      std::ostringstream text;
+      const int exitCode = app.exit(help, text, text);
+      print(text.str());
+      return exitCode;
+    };
+    return runGuarded(show, failures);
   } catch (const CLI::ParseError& error) {
-    printNote(oneLine(error.what()) + " (see tufa --help)");
+    failures.tell("invalid_argument", describeMisuse(app, error, words));
     return kWrongUsage;
   }
-  return runGuarded(chosen);
+  return runGuarded(chosen, failures);
 }

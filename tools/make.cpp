@@ -8,7 +8,10 @@
 
 #include "commands.h"
 #include "console.h"
+#include "paths.h"
 #include "progress_bar.h"
+#include "volume.h"
+#include "written_grid.h"
 
 namespace tufa::tools {
 namespace {
@@ -17,20 +20,33 @@ struct MakeArguments {
   std::string shape;
   std::string output;
   ShapeOptions options;
+  bool json = false;
+  bool quiet = false;
 };
 
 int runMake(const MakeArguments& arguments) {
+  requireVoxelSize("--voxel", arguments.options.voxelSize);
+  requireVolumeEnding(arguments.output);
   requireWritable(arguments.output);
   openvdb::FloatGrid::Ptr grid;
-  {
-    ProgressBar bar(false);
+  const double seconds = timed([&] {
+    ProgressBar bar(arguments.quiet);
     ShapeOptions options = arguments.options;
     options.progress = bar.callback();
     grid = makeShape(*shapeByName(arguments.shape), options);
+  });
+  WrittenGrid written;
+  written.output = arguments.output;
+  written.grid = grid->getName();
+  written.activeVoxels = grid->activeVoxelCount();
+  written.voxelSize = arguments.options.voxelSize;
+  written.makeSeconds = seconds;
+  written.writeSeconds = timed([&] { writeGrids({grid}, arguments.output); });
+  if (arguments.json) {
+    print(toJson(written));
+  } else if (!arguments.quiet) {
+    print(describe(written));
   }
-  writeGrids({grid}, arguments.output);
-  print(arguments.output + ": " + arguments.shape + ", " + formatCount(grid->activeVoxelCount()) +
-        " active voxels of " + formatNumber(arguments.options.voxelSize) + "\n");
   return kDone;
 }
 
@@ -50,6 +66,8 @@ void addMakeCommand(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   make->add_option("--seed", options.seed, "of terrain, noise and fog")->capture_default_str();
   addThreadsOption(*make, options.threads);
+  make->add_flag("--json", arguments->json, "one JSON object on standard output");
+  make->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   make->callback([arguments, &chosen] { chosen = [arguments] { return runMake(*arguments); }; });
 }
 

@@ -2,10 +2,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <tufa/io.h>
 #include <tufa/version.h>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -177,14 +178,16 @@ int main(int argc, char** argv) {
   tufa::tools::Command chosen;
   tufa::tools::declareCommand(app, chosen);
 
-  std::ofstream page(folder / "man1" / "tufa.1");
-  writeMainPage(page, app);
+  const auto writeText = [&](const std::string& name, const auto& writeTo) {
+    std::ostringstream text;
+    writeTo(text);
+    tufa::writeFile(text.str(), folder / name);
+  };
+  writeText("man1/tufa.1", [&](std::ostream& page) { writeMainPage(page, app); });
   for (const CLI::App* command : subcommandsOf(app)) {
-    std::ofstream commandPage(folder / "man1" / ("tufa-" + command->get_name() + ".1"));
-    writePage(commandPage, *command);
-    if (!commandPage.flush()) return 1;
+    writeText("man1/tufa-" + command->get_name() + ".1",
+              [&](std::ostream& page) { writePage(page, *command); });
   }
-  std::ofstream completion(folder / "tufa.bash");
-  writeCompletions(completion, app);
-  return page.flush() && completion.flush() ? 0 : 1;
+  writeText("tufa.bash", [&](std::ostream& completion) { writeCompletions(completion, app); });
+  return 0;
 }

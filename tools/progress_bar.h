@@ -2,21 +2,25 @@
 
 #include <tufa/progress.h>
 #include <chrono>
+#include <cstddef>
 #include <string_view>
+#include <vector>
 
 namespace tufa::tools {
 
 /// A line on standard error that shows the progress: only if standard error is a terminal, and only
-/// from the second second on. Removed at the end.
+/// from the second second on. Removed at the end. It never falls, over all calls that it is for.
 class ProgressBar {
  public:
-  explicit ProgressBar(bool quiet);
+  /// `shares` has one number for each call to come: how long it is likely to take, compared with
+  /// the others.
+  explicit ProgressBar(bool quiet, std::vector<double> shares = {1});
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// For the options of a library call; it also cancels when the user asked to stop. Must not
-  /// outlive the bar.
+  /// For the options of the next library call; it also cancels when the user asked to stop. Must
+  /// not outlive the bar.
   [[nodiscard]] Progress callback();
 
  private:
@@ -26,8 +30,17 @@ class ProgressBar {
 
   bool enabled_;
   bool visible_ = false;
+  std::vector<double> shares_;
+  std::size_t call_ = 0;  ///< the next one
+  double shown_ = 0;
+  RestEstimate rest_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point drawn_{};
 };
+
+/// How long meshing, checking and writing take on the sample volumes, compared with each other.
+inline constexpr double kContourShare = 30;
+inline constexpr double kCheckShare = 3;
+inline constexpr double kWriteShare = 0.5;
 
 }  // namespace tufa::tools

@@ -56,8 +56,8 @@ std::string listFaults(const CheckReport& report) {
 
 std::string describeSide(const DistanceSummary& side) {
   if (side.samples == 0) return "no samples";
-  return formatNumber(side.largest) + " largest, " + formatNumber(side.mean) + " mean, " +
-         formatNumber(side.rms) + " rms of " + formatCount(side.samples) + " samples";
+  return shortNumber(side.largest) + " largest, " + shortNumber(side.mean) + " mean, " +
+         shortNumber(side.rms) + " rms of " + formatCount(side.samples) + " samples";
 }
 
 }  // namespace
@@ -122,8 +122,8 @@ std::string describe(const CheckReport& report) {
   addLine(text, "area, volume     ",
           formatNumber(report.area) + ", " + formatNumber(report.volume));
   addLine(text, "smallest angle   ",
-          formatNumber(report.smallestAngleDegrees) + " degrees, " +
-              formatNumber(100 * report.shareUnder10Degrees) + "% of triangles under 10");
+          shortNumber(report.smallestAngleDegrees) + " degrees, " +
+              shortNumber(100 * report.shareUnder10Degrees) + "% of triangles under 10");
   addLine(text, "closed           ", yesNo(report.closed));
   addLine(text, "manifold         ", yesNo(report.manifold));
   addLine(text, "oriented         ",

@@ -1,10 +1,13 @@
 #include "volume.h"
 
+#include <fnmatch.h>
 #include <openvdb/openvdb.h>
 
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "console.h"
 #include "crash_guard.h"
@@ -33,12 +36,112 @@ bool openOnlyWhereDataEnds(const CheckReport& check, const ContourReport& report
          check.invalidFaces + check.duplicateFaces == 0;
 }
 
+/// "has values from 0 to 3 and background 0", for a message.
+std::string describeValues(const GridInfo& info) {
+  if (!info.minValue) return "has no finite value";
+  return "has values from " + formatNumber(*info.minValue) + " to " + formatNumber(*info.maxValue) +
+         " and background " + formatNumber(info.background);
+}
+
+/// An isovalue to begin with: a tenth of the greatest value, which shows the body of most smoke.
+std::string suggestIsovalue(const GridInfo& info) {
+  const double greatest = std::max(info.maxValue.value_or(0), info.background);
+  return greatest > 0 ? "--iso " + shortNumber(0.1 * greatest) : "a value between these";
+}
+
+std::vector<GridName> listVolume(const std::string& file) {
+  const CrashGuard guard(file);
+  return listGrids(file);
+}
+
 }  // namespace
+
+std::optional<double> readIsovalue(const std::optional<std::string>& text,
+                                   const openvdb::GridBase& grid, const std::string& file) {
+  if (text) {
+    if (*text == "auto") return std::nullopt;
+    if (const auto value = numberIn<double>(*text)) return value;
+    throw Error(ErrorCode::InvalidArgument, "--iso is a number or auto, not \"" + *text + "\"");
+  }
+  if (grid.getGridClass() != openvdb::GRID_FOG_VOLUME) return std::nullopt;
+  const GridInfo info = describeGrid(grid);
+  throw Error(ErrorCode::InvalidArgument,
+              "a fog volume needs --iso: grid \"" + grid.getName() + "\" in " + file + " " +
+                  describeValues(info) + "; try " + suggestIsovalue(info) +
+                  ", or --iso auto for half way between the least and the greatest value, which "
+                  "differs from frame to frame");
+}
+
+void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid,
+                  double isovalue) {
+  if (text && *text != "auto") return;
+  if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return;
+  printNote("note: isovalue " + formatNumber(isovalue) +
+            " was taken, half way between the least and the greatest value");
+}
+
+std::vector<std::string> chooseGrids(const std::string& file,
+                                     const std::vector<std::string>& patterns) {
+  const std::vector<GridName> grids = listVolume(file);
+  std::vector<bool> chosen(grids.size());
+  for (const std::string& pattern : patterns) {
+    const bool exact = pattern.find_first_of("*?") == std::string::npos;
+    bool found = false;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+      // The first of several grids of a name can be named without its number.
+      const std::string& name = grids[i].name;
+      const bool means =
+          exact ? name == pattern || (!found && name == pattern + "[0]")
+                : grids[i].meshable && fnmatch(pattern.c_str(), name.c_str(), FNM_NOESCAPE) == 0;
+      if (!means) continue;
+      chosen[i] = found = true;
+    }
+    if (found) continue;
+    std::string names;
+    for (const GridName& grid : grids) names += (names.empty() ? "\"" : ", \"") + grid.name + "\"";
+    throw Error(ErrorCode::UnknownGrid,
+                std::string(exact ? "no grid \"" : "no grid that can be meshed is named like \"") +
+                    pattern + "\" in " + file + "; it holds " + names);
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    if (chosen[i]) names.push_back(grids[i].name);
+  }
+  return names;
+}
+
+void noteChoice(const std::string& file, const std::string& grid) {
+  const std::vector<GridName> grids = listVolume(file);
+  const auto count = std::count_if(grids.begin(), grids.end(),
+                                   [](const GridName& candidate) { return candidate.meshable; });
+  if (count < 2) return;
+  printNote("note: grid \"" + grid + "\" was taken, one of " + std::to_string(count) +
+            " that can be meshed; --grid chooses");
+}
+
+void requireVoxelSize(const std::string& option, double size) {
+  if (!(size > 0 && std::isfinite(size))) {
+    throw Error(ErrorCode::InvalidArgument,
+                option + ": the voxel size must be above 0, not " + formatNumber(size));
+  }
+  try {
+    static_cast<void>(openvdb::math::Transform::createLinearTransform(size));
+  } catch (const openvdb::Exception&) {
+    throw Error(ErrorCode::InvalidArgument, option + ": OpenVDB takes no voxels of size " +
+                                                formatNumber(size) +
+                                                "; their volume is rounded to 0");
+  }
+}
 
 std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
                                               const std::optional<std::string>& name) {
   const CrashGuard guard(file);
   return readGrid(file, name);
+}
+
+std::vector<GridInfo> describeVolumes(const std::string& file) {
+  const CrashGuard guard(file);
+  return describeGrids(file);
 }
 
 std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
@@ -61,20 +164,14 @@ void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
 void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
                     const std::string& file) {
   if (mesh.triangleCount() > 0) return;
-  const GridInfo info = describeGrid(grid);
-  std::string range = "has no finite value";
-  if (info.minValue) {
-    range = "has values from " + formatNumber(*info.minValue) + " to " +
-            formatNumber(*info.maxValue) + " and background " + formatNumber(info.background);
-  }
   throw Error(ErrorCode::UnsupportedGrid, "no surface at isovalue " + formatNumber(isovalue) +
                                               ": grid \"" + grid.getName() + "\" in " + file + " " +
-                                              range);
+                                              describeValues(describeGrid(grid)));
 }
 
 double readTolerance(const std::string& option, const std::string& text,
                      const openvdb::GridBase& grid) {
-  const bool world = !text.empty() && text.back() == 'w';
+  const bool world = !text.empty() && (text.back() == 'w' || text.back() == 'W');
   const std::string number = world ? text.substr(0, text.size() - 1) : text;
   const std::optional<double> value = numberIn<double>(number);
   if (!value || !(*value >= 0)) {

@@ -2,33 +2,65 @@
 
 #include <tufa/check.h>
 #include <tufa/contour.h>
+#include <tufa/io.h>
 #include <tufa/openvdb_fwd.h>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace tufa::tools {
 
 // What the commands that mesh a volume share.
 
-/// Declares the options for where the surface of a volume lies and how its finest mesh is made.
-void addContourOptions(CLI::App& app, ContourOptions& options);
+/// Declares the options for where the surface of a volume lies and how its finest mesh is made; the
+/// isovalue as text, for readIsovalue().
+void addContourOptions(CLI::App& app, ContourOptions& options,
+                       std::optional<std::string>& isovalue);
 
-/// "0.1" is in voxels, "0.1w" in world units; gives voxels. `option` is for the message.
+/// Declares `--iso` alone.
+CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isovalue);
+
+/// What `--iso` says: a number, or "auto" for what the library chooses. Throws
+/// Error(InvalidArgument) for any other text, and for none if the grid is a fog volume: half way
+/// between its least and its greatest value is another surface in every frame of a sequence.
+[[nodiscard]] std::optional<double> readIsovalue(const std::optional<std::string>& text,
+                                                 const openvdb::GridBase& grid,
+                                                 const std::string& file);
+
+/// Says on standard error which isovalue was chosen, where that depends on the data.
+void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid,
+                  double isovalue);
+
+/// The grids of a file that some names and patterns mean, in the order of the file; patterns, with
+/// * and ?, mean those that can be meshed only. Throws Error(UnknownGrid) for a name or pattern
+/// that means none.
+[[nodiscard]] std::vector<std::string> chooseGrids(const std::string& file,
+                                                   const std::vector<std::string>& patterns);
+
+/// Says on standard error that a grid was taken because none was named, if there was a choice.
+void noteChoice(const std::string& file, const std::string& grid);
+
+/// Throws Error(InvalidArgument) that names the option if OpenVDB takes no voxels of that size.
+void requireVoxelSize(const std::string& option, double size);
+
+/// "0.1" is in voxels, "0.1w" or "0.1W" in world units; gives voxels. `option` is for the message.
 [[nodiscard]] double readTolerance(const std::string& option, const std::string& text,
                                    const openvdb::GridBase& grid);
 
-/// readGrid(), under a CrashGuard.
+/// readGrid() and describeGrids(), under a CrashGuard: the only ways to the volumes of a file.
 [[nodiscard]] std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
                                                             const std::optional<std::string>& name);
+[[nodiscard]] std::vector<GridInfo> describeVolumes(const std::string& file);
 
-/// The same for a grid that multiplies the tolerance. Throws Error(UnsupportedGrid) if its values
-/// are no floats: contour() would find that only after much work.
+/// readVolume() for a grid that multiplies the tolerance. Throws Error(UnsupportedGrid) if its
+/// values are no floats: contour() would find that only after much work.
 [[nodiscard]] std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
                                                                          const std::string& name);
 

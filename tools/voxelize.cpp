@@ -9,7 +9,10 @@
 
 #include "commands.h"
 #include "console.h"
+#include "paths.h"
 #include "progress_bar.h"
+#include "volume.h"
+#include "written_grid.h"
 
 namespace tufa::tools {
 namespace {
@@ -18,25 +21,40 @@ struct VoxelizeArguments {
   std::string input;
   std::string output;
   VoxelizeOptions options;
+  bool json = false;
+  bool quiet = false;
 };
 
 int runVoxelize(const VoxelizeArguments& arguments) {
+  requireVoxelSize("--voxel", arguments.options.voxelSize);
+  requireVolumeEnding(arguments.output);
+  requireDistinct(arguments.output, {arguments.input});
   requireWritable(arguments.output);
   const Mesh mesh = readMesh(arguments.input);
   if (mesh.triangleCount() == 0) {
     throw Error(ErrorCode::UnreadableFile, arguments.input + " holds no faces");
   }
   openvdb::FloatGrid::Ptr grid;
-  {
-    ProgressBar bar(false);
+  const double seconds = timed([&] {
+    ProgressBar bar(arguments.quiet);
     VoxelizeOptions options = arguments.options;
     options.progress = bar.callback();
     grid = voxelize(mesh, options);
+  });
+  WrittenGrid written;
+  written.input = arguments.input;
+  written.triangles = mesh.triangleCount();
+  written.output = arguments.output;
+  written.grid = grid->getName();
+  written.activeVoxels = grid->activeVoxelCount();
+  written.voxelSize = arguments.options.voxelSize;
+  written.makeSeconds = seconds;
+  written.writeSeconds = timed([&] { writeGrids({grid}, arguments.output); });
+  if (arguments.json) {
+    print(toJson(written));
+  } else if (!arguments.quiet) {
+    print(describe(written));
   }
-  writeGrids({grid}, arguments.output);
-  print(arguments.output + ": " + formatCount(grid->activeVoxelCount()) + " active voxels of " +
-        formatNumber(arguments.options.voxelSize) + " from " + formatCount(mesh.triangleCount()) +
-        " triangles\n");
   return kDone;
 }
 
@@ -54,6 +72,8 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen) {
       ->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")
       ->capture_default_str();
   addThreadsOption(*voxelize, options.threads);
+  voxelize->add_flag("--json", arguments->json, "one JSON object on standard output");
+  voxelize->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   voxelize->callback(
       [arguments, &chosen] { chosen = [arguments] { return runVoxelize(*arguments); }; });
 }

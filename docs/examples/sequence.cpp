@@ -31,6 +31,7 @@ int main() {
     const auto volume = folder / ("frame." + std::to_string(frame) + ".vdb");
     try {
       tufa::ContourOptions options;
+      options.isovalue = 0;     // one for all frames: what is chosen for a fog volume differs
       options.tolerance = 0.1;  // voxels: the error follows the resolution of each frame
       options.nonFinite = tufa::NonFinite::Outside;
       tufa::ContourReport report;

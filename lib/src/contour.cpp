@@ -12,18 +12,21 @@
 namespace tufa {
 namespace {
 
-constexpr uniform::StageEnds kUniformEnds = {0.15, 0.3, 0.7, 0.85, 0.9, 0.95};
-constexpr uniform::StageEnds kAdaptiveEnds = {0.08, 0.15, 0.36, 0.46, 0.48, 0.5};
+// Shares of the time that stages took on the sample volumes.
+constexpr uniform::StageEnds kUniformEnds = {0.03, 0.06, 0.4, 0.45, 0.5, 0.9};
+constexpr uniform::StageEnds kAdaptiveEnds = {0.02, 0.05, 0.14, 0.17, 0.18, 0.22};
+constexpr double kForestEnd = 0.25;
+constexpr double kAdaptiveEnd = 0.96;
 
 refine::AdaptiveMesh makeAdaptive(refine::SurfaceModel& model, const octree::CutRule& rule,
                                   const ContourOptions& options, base::Job& job) {
   if (octree::maySimplify(options)) {
-    job.beginStage("reduce", 0.95);
+    job.beginStage("reduce", kAdaptiveEnd, base::Length::Unknown);
     return refine::SurfaceReduction(model, rule, job).toTolerance(rule.tolerance, false);
   }
-  job.beginStage("forest", 0.7);
+  job.beginStage("forest", kForestEnd);
   model.buildClusters(rule, job);
-  job.beginStage("cut", 0.95);
+  job.beginStage("cut", kAdaptiveEnd, base::Length::Unknown);
   const auto repair = model.repair(job);
   return refine::adapt(model, rule, {repair ? &*repair : nullptr}, job);
 }

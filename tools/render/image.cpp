@@ -2,10 +2,10 @@
 
 #include <png.h>
 
+#include <tufa/io.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <stdexcept>
 
 namespace tufa::render {
@@ -72,11 +72,7 @@ std::string pngOf(const Image& image) {
 }
 
 void writePng(const Image& image, const std::filesystem::path& path) {
-  const std::string bytes = pngOf(image);
-  std::ofstream file(path, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path.string());
+  writeFile(pngOf(image), path);
 }
 
 }  // namespace tufa::render

@@ -38,7 +38,7 @@ struct Image {
 /// The bytes of an 8-bit sRGB .png. Throws std::runtime_error.
 [[nodiscard]] std::string pngOf(const Image& image);
 
-/// Writes that. Throws std::runtime_error.
+/// Writes that. Throws std::runtime_error, of which Error is one.
 void writePng(const Image& image, const std::filesystem::path& path);
 
 }  // namespace tufa::render

@@ -3,6 +3,7 @@
 import { createReadStream, realpathSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { dirname, extname, join, sep } from "node:path";
+import { pipeline } from "node:stream";
 import { fileURLToPath } from "node:url";
 
 const kTypes = {
@@ -22,17 +23,34 @@ function fileOf(url, folder) {
   return inside && statSync(file).isFile() ? file : null;
 }
 
+/// Whether a request is meant for this server: a page of another host, whose name was made to lead
+/// here, may not read what it serves.
+function isMeant(request) {
+  const { port } = request.socket.address();
+  return [`127.0.0.1:${port}`, `localhost:${port}`].includes(request.headers.host);
+}
+
 /// Serves a folder of chunks; gives the server once it listens. Port 0 stands for any free one.
 export function serve(folder, port) {
   const server = createServer((request, response) => {
+    if (!isMeant(request)) {
+      response.writeHead(403).end("for this machine alone\n");
+      return;
+    }
     try {
       const file = fileOf(request.url, folder);
       if (!file) throw new Error("outside");
-      response.writeHead(200, {
-        "content-type": kTypes[extname(file)] ?? "application/octet-stream",
-        "cache-control": "no-cache",
+      const stream = createReadStream(file);
+      stream.once("open", () => {
+        response.writeHead(200, {
+          "content-type": kTypes[extname(file)] ?? "application/octet-stream",
+          "cache-control": "no-cache",
+        });
       });
-      createReadStream(file).pipe(response);
+      // A file that cannot be opened or read on, or a reader that goes away, ends this answer alone.
+      pipeline(stream, response, (error) => {
+        if (error && !response.headersSent) response.writeHead(404).end("not found\n");
+      });
     } catch {
       response.writeHead(404).end("not found\n");
     }

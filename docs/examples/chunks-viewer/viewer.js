@@ -159,12 +159,13 @@ function connectPanel(viewer) {
   };
   byId("error").addEventListener("input", showError);
   showError();
-  byId("legend").innerHTML = viewer.index.tolerances_voxels
-    .map((tolerance, level) => {
-      const colour = kColours[level % kColours.length];
-      return `<span class="swatch" style="background:${colour}"></span>${level}: ${tolerance}`;
-    })
-    .join("");
+  // As text: chunks.json may hold anything.
+  viewer.index.tolerances_voxels.forEach((tolerance, level) => {
+    const swatch = document.createElement("span");
+    swatch.className = "swatch";
+    swatch.style.background = kColours[level % kColours.length];
+    byId("legend").append(swatch, `${level}: ${tolerance}`);
+  });
 }
 
 const response = await fetch(`${kUrl}chunks.json`);

@@ -26,7 +26,7 @@ struct ChunkOptions {
   ContourOptions contour;
   int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
   int levels = 4;      ///< LODs of each chunk, 1 to 16
-  double factor = 4;   ///< each LOD's tolerance over that of the LOD before; above 1
+  double factor = 4;   ///< each LOD's tolerance over that of the LOD before; above 1, to 10^6
   /// The chunks to make; empty: all. A chunk has the same bytes whichever are made with it.
   std::vector<Coord> only;
 };

@@ -77,6 +77,9 @@ struct ContourOptions {
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
   /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
   std::shared_ptr<const openvdb::GridBase> toleranceGrid;
+  /// Most faces of voxels, in estimate, on the surface between tiles, of which a few bytes make
+  /// millions: more are refused as LimitExceeded.
+  std::uint64_t tileFaces = std::uint64_t{1} << 25;
   /// Find polygons that intersect and repair them: by small moves of vertices, other diagonals,
   /// smaller cells and, rarely, four triangles in place of a quad.
   bool repair = true;

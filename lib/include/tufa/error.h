@@ -22,7 +22,8 @@ enum class ErrorCode {
 /// what to do, in one line.
 class TUFA_API Error : public std::runtime_error {
  public:
-  /// `message` is what what() gives: one line.
+  /// `message` is what what() gives, as one line: control characters, which names in files may
+  /// hold, become \xNN there.
   Error(ErrorCode code, const std::string& message);
 
   /// The kind of error, for callers that react to it.

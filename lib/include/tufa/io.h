@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tufa {
@@ -16,7 +17,19 @@ namespace tufa {
 /// Options of write().
 struct WriteOptions {
   std::string name = "mesh";  ///< of the object inside formats that name objects (.obj, .glb)
-  Progress progress;          ///< called from the calling thread; may cancel
+  /// .glb and .obj: where the normals of two faces at an edge differ by more than this angle, each
+  /// side keeps a normal of its own. In .glb, which has one normal a vertex, the vertices there
+  /// become several at one position. Degrees, 0 to 180; 180, or a mesh without normals, splits
+  /// none.
+  double creaseAngle = 40;
+  int threads = 0;    ///< most threads; 0: as many as the TBB arena allows. Never changes the file.
+  Progress progress;  ///< called from the calling thread; may cancel
+};
+
+/// A mesh and its name in a file.
+struct NamedMesh {
+  std::string name;  ///< of the node in .glb, of the object in .obj
+  Mesh mesh;         ///< world space
 };
 
 /// Writes a mesh in the format that the file name's ending says: .ply (binary), .obj, .stl
@@ -28,10 +41,16 @@ struct WriteOptions {
 /// name in the same folder and renamed. A pipe or a device is written to as it is, as .ply if it
 /// has no ending.
 ///
-/// Throws Error: UnwritableFile, InvalidArgument (unknown ending), LimitExceeded (more than the
-/// format can hold), Cancelled.
+/// Throws Error: UnwritableFile, InvalidArgument (unknown ending, an option out of its range),
+/// LimitExceeded (more than the format can hold), Cancelled.
 TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options = {});
+
+/// Writes several meshes to one file: .glb, a node each, or .obj, an object each. Their names are
+/// used in place of WriteOptions::name. Otherwise as write(); throws Error(InvalidArgument) for
+/// formats that hold one mesh only.
+TUFA_API void writeMeshes(const std::vector<NamedMesh>& meshes, const std::filesystem::path& path,
+                          const WriteOptions& options = {});
 
 /// Throws Error(InvalidArgument) if write() knows no format of this ending.
 TUFA_API void requireMeshEnding(const std::filesystem::path& path);
@@ -74,14 +93,30 @@ struct GridInfo {
 /// Describes every grid of a .vdb file. Throws Error(UnreadableFile).
 [[nodiscard]] TUFA_API std::vector<GridInfo> describeGrids(const std::filesystem::path& path);
 
+/// A grid of a .vdb file.
+struct GridName {
+  std::string name;       ///< grids of the same name are told apart as "name[0]", "name[1]", ...
+  bool meshable = false;  ///< contour() takes it; whether it has active voxels is not known yet
+};
+
+/// Lists every grid of a .vdb file, in the order of the file, without reading any values. Throws
+/// Error(UnreadableFile).
+[[nodiscard]] TUFA_API std::vector<GridName> listGrids(const std::filesystem::path& path);
+
 /// Reads one grid of a .vdb file: by name, or, without one, the first level set that can be meshed,
 /// else the first grid that can be meshed. Throws Error: UnreadableFile, UnknownGrid (the message
-/// lists the names there are), UnsupportedGrid (nothing in the file can be meshed).
+/// lists the names there are), UnsupportedGrid (nothing in the file can be meshed, or the transform
+/// of the grid of that name is out of range). Grids of points, which cannot be meshed, come with
+/// their active voxels but without the points.
 [[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> readGrid(
     const std::filesystem::path& path, const std::optional<std::string>& name = {});
 
 /// Writes grids to a .vdb file, whole or not at all. Throws Error(UnwritableFile).
 TUFA_API void writeGrids(const std::vector<std::shared_ptr<const openvdb::GridBase>>& grids,
                          const std::filesystem::path& path);
+
+/// Writes bytes, such as a report beside a mesh, as write() writes meshes: whole or not at all, and
+/// directly to a pipe or a device. Throws Error(UnwritableFile).
+TUFA_API void writeFile(std::string_view bytes, const std::filesystem::path& path);
 
 }  // namespace tufa

@@ -16,8 +16,8 @@ namespace tufa {
 struct LodOptions {
   /// How the surface is read and LOD 0 is made. `tolerance` is that of LOD 0; `uniform` is ignored.
   ContourOptions contour;
-  int levels = 5;     ///< LODs at most, at least 1
-  double factor = 4;  ///< each LOD's tolerance over that of the LOD before; above 1
+  int levels = 5;     ///< LODs at most, 1 to 100
+  double factor = 4;  ///< each LOD's tolerance over that of the LOD before; above 1, to 10^6
   /// Tolerances of all LODs in voxels, rising, in place of `levels` and `factor`.
   std::vector<double> tolerances;
   /// Most triangles of each LOD, falling, in place of tolerances: each LOD has as many, or up to 5
@@ -100,12 +100,15 @@ enum class LodCompression {
   Meshopt,    ///< the same, and packed: EXT_meshopt_compression
 };
 
-/// Options of writeLods(). All but `name`, `threads` and `progress` are for .glb only.
+/// Options of writeLods(). `allLevelsScene`, `up`, `scale` and `compression` are for .glb only.
 struct LodWriteOptions {
   std::string name = "mesh";  ///< of nodes and meshes: NAME_LOD0, NAME_LOD1, ...
-  /// Vertices are split where the normals of two faces at an edge differ by more than this angle:
-  /// degrees, 0 to 180; 180 splits none.
+  /// .glb and .obj: normals are split where those of two faces at an edge differ by more than this
+  /// angle: degrees, 0 to 180; 180 splits none. In .glb the vertices there become several.
   double creaseAngle = 40;
+  /// A second scene of all LODs, NAME_all_levels, for programs that find LODs by their names.
+  /// Without it the nodes of coarser LODs stand in no scene, and MSFT_lod alone leads to them.
+  bool allLevelsScene = false;
   UpAxis up = UpAxis::Y;  ///< of the volume
   double scale = 1;       ///< metres in a world unit; above 0
   /// No vertices are joined: an LOD in which rounding to 16 bits would bring two to one place, or

@@ -15,7 +15,7 @@ struct LeafCell {
 };
 
 /// Whether no two leaves that touch, by a face, an edge or a corner, differ by more than one level,
-/// and no leaf holds another.
+/// and no leaf holds another. Throws Error(InvalidArgument) for levels other than 0 to 31.
 [[nodiscard]] TUFA_API bool isRestricted(const std::vector<LeafCell>& leaves);
 
 }  // namespace tufa

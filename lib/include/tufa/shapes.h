@@ -29,7 +29,7 @@ enum class Shape {
 /// Options of makeShape().
 struct ShapeOptions {
   double voxelSize = 0.02;  ///< world units; every shape is about 2 units in size
-  double halfWidth = 3;     ///< of the narrow band, in voxels, 1 at least
+  double halfWidth = 3;     ///< of the narrow band, in voxels: 1 to 1000
   std::uint32_t seed = 1;   ///< of the random shapes
   int threads = 0;          ///< most threads; 0: all. Never changes the result.
   Progress progress;        ///< called from the calling thread; may cancel

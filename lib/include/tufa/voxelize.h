@@ -11,7 +11,7 @@ namespace tufa {
 /// Options of voxelize().
 struct VoxelizeOptions {
   double voxelSize = 0;  ///< world units, must be given
-  double halfWidth = 3;  ///< of the narrow band, in voxels, 1 at least
+  double halfWidth = 3;  ///< of the narrow band, in voxels: 1 to 1000
   int threads = 0;       ///< most threads; 0: all
   Progress progress;     ///< called from the calling thread; may cancel
 };

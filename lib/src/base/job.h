@@ -15,6 +15,12 @@
 
 namespace tufa::base {
 
+/// Whether it is known how much there is to do in a stage.
+enum class Length {
+  Known,    ///< one loop, whose progress is that of the stage
+  Unknown,  ///< loops until something holds: the stage moves on by the time it takes
+};
+
 /// One long call: its threads, its progress and its stage times.
 ///
 /// Loops hand out index ranges; bodies write to places of their own only, so that results do not
@@ -28,7 +34,7 @@ class Job {
   void run(const std::function<void()>& work);
 
   /// Ends the stage before and begins one that reaches to `endFraction` of the whole call.
-  void beginStage(std::string name, double endFraction);
+  void beginStage(std::string name, double endFraction, Length length = Length::Known);
 
   /// Ends the last stage and returns the times of all.
   std::vector<StageTime> finish();
@@ -65,6 +71,7 @@ class Job {
   }
   void throwIfStopped();
   void report(std::size_t done, std::size_t count);
+  [[nodiscard]] double shareByTime() const;
   void tell(std::string_view stage, double inStage);
   void closeStage();
 
@@ -77,6 +84,8 @@ class Job {
   std::thread::id caller_ = std::this_thread::get_id();
   std::vector<StageTime> times_;
   std::chrono::steady_clock::time_point stageStart_{};
+  Length length_ = Length::Known;  ///< of the stage
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double stageBegin_ = 0;
   double stageEnd_ = 0;
   double lastFraction_ = 0;

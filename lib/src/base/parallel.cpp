@@ -5,6 +5,7 @@
 #include <tbb/parallel_invoke.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 
@@ -59,16 +60,22 @@ struct HandOver {
 
 }  // namespace
 
+void runIsolated(const std::function<void()>& work) {
+  // Loops inside join this context in place of the caller's. An exception passes through it.
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  tbb::task_group(context).run_and_wait(work);
+}
+
 void runWithThreads(int threads, const std::function<void()>& work) {
   if (threads == 0) {
-    work();
+    runIsolated(work);
     return;
   }
   HandOver call;
   tbb::task_arena arena(threads);
   arena.execute([&] {
     const HandOver::Task task(call);
-    work();
+    runIsolated(work);
   });
 }
 

@@ -13,7 +13,13 @@ namespace tufa::base {
 
 using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
 
-/// Runs `work` with at most `threads` threads, 0: as many as the caller's arena has.
+/// Runs `work` on this thread, out of reach of whoever cancels the group of tasks that it is called
+/// in: a cancelled group skips the loops started in it without a word, ours and OpenVDB's. Whatever
+/// begins loops for a public call, and whatever calls a function of the user's, does it through
+/// this.
+void runIsolated(const std::function<void()>& work);
+
+/// Runs `work`, isolated, with at most `threads` threads, 0: as many as the caller's arena has.
 void runWithThreads(int threads, const std::function<void()>& work);
 
 /// Calls body(begin, end) over disjoint ranges that cover [0, count), in parallel, each of at most

@@ -3,6 +3,7 @@
 #include <tufa/contour.h>
 
 #include "base/job.h"
+#include "base/known_enum.h"
 
 namespace tufa::base {
 
@@ -10,6 +11,10 @@ namespace tufa::base {
 /// progress. Returns what that returns. `report` may be null.
 template <class Work>
 auto runCall(const ContourOptions& options, ContourReport* report, const Work& work) {
+  requireKnown(options.inside, Inside::Above, "the side that is inside");
+  requireKnown(options.ambiguity, Ambiguity::Chord, "the rule for ambiguous faces");
+  requireKnown(options.normals, Normals::None, "the kind of normals");
+  requireKnown(options.nonFinite, NonFinite::Outside, "the treatment of values not finite");
   ContourReport own;
   ContourReport& out = report != nullptr ? *report : own;
   out = {};

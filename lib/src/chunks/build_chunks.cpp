@@ -49,9 +49,7 @@ void requireOptions(const ChunkOptions& options) {
   if (options.levels < 1 || options.levels > 16) {
     refuse("chunks have 1 to 16 levels, not " + std::to_string(options.levels));
   }
-  if (!(options.factor > 1 && std::isfinite(options.factor))) {
-    refuse("the factor between the tolerances of two levels must be above 1");
-  }
+  octree::requireFactor(options.factor);
 }
 
 // The regions that hold blocks and chunks that are asked for.
@@ -102,7 +100,7 @@ ChunkIndex describe(const grid::Transform& transform, const ChunkOptions& option
   index.chunkSize = options.chunkSize;
   double tolerance = options.contour.tolerance;
   for (int i = 0; i < options.levels; ++i, tolerance *= options.factor) {
-    index.tolerances.push_back(tolerance);
+    index.tolerances.push_back(std::min(tolerance, octree::kLargestTolerance));
   }
   index.voxelSize = grid::Affine(transform).voxelSize();
   index.transform = transform.matrix();
@@ -216,7 +214,7 @@ class ChunkBuilder {
       for (const ChunkLevelEntry& level : entry.levels) {
         report_.intersectionsLeft += level.intersectionsLeft;
       }
-      sink_(index, std::move(made.chunk));
+      base::runIsolated([&] { sink_(index, std::move(made.chunk)); });
       entries_.push_back(std::move(entry));
     }
   }
@@ -257,6 +255,7 @@ class ChunkBuilder {
 ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                        const ChunkSink& sink, ContourReport* report) {
   requireOptions(options);
+  if (!sink) throw Error(ErrorCode::InvalidArgument, "there is no sink to hand the chunks to");
   grid::requireMeshable(grid);
   return base::runCall(options.contour, report, [&](ContourReport& out, base::Job& job) {
     return ChunkBuilder(grid, options, sink, out, job).build();

@@ -311,7 +311,8 @@ void Certifier::measureNewTriangle(std::size_t index, Part& part) {
   const double voxel = base_.affine.voxelSize();
   const double longest = std::sqrt(
       std::max({(b - a).squaredLength(), (c - b).squaredLength(), (a - c).squaredLength()}));
-  const int steps = std::clamp(static_cast<int>(longest / (kSampleSpacing * voxel)), 1, kMostSteps);
+  const int steps =
+      static_cast<int>(std::clamp(longest / (kSampleSpacing * voxel), 1.0, double{kMostSteps}));
   const Vec3 outward = facing(v.data(), 4);
   for (int i = 0; i < steps; ++i) {
     for (int j = 0; i + j < steps; ++j) {

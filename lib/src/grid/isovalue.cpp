@@ -5,6 +5,7 @@
 #include <tufa/error.h>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace tufa::grid {
 namespace {
@@ -12,14 +13,28 @@ namespace {
 // Half way between the least and the greatest finite value; the background counts as one.
 template <class GridT>
 double middleValue(const GridT& grid) {
+  using Upper = typename GridT::TreeType::RootNodeType::ChildNodeType;
+  using Lower = typename Upper::ChildNodeType;
   double least = grid.background();
   double greatest = least;
-  for (auto value = grid.cbeginValueOn(); value; ++value) {
-    const double v = *value;
-    if (!std::isfinite(v)) continue;
-    least = std::min(least, v);
-    greatest = std::max(greatest, v);
-  }
+  const auto addValues = [&](const auto& node) {
+    for (auto value = node.cbeginValueOn(); value; ++value) {
+      const double v = *value;
+      if (!std::isfinite(v)) continue;
+      least = std::min(least, v);
+      greatest = std::max(greatest, v);
+    }
+  };
+  const auto addNodes = [&]<class Node>() {
+    std::vector<const Node*> nodes;
+    grid.tree().getNodes(nodes);
+    for (const Node* node : nodes) addValues(*node);
+  };
+  // Node by node: the iterator of a tree looks for its place in the root's table at each step.
+  addValues(grid.tree().root());
+  addNodes.template operator()<Upper>();
+  addNodes.template operator()<Lower>();
+  addNodes.template operator()<typename Lower::ChildNodeType>();
   return std::midpoint(least, greatest);
 }
 

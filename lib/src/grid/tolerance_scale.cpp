@@ -18,6 +18,15 @@ std::function<double(const Vec3&)> toleranceScale(
                                                 "\" holds values of type " + scales->valueType() +
                                                 "; it must be a float grid");
   }
+  if (!scales->transform().isLinear()) {
+    throw Error(ErrorCode::InvalidArgument, "the transform of the tolerance grid \"" +
+                                                scales->getName() +
+                                                "\" is a frustum; it must be linear");
+  }
+  if (const std::string why = base::whyOutOfRange(transformOf(*scales).lattice()); !why.empty()) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                "the tolerance grid \"" + scales->getName() + "\" cannot be used: " + why);
+  }
   const auto grid = openvdb::gridConstPtrCast<openvdb::FloatGrid>(scales);
   return [grid, transform](const Vec3& point) {
     const openvdb::Vec3d world = toVdb(transform.indexToWorld(point));

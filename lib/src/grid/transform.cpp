@@ -16,12 +16,33 @@ Vec3 Transform::worldToIndex(const Vec3& world) const {
   return fromVdb(transform_->worldToIndex(toVdb(world)));
 }
 
-std::array<std::array<double, 4>, 4> Transform::matrix() const {
-  const openvdb::Mat4d own = transform_->baseMap()->getAffineMap()->getMat4();
-  std::array<std::array<double, 4>, 4> matrix{};
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) matrix[row][column] = own[row][column];
+base::Lattice Transform::lattice() const {
+  base::Lattice lattice{fromVdb(transform_->indexToWorld(openvdb::Vec3d(0))), {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d unit(0);
+    unit[axis] = 1;
+    lattice.steps[axis] = fromVdb(transform_->baseMap()->applyJacobian(unit));
   }
+  return lattice;
+}
+
+std::array<std::array<double, 4>, 4> Transform::matrix() const {
+  std::array<std::array<double, 4>, 4> matrix{};
+  const openvdb::Name type = transform_->mapType();
+  if (type == openvdb::math::AffineMap::mapType() || type == openvdb::math::UnitaryMap::mapType()) {
+    const openvdb::Mat4d own = transform_->baseMap()->getAffineMap()->getMat4();
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 4; ++column) matrix[row][column] = own[row][column];
+    }
+    return matrix;
+  }
+  // Maps along the axes. OpenVDB makes no affine map of small ones. + 0.0: no -0.
+  const base::Lattice own = lattice();
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) matrix[row][column] = own.steps[row][column] + 0.0;
+    matrix[3][column] = own.origin[column] + 0.0;
+  }
+  matrix[3][3] = 1;
   return matrix;
 }
 

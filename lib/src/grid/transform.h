@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 
+#include "base/lattice_range.h"
 #include "base/vec3.h"
 
 namespace tufa::grid {
@@ -16,6 +17,8 @@ class Transform {
 
   [[nodiscard]] Vec3 indexToWorld(const Vec3& index) const;
   [[nodiscard]] Vec3 worldToIndex(const Vec3& world) const;
+  /// Where the lattice points lie.
+  [[nodiscard]] base::Lattice lattice() const;
   /// The same as a matrix: row vectors of index space times it are row vectors of world space.
   [[nodiscard]] std::array<std::array<double, 4>, 4> matrix() const;
 

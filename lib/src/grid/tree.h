@@ -62,6 +62,8 @@ class Tree {
                             base::Job& job) const = 0;
   /// Records the place of every leaf and the sides of tiles as large as one.
   virtual void findPlaces(const IsoChoice& iso, BlockPlaces& places, base::Job& job) const = 0;
+  /// Faces of voxels between tiles of two sides, nearly; see tile_surface.h.
+  [[nodiscard]] virtual std::uint64_t tileSurface(const IsoChoice& iso, base::Job& job) const = 0;
   /// Blocks in tiles with cells that the surface passes because tiles of two sides touch; see
   /// tile_contacts.h.
   [[nodiscard]] virtual std::vector<Coord> tileContacts(const IsoChoice& iso,

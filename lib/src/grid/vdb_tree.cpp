@@ -13,6 +13,7 @@
 #include "grid/openvdb_templates.h"
 #include "grid/samples.h"
 #include "grid/tile_contacts.h"
+#include "grid/tile_surface.h"
 #include "grid/tree.h"
 #include "grid/vdb_coord.h"
 
@@ -190,6 +191,10 @@ class VdbTree final : public Tree {
         for (auto leaf = nodes[i]->cbeginChildOn(); leaf; ++leaf) place[leaf.pos()] = next++;
       }
     });
+  }
+
+  [[nodiscard]] std::uint64_t tileSurface(const IsoChoice& iso, base::Job& job) const override {
+    return grid::tileSurface(tree_, iso, job);
   }
 
   [[nodiscard]] std::vector<Coord> tileContacts(const IsoChoice& iso,

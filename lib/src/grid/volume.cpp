@@ -23,6 +23,13 @@ void requireScalar(const openvdb::GridBase& grid) {
   }
 }
 
+void requireRange(const openvdb::GridBase& grid) {
+  const std::string why = base::whyOutOfRange(transformOf(grid).lattice());
+  if (why.empty()) return;
+  throw Error(ErrorCode::UnsupportedGrid,
+              "grid \"" + grid.getName() + "\" cannot be meshed: " + why);
+}
+
 void requireCoordinates(const openvdb::GridBase& grid) {
   // Cells and nodes of the tree reach that far beyond the data at most.
   constexpr std::int64_t kMargin = 4096;
@@ -36,6 +43,17 @@ void requireCoordinates(const openvdb::GridBase& grid) {
                     std::to_string(box.min()[axis]) + " to " + std::to_string(box.max()[axis]) +
                     ", too near to the ends of 32-bit integers; move it towards the origin");
   }
+}
+
+void requireFewTileFaces(std::uint64_t faces, const ContourOptions& options,
+                         const std::string& name) {
+  if (faces <= options.tileFaces) return;
+  throw Error(ErrorCode::LimitExceeded,
+              "grid \"" + name + "\" has about " + std::to_string(faces) +
+                  " faces of voxels on its surface between tiles, more than " +
+                  std::to_string(options.tileFaces) +
+                  "; resample it, or raise the limit (--tile-faces) if there is memory for " +
+                  std::to_string(faces / 5'000'000 + 1) + " GB");
 }
 
 // A grid that is moved by whole blocks keeps its surface in the same place beside this.
@@ -52,6 +70,7 @@ Coord lowestOrigin(const Blocks& blocks) {
 
 void requireMeshable(const openvdb::GridBase& grid) {
   requireScalar(grid);
+  requireRange(grid);
   requireCoordinates(grid);
 }
 
@@ -59,7 +78,9 @@ std::string nameOf(const openvdb::GridBase& grid) { return grid.getName(); }
 
 Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options, base::Job& job) {
   const IsoChoice iso = chooseIsovalue(grid, options.isovalue, options.inside);
-  Blocks blocks(treeOf(grid, job), iso, options.nonFinite, job);
+  const std::shared_ptr<const Tree> tree = treeOf(grid, job);
+  requireFewTileFaces(tree->tileSurface(iso, job), options, grid.getName());
+  Blocks blocks(tree, iso, options.nonFinite, job);
   const FieldScale scale = readFieldScale(grid, iso);
   const Transform transform = transformOf(grid);
   const Affine affine(transform, lowestOrigin(blocks));

@@ -22,8 +22,9 @@ struct Volume {
   Affine affine;  ///< positions are counted from the lowest corner of all blocks of the grid
 };
 
-/// Throws Error(UnsupportedGrid) unless the grid is a float or double grid with a linear transform,
-/// Error(LimitExceeded) if coordinates beside its own could overflow.
+/// Throws Error(UnsupportedGrid) unless the grid is a float or double grid with a linear transform
+/// in the range of base::whyOutOfRange(), Error(LimitExceeded) if coordinates beside its own could
+/// overflow.
 void requireMeshable(const openvdb::GridBase& grid);
 
 /// The name of a grid; empty if it has none.

@@ -5,6 +5,7 @@
 #include <tufa/error.h>
 #include <cmath>
 
+#include "base/lattice_range.h"
 #include "grid/vdb_coord.h"
 
 namespace tufa::grid {
@@ -26,16 +27,18 @@ VoxelFrame::VoxelFrame(const openvdb::GridBase& grid) {
   }
   const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0));
   openvdb::math::Mat3d linear;
+  base::Lattice lattice{fromVdb(origin), {}};
   for (int axis = 0; axis < 3; ++axis) {
     openvdb::Vec3d unit(0);
     unit[axis] = 1;
     linear.setCol(axis, transform.indexToWorld(unit) - origin);
+    lattice.steps[axis] = fromVdb(transform.baseMap()->applyJacobian(unit));
+  }
+  if (const std::string why = base::whyOutOfRange(lattice); !why.empty()) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                "grid \"" + grid.getName() + "\" cannot be used: " + why);
   }
   voxelSize_ = std::cbrt(std::abs(linear.det()));
-  if (!std::isfinite(voxelSize_) || voxelSize_ == 0) {
-    throw Error(ErrorCode::UnsupportedGrid,
-                "the transform of grid \"" + grid.getName() + "\" has no inverse");
-  }
   const openvdb::math::Mat3d toVoxels = linear * (1 / voxelSize_);
   const openvdb::math::Mat3d toIndex = toVoxels.inverse();
   origin_ = fromVdb(origin);

@@ -14,7 +14,8 @@ class VoxelFrame {
  public:
   /// A grid whose voxels are the world's units.
   VoxelFrame() = default;
-  /// Throws Error (UnsupportedGrid) unless the transform is linear and has an inverse.
+  /// Throws Error(UnsupportedGrid) unless the transform is linear and in the range of
+  /// base::whyOutOfRange().
   explicit VoxelFrame(const openvdb::GridBase& grid);
 
   /// World length of one voxel: the cube root of its volume.

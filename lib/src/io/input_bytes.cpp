@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 namespace tufa::io {
 namespace {
@@ -54,7 +55,11 @@ InputBytes::InputBytes(const std::filesystem::path& path) : path_(path) {
   if (!S_ISREG(status.st_mode)) fail("it is not a regular file");
   size_ = static_cast<std::size_t>(status.st_size);
   if (size_ == 0) fail("the file is empty");
-  bytes_ = std::make_unique_for_overwrite<char[]>(size_);
+  // A sparse file may claim any size, and the system may promise any.
+  const auto memory = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                      static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  if (size_ < memory) bytes_.reset(new (std::nothrow) char[size_]);
+  if (!bytes_) fail("its " + std::to_string(size_) + " bytes do not fit into memory");
   for (std::size_t done = 0; done < size_;) {
     const ssize_t count = ::read(file.number, bytes_.get() + done, size_ - done);
     if (count < 0 && errno == EINTR) continue;

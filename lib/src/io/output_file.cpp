@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <tufa/error.h>
+#include <tufa/io.h>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -50,6 +51,8 @@ void requireWritablePath(const std::filesystem::path& path) {
     if (S_ISDIR(status.st_mode)) throwUnwritable(path, "it is a folder", 0);
     if (::access(path.c_str(), W_OK) != 0) throwUnwritable(path, "it may not be replaced", errno);
     if (!S_ISREG(status.st_mode)) return;
+  } else if (::lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode)) {
+    throwUnwritable(path, "it is a link that leads nowhere", 0);
   }
   const auto folder = folderOf(resolve(path));
   if (::stat(folder.c_str(), &status) != 0) {
@@ -93,11 +96,22 @@ void OutputFile::openTemporary() {
     descriptor_ = ::open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) {
       temporary_ = candidate;
+      keepMode();
       return;
     }
     if (errno != EEXIST) break;
   }
   fail("no file can be made in " + folderOf(target_).string(), errno);
+}
+
+/// A file that is replaced stays as closed, or open, to others as it was.
+void OutputFile::keepMode() const {
+  struct stat status {};
+  if (::stat(target_.c_str(), &status) != 0) return;
+  constexpr mode_t kPermissions = 0777;
+  if (::fchmod(descriptor_, status.st_mode & kPermissions) != 0) {
+    fail("the file cannot be given the mode of the one that it replaces", errno);
+  }
 }
 
 void OutputFile::fail(const std::string& what, int errorNumber) const {
@@ -179,3 +193,13 @@ OutputFileBuffer::pos_type OutputFileBuffer::seekpos(pos_type position,
 }
 
 }  // namespace tufa::io
+
+namespace tufa {
+
+void writeFile(std::string_view bytes, const std::filesystem::path& path) {
+  io::OutputFile file(path);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+}  // namespace tufa

@@ -32,6 +32,7 @@ class OutputFile {
  private:
   void openDirect();
   void openTemporary();
+  void keepMode() const;
   void flush();
   void writeAll(const char* data, std::size_t size);
   [[noreturn]] void fail(const std::string& what, int errorNumber) const;

@@ -8,6 +8,7 @@
 
 #include "base/box.h"
 #include "base/job.h"
+#include "base/number_text.h"
 #include "base/run_call.h"
 #include "octree/cut_rule.h"
 #include "refine/adapt.h"
@@ -18,8 +19,11 @@
 namespace tufa {
 namespace {
 
-constexpr uniform::StageEnds kEnds = {0.08, 0.15, 0.33, 0.4, 0.42, 0.45};
-constexpr double kForestEnd = 0.55;
+// Shares of the time that stages took on the sample volumes.
+constexpr uniform::StageEnds kEnds = {0.01, 0.02, 0.07, 0.08, 0.09, 0.14};
+constexpr double kForestEnd = 0.16;
+constexpr double kFirstLevelEnd = 0.85;
+constexpr std::size_t kMostLevels = 100;
 // The triangles of an LOD must fall at least with this power of its tolerance, for tolerances up to
 // this many times that of the LOD before.
 constexpr double kLeastSlope = -0.3;
@@ -58,25 +62,27 @@ std::vector<Target> budgetsOf(const LodOptions& options) {
 }
 
 std::vector<Target> targetsOf(const LodOptions& options) {
+  if (std::max(options.triangles.size(), options.tolerances.size()) > kMostLevels) {
+    refuse("a chain has " + std::to_string(kMostLevels) + " levels at most");
+  }
   if (!options.triangles.empty()) return budgetsOf(options);
   std::vector<Target> targets;
   for (const double tolerance : options.tolerances) targets.push_back({tolerance});
   if (targets.empty()) {
-    if (options.levels < 1) {
-      refuse("a chain needs at least 1 level, not " + std::to_string(options.levels));
+    if (options.levels < 1 || static_cast<std::size_t>(options.levels) > kMostLevels) {
+      refuse("a chain has 1 to " + std::to_string(kMostLevels) + " levels, not " +
+             std::to_string(options.levels));
     }
-    if (!(options.factor > 1 && std::isfinite(options.factor))) {
-      refuse("the factor between the tolerances of two levels must be above 1");
-    }
+    octree::requireFactor(options.factor);
     double tolerance = options.contour.tolerance;
-    for (int i = 0; i < options.levels; ++i, tolerance *= options.factor) {
+    // Nothing is coarser than what the largest tolerance gives.
+    for (int i = 0; i < options.levels && (i == 0 || tolerance <= octree::kLargestTolerance); ++i) {
       targets.push_back({tolerance});
+      tolerance *= options.factor;
     }
   }
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (!(std::isfinite(targets[i].tolerance) && targets[i].tolerance >= 0)) {
-      refuse("tolerances must be finite and not negative");
-    }
+    octree::requireTolerance(targets[i].tolerance);
     if (i > 0 && !(targets[i].tolerance > targets[i - 1].tolerance)) {
       refuse("tolerances must rise from level to level");
     }
@@ -84,17 +90,21 @@ std::vector<Target> targetsOf(const LodOptions& options) {
   return targets;
 }
 
-// Why an LOD is no coarser, or not as coarse as asked for, and was left out.
-std::string stopOf(std::size_t level, const Target& target, std::size_t triangles) {
+// Why an LOD is no coarser, or not as coarse as asked for, and was left out: `worthwhile` is what
+// it had to stay below.
+std::string stopOf(std::size_t level, const Target& target, std::size_t triangles,
+                   std::size_t worthwhile, const std::vector<Lod>& before) {
   if (target.triangles > 0) {
     return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
            " triangles: the surface allows no fewer than " + std::to_string(triangles) +
            ", and that level was left out";
   }
-  return "level " + std::to_string(level) + " at a tolerance of " +
-         std::to_string(target.tolerance) + " voxels has " + std::to_string(triangles) +
-         " triangles, hardly fewer than level " + std::to_string(level - 1) +
-         ", and was left out: the surface's topology allows no coarser mesh";
+  return "level " + std::to_string(level) + " was left out: at a tolerance of " +
+         base::numberText(target.tolerance) + " voxels " + std::to_string(triangles) +
+         " triangles were reached, and a level is kept with fewer than " +
+         std::to_string(worthwhile) + ", of the " +
+         std::to_string(before.back().mesh.triangleCount()) + " of level " +
+         std::to_string(level - 1);
 }
 
 // An LOD with so many triangles or more is not worth its error: at four times the tolerance a third
@@ -182,14 +192,15 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Clock::time_point begin = Clock::now();
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
-    job.beginStage("level " + std::to_string(i), kForestEnd + (1 - kForestEnd) * share);
+    job.beginStage("level " + std::to_string(i), kFirstLevelEnd + (1 - kFirstLevelEnd) * share,
+                   base::Length::Unknown);
     const Target& target = targets[i];
     const std::size_t most = i > 0 ? tooMany(target, chain.levels.back()) : 0;
     refine::AdaptiveMesh adaptive = maker.next(target);
     const std::size_t triangles = adaptive.extracted.mesh.triangleCount();
     const bool coarser = i == 0 || triangles < most;
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
-      chain.stopped = stopOf(i, target, triangles);
+      chain.stopped = stopOf(i, target, triangles, most, chain.levels);
       break;
     }
     Lod lod;

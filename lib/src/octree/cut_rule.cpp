@@ -31,6 +31,17 @@ void requireRange(double value, double least, double greatest, const char* name)
 
 }  // namespace
 
+void requireTolerance(double tolerance) {
+  requireRange(tolerance, 0, kLargestTolerance, "the tolerance");
+}
+
+void requireFactor(double factor) {
+  if (factor > 1 && factor <= kLargestTolerance) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "the factor between the tolerances of two levels must be above 1, to " +
+                  base::numberText(kLargestTolerance) + ", not " + base::numberText(factor));
+}
+
 bool maySimplify(const ContourOptions& options) {
   const ContourOptions unbounded;
   return options.simplify && options.maxAngle >= unbounded.maxAngle &&
@@ -38,7 +49,7 @@ bool maySimplify(const ContourOptions& options) {
 }
 
 CutRule readRule(const ContourOptions& options, const grid::Transform& transform) {
-  requireRange(options.tolerance, 0, 1e6, "the tolerance");
+  requireTolerance(options.tolerance);
   requireRange(options.maxAngle, 0, 180, "the largest angle");
   CutRule rule;
   rule.tolerance = options.tolerance;

@@ -27,6 +27,15 @@ struct CutRule {
   }
 };
 
+/// The largest tolerance that may be asked for, in voxels: beyond it, products overflow floats.
+inline constexpr double kLargestTolerance = 1e6;
+
+/// Throws Error(InvalidArgument) unless the tolerance is from 0 to the largest.
+void requireTolerance(double tolerance);
+
+/// Throws Error(InvalidArgument) unless tolerances rise by that factor.
+void requireFactor(double factor);
+
 /// Whether edges are to be collapsed after the cut. Bounds on cells bound what one vertex gathers,
 /// so they exclude it.
 [[nodiscard]] bool maySimplify(const ContourOptions& options);

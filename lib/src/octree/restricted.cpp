@@ -1,4 +1,7 @@
+#include <tufa/error.h>
 #include <tufa/octree.h>
+
+#include <string>
 
 #include "base/coord_table.h"
 
@@ -23,7 +26,12 @@ struct LevelLeaves {
 
 bool isRestricted(const std::vector<LeafCell>& leaves) {
   std::vector<LevelLeaves> levels;
+  constexpr int kMostLevel = 31;  // then a cell is half of all coordinates
   for (const LeafCell& leaf : leaves) {
+    if (leaf.level < 0 || leaf.level > kMostLevel) {
+      throw Error(ErrorCode::InvalidArgument, "a leaf has level " + std::to_string(leaf.level) +
+                                                  ", not 0 to " + std::to_string(kMostLevel));
+    }
     const auto level = static_cast<std::size_t>(leaf.level);
     if (levels.size() <= level) levels.resize(level + 1);
     levels[level].cells.push_back(leaf.corner >> leaf.level);

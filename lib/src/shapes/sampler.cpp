@@ -139,7 +139,8 @@ openvdb::FloatGrid::Ptr sampleLevelSet(const DistanceField& field, const ShapeOp
   buildBlocks(grid->tree(), source, options);
 
   // Leaves already hold the right signs; only the tiles between them are still all outside.
-  openvdb::tools::signedFloodFill(grid->tree(), true, 1, 1);
+  base::runWithThreads(options.threads,
+                       [&] { openvdb::tools::signedFloodFill(grid->tree(), true, 1, 1); });
   return grid;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "base/known_enum.h"
+#include "base/lattice_range.h"
 #include "base/number_text.h"
 #include "shapes/fields.h"
 #include "shapes/random_volumes.h"
@@ -48,14 +50,6 @@ const DistanceField* sharedField(Shape shape) {
   return fields.at(static_cast<std::size_t>(shape)).get();
 }
 
-void requirePositive(const char* what, double value, double least) {
-  if (std::isfinite(value) && value > 0 && value >= least) return;
-  throw Error(ErrorCode::InvalidArgument,
-              std::string(what) + " must be a finite number " +
-                  (least > 0 ? "of " + base::numberText(least) + " or more" : "above 0") +
-                  ", not " + base::numberText(value));
-}
-
 }  // namespace
 
 const std::array<std::string_view, 8>& shapeNames() {
@@ -72,8 +66,9 @@ std::optional<Shape> shapeByName(std::string_view name) {
 }
 
 openvdb::FloatGrid::Ptr makeShape(Shape shape, const ShapeOptions& options) {
-  requirePositive("voxel size", options.voxelSize, 0);
-  requirePositive("half width", options.halfWidth, 1);
+  base::requireVoxelSize(options.voxelSize);
+  base::requireHalfWidth(options.halfWidth);
+  base::requireKnown(shape, Shape::Fog, "the shape");
   openvdb::initialize();
   openvdb::FloatGrid::Ptr grid;
   if (const auto field = makeField(shape, options.seed)) {
@@ -86,6 +81,7 @@ openvdb::FloatGrid::Ptr makeShape(Shape shape, const ShapeOptions& options) {
 }
 
 double shapeDistance(Shape shape, const Position& point) {
+  base::requireKnown(shape, Shape::Fog, "the shape");
   const DistanceField* const field = sharedField(shape);
   if (field == nullptr) {
     throw Error(ErrorCode::InvalidArgument,
@@ -95,7 +91,13 @@ double shapeDistance(Shape shape, const Position& point) {
 }
 
 std::vector<Position> shapeCreasePoints(Shape shape, double spacing) {
-  requirePositive("spacing", spacing, 0);
+  base::requireKnown(shape, Shape::Fog, "the shape");
+  constexpr double kLeast = 1e-6;  // of millions of points
+  if (!(std::isfinite(spacing) && spacing >= kLeast)) {
+    throw Error(ErrorCode::InvalidArgument, "spacing must be a finite number of " +
+                                                base::numberText(kLeast) + " or more, not " +
+                                                base::numberText(spacing));
+  }
   if (shape == Shape::Box) return shapes::boxCreasePoints(spacing);
   if (shape == Shape::Bracket) return shapes::bracketCreasePoints(spacing);
   return {};

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/job.h"
+#include "base/lattice_range.h"
 #include "base/number_text.h"
 
 namespace tufa {
@@ -51,7 +52,9 @@ class ProgressInterrupter final : public openvdb::util::NullInterrupter {
   bool wasInterrupted(int percent = -1) override {
     if (progress_ && std::this_thread::get_id() == caller_) {
       fraction_ = std::max(fraction_, std::min(percent / 100.0, 1.0));
-      if (!progress_("voxelizing", fraction_)) cancelled_ = true;
+      bool goOn = true;
+      base::runIsolated([&] { goOn = progress_("voxelizing", fraction_); });
+      if (!goOn) cancelled_ = true;
     }
     return cancelled_;
   }
@@ -98,15 +101,8 @@ void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
 }  // namespace
 
 openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
-  if (!std::isfinite(options.voxelSize) || options.voxelSize <= 0) {
-    throw Error(ErrorCode::InvalidArgument, "voxel size must be a finite number above 0, not " +
-                                                base::numberText(options.voxelSize));
-  }
-  if (!std::isfinite(options.halfWidth) || options.halfWidth < 1) {
-    throw Error(ErrorCode::InvalidArgument,
-                "half width must be a finite number of 1 or more voxels, not " +
-                    base::numberText(options.halfWidth));
-  }
+  base::requireVoxelSize(options.voxelSize);
+  base::requireHalfWidth(options.halfWidth);
   if (mesh.triangleCount() == 0) {
     throw Error(ErrorCode::InvalidArgument, "the mesh has no faces to voxelize");
   }

@@ -10,6 +10,45 @@
 namespace tufa::base {
 namespace {
 
+TEST(JobStages, OfUnknownLengthMoveOnWithoutReachingTheirEnd) {
+  std::vector<double> fractions;
+  Job job(1, [&](std::string_view, double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  });
+  job.run([&] {
+    job.beginStage("known", 0.2);
+    job.forRanges(100, 1, [](std::size_t, std::size_t) {});
+    job.beginStage("unknown", 0.9, Length::Unknown);
+    // However many loops there are: the first of them is not the whole stage.
+    for (int loop = 0; loop < 100; ++loop) {
+      job.forRanges(100, 1, [](std::size_t, std::size_t) {});
+      job.checkCancelled(0, 1);
+    }
+    EXPECT_GT(fractions.back(), 0.2);
+    EXPECT_LT(fractions.back(), 0.9);
+    (void)job.finish();
+  });
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+}
+
+TEST(ProgressState, TellsStageFractionAndTheRest) {
+  std::vector<bool> estimated;
+  const Progress progress = [&](const ProgressState& state) {
+    EXPECT_EQ(state.stage, "work");
+    EXPECT_GE(state.secondsLeft.value_or(0), 0);
+    estimated.push_back(state.secondsLeft.has_value());
+    return state.fraction < 1;
+  };
+  EXPECT_TRUE(progress("work", 0));
+  EXPECT_TRUE(progress("work", 0.5));
+  EXPECT_FALSE(progress("work", 1));
+  EXPECT_TRUE(progress("work", 0.01));  // of the next call
+  EXPECT_EQ(estimated, (std::vector{false, true, true, false}));
+  EXPECT_FALSE(Progress());
+  EXPECT_FALSE(Progress(nullptr));
+}
+
 TEST(JobParts, AreDoneOnceEachAndTellTheCallerHowFarAllAre) {
   constexpr std::size_t kParts = 12, kCount = 5000;
   const std::thread::id caller = std::this_thread::get_id();

@@ -219,7 +219,7 @@ TEST_F(ChunkFiles, IndexThatSaysWhatCannotBeIsRefused) {
   };
   expectRefused("/tufa_chunks", 2, "version is 2, not 1");
   expectRefused("/chunk_size", 24, "power of two");
-  expectRefused("/chunk_size", -8, "a count is missing");
+  expectRefused("/chunk_size", -8, "where a whole number from 0 up is due");
   expectRefused("/voxel_size", 0, "not above 0");
   expectRefused("/origin", {1, 2}, "three coordinates");
   expectRefused("/transform/2", {1, 2, 3}, "four columns");
@@ -227,9 +227,12 @@ TEST_F(ChunkFiles, IndexThatSaysWhatCannotBeIsRefused) {
   expectRefused("/chunks/1/index", {0, 0, 0}, "not sorted");
   expectRefused("/chunks/1/index", {4e9, 0, 0}, "no integer of the lattice");
   expectRefused("/chunks/1/index", {1ull << 63, 0, 0}, "no integer of the lattice");
+  expectRefused("/chunks/1/index", {0xFFFFFFFFFFFFFFFFull, 0, 0}, "no integer of the lattice");
+  expectRefused("/chunks/0/levels/0/vertices", 1e300, "has 1e+300 where a whole number");
+  expectRefused("/chunks/0/levels/0/vertices", 2.5, "has 2.5 where a whole number");
   expectRefused("/chunks/0/levels/0/file", "../chunk.glb", "by its name alone");
   expectRefused("/chunks/0/levels/0/file", "", "names no file");
-  expectRefused("/chunks/0/levels/0/vertices", -1, "a count is missing");
+  expectRefused("/chunks/0/levels/0/vertices", -1, "where a whole number from 0 up is due");
   expectRefused("/chunks/0/levels/0/max_error_voxels", nullptr, "a number is missing");
   expectRefused("/chunks/0/levels/0/max_error_voxels", -1, "below 0");
   expectRefused("/chunks/0", nlohmann::json::array(), "damaged");
@@ -237,6 +240,15 @@ TEST_F(ChunkFiles, IndexThatSaysWhatCannotBeIsRefused) {
   expectUnreadable("no list of chunks");
   writeBytes(folder / "chunks.json", "[");
   expectUnreadable("its JSON is damaged");
+}
+
+TEST_F(ChunkFiles, IndexOfDeepJsonIsRefused) {
+  const std::string deep = std::string(131015, '[') + std::string(131015, ']');
+  for (const std::string& text :
+       {deep, "{\"tufa_chunks\":" + deep + "}", "{\"tufa_chunks\":1,\"grid\":" + deep + "}"}) {
+    writeBytes(folder / "chunks.json", text);
+    expectUnreadable("deeper than 100 levels");
+  }
 }
 
 TEST_F(ChunkFiles, IndexSurvivesDamage) {

@@ -3,8 +3,13 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <tufa/chunks.h>
 #include <tufa/contour.h>
+#include <tufa/io.h>
+#include <tufa/lod.h>
+#include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "io/mesh/mesh_format.h"
 #include "support/expect_error.h"
@@ -16,6 +21,7 @@ namespace {
 
 using openvdb::Coord;
 using openvdb::FloatGrid;
+using openvdb::Vec3d;
 using test::expectError;
 
 constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::max();
@@ -49,6 +55,83 @@ TEST(Limits, CoordinatesBeyondAreRefused) {
     expectError(ErrorCode::LimitExceeded, "coordinates",
                 [&] { (void)contour(*ballAround(centre)); });
   }
+}
+
+/// OpenVDB refuses to make such transforms, but reads them.
+openvdb::math::Transform::Ptr uniformScale(double voxelSize) {
+  std::stringstream bytes;
+  for (const double value :
+       {voxelSize, voxelSize, 1 / voxelSize, 1 / (voxelSize * voxelSize), 0.5 / voxelSize}) {
+    Vec3d(value).write(bytes);
+  }
+  const auto map = std::make_shared<openvdb::math::UniformScaleMap>();
+  map->read(bytes);
+  return std::make_shared<openvdb::math::Transform>(map);
+}
+
+FloatGrid::Ptr ballOfVoxels(double voxelSize) {
+  const auto ball = ballAround(Coord(0));
+  auto grid = FloatGrid::create(static_cast<float>(ball->background() * voxelSize));
+  for (auto value = ball->cbeginValueAll(); value; ++value) {
+    if (!value.isVoxelValue()) continue;
+    const auto scaled = static_cast<float>(*value * voxelSize);
+    value.isValueOn() ? grid->tree().setValueOn(value.getCoord(), scaled)
+                      : grid->tree().setValueOff(value.getCoord(), scaled);
+  }
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setTransform(uniformScale(voxelSize));
+  return grid;
+}
+
+TEST(Limits, ScalesWithinTheRangeGiveTheSameTopology) {
+  ContourOptions options;
+  options.uniform = true;
+  const Mesh atOne = contour(*ballAround(Coord(0)), options);
+  for (const double voxelSize : {1e-25, 1e-12, 1e-6, 1e12, 1e25}) {
+    const auto grid = ballOfVoxels(voxelSize);
+    EXPECT_EQ(contour(*grid, options).quads.size(), atOne.quads.size()) << voxelSize;
+    std::vector<Mesh> meshes = {contour(*grid)};
+    for (Lod& lod : buildLods(*grid).levels) meshes.push_back(std::move(lod.mesh));
+    for (const Mesh& mesh : meshes) {
+      const test::MeshTopology topology = test::inspect(mesh);
+      EXPECT_TRUE(topology.manifold() && topology.closed()) << voxelSize << " " << topology;
+      EXPECT_GT(test::volume(mesh), 0) << voxelSize;
+    }
+    ChunkOptions chunks;
+    chunks.chunkSize = 8;
+    const ChunkIndex index = buildChunks(*grid, chunks, [](const ChunkIndex&, Chunk&&) {});
+    EXPECT_EQ(index.chunks.size(), 8u) << voxelSize;
+    EXPECT_EQ(index.transform[1][1], voxelSize);
+  }
+}
+
+TEST(Limits, ScalesBeyondSinglePrecisionAreRefused) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto grid = ballAround(Coord(0));
+  for (const double voxelSize :
+       {1e-26, 1e-40, 1e-150, 1e-320, 0.0, 1e26, 1e150, 1e300, infinity, std::nan("")}) {
+    grid->setTransform(uniformScale(voxelSize));
+    expectError(ErrorCode::UnsupportedGrid, "transform", [&] { (void)contour(*grid); });
+    expectError(ErrorCode::UnsupportedGrid, "transform", [&] { (void)buildLods(*grid); });
+    expectError(ErrorCode::UnsupportedGrid, "transform",
+                [&] { (void)buildChunks(*grid, {}, [](const ChunkIndex&, Chunk&&) {}); });
+    ContourOptions options;
+    options.toleranceGrid = grid;
+    expectError(ErrorCode::UnsupportedGrid, "tolerance grid",
+                [&] { (void)contour(*ballAround(Coord(0)), options); });
+    EXPECT_FALSE(describeGrid(*grid).meshable);
+  }
+}
+
+TEST(Limits, FlatVoxelsAndFarOriginsAreRefused) {
+  const auto grid = ballAround(Coord(0));
+  openvdb::Mat4d flat = openvdb::Mat4d::identity(), far = flat;
+  flat.preScale(Vec3d(1e5, 1e-5, 1e5));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(flat));
+  expectError(ErrorCode::UnsupportedGrid, "flat", [&] { (void)contour(*grid); });
+  far.setTranslation(Vec3d(0, 0, 1e13));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(far));
+  expectError(ErrorCode::UnsupportedGrid, "move it nearer", [&] { (void)contour(*grid); });
 }
 
 TEST(Limits, OfFormatsAreNamed) {

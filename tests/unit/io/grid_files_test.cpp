@@ -133,6 +133,19 @@ TEST(GridFiles, DescribeValues) {
   EXPECT_TRUE(info.meshable);
 }
 
+/// No size in their trees can be checked.
+TEST(GridFiles, OfTypesOfApplicationsAreRefusedAlone) {
+  using OtherGrid = openvdb::Grid<openvdb::tree::Tree4<std::uint8_t, 5, 4, 3>::Type>;
+  const ScratchFolder folder;
+  const auto other = makeSingle<OtherGrid>("other", 1);
+  OtherGrid::registerGrid();
+  writeGrids({other, makeBall("ball")}, folder / "m.vdb");
+  EXPECT_EQ(readGrid(folder / "m.vdb")->getName(), "ball");
+  expectError(ErrorCode::UnreadableFile, "grids of type Tree_uint8_5_4_3 cannot be checked",
+              [&] { (void)readGrid(folder / "m.vdb", "other"); });
+  OtherGrid::unregisterGrid();
+}
+
 TEST(GridFiles, RefuseForeignFiles) {
   const ScratchFolder folder;
   const auto refuse = [&](const std::string& bytes, const std::string& part) {
@@ -143,7 +156,8 @@ TEST(GridFiles, RefuseForeignFiles) {
   refuse("x", "not an OpenVDB file");
   refuse("NanoVDB0 and so on", "NanoVDB");
   refuse(std::string(" BDV\0\0\0\0", 8), "truncated");
-  expectError(ErrorCode::UnreadableFile, "no such", [&] { (void)readGrid(folder / "no.vdb"); });
+  expectError(ErrorCode::UnreadableFile, "No such file",
+              [&] { (void)readGrid(folder / "no.vdb"); });
   expectError(ErrorCode::UnreadableFile, "folder", [&] { (void)readGrid(folder / ""); });
 }
 
@@ -184,6 +198,31 @@ TEST(GridFiles, ReadTheSampleVolumes) {
   EXPECT_EQ(readGrid(folder / "openvdb_smoke.vdb")->activeVoxelCount(), 1049275u);
   EXPECT_EQ(readGrid(folder / "usd_smoke_000003.vdb")->activeVoxelCount(), 90197u);
   EXPECT_EQ(readGrid(folder / "zeno_sphere.vdb")->activeVoxelCount(), 40404u);
+}
+
+TEST(GridFiles, OfScalesOutOfRangeAreRefusedByName) {
+  const ScratchFolder folder;
+  writeGrids({makeBall("ball")}, folder / "m.vdb");
+  std::string bytes = test::readBytes(folder / "m.vdb");
+  const auto pattern = [](double voxelSize) {
+    return std::string(reinterpret_cast<const char*>(&voxelSize), sizeof voxelSize);
+  };
+  const double voxelSize = makeBall("ball")->voxelSize()[0];
+  for (const double scale : {1e-40, 1e300, 0.0, std::nan("")}) {
+    std::string damaged = bytes;
+    std::size_t places = 0;
+    for (std::size_t at = 0; (at = damaged.find(pattern(voxelSize), at)) != std::string::npos;
+         ++at) {
+      damaged.replace(at, sizeof scale, pattern(scale));
+      ++places;
+    }
+    ASSERT_GE(places, 6u);
+    test::writeBytes(folder / "m.vdb", damaged);
+    expectError(ErrorCode::UnsupportedGrid, "m.vdb", [&] { (void)readGrid(folder / "m.vdb"); });
+    expectError(ErrorCode::UnsupportedGrid, "m.vdb cannot be meshed: its",
+                [&] { (void)readGrid(folder / "m.vdb", "ball"); });
+    EXPECT_FALSE(describeGrids(folder / "m.vdb").at(0).meshable);
+  }
 }
 
 }  // namespace

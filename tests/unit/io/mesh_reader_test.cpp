@@ -177,64 +177,6 @@ TEST(StlReader, RefusesTruncatedFiles) {
   expectUnreadable("m.stl", "short", "too short");
 }
 
-std::string glb(const std::string& json, const std::string& binary = "") {
-  std::string text = json;
-  while (text.size() % 4 != 0) text += ' ';
-  std::string bytes = "glTF";
-  append(bytes, std::uint32_t{2});
-  append(bytes, static_cast<std::uint32_t>(28 + text.size() + binary.size()));
-  append(bytes, static_cast<std::uint32_t>(text.size()));
-  bytes += "JSON" + text;
-  append(bytes, static_cast<std::uint32_t>(binary.size()));
-  bytes += std::string("BIN\0", 4) + binary;
-  return bytes;
-}
-
-/// One triangle in the xy plane under the given nodes.
-std::string glbScene(const std::string& nodes, std::uint32_t indexCount = 3) {
-  std::string binary;
-  for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) append(binary, x);
-  for (const int index : {0, 1, 2, 0}) append(binary, static_cast<std::uint8_t>(index));
-  return glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
-                 R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-              "buffers":[{"byteLength":40}],
-              "bufferViews":[{"buffer":0,"byteLength":36},
-                             {"buffer":0,"byteOffset":36,"byteLength":4}],
-              "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
-                           {"bufferView":1,"componentType":5121,"count":)" +
-                 std::to_string(indexCount) + R"(,"type":"SCALAR"}]})",
-             binary);
-}
-
-TEST(GlbReader, GoesThroughNodeTransforms) {
-  // A quarter turn about z and a scale of 2, below a translation.
-  const Mesh mesh = readText("m.glb", glbScene(R"([{"children":[1],"translation":[10,0,0]},
-      {"mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,2,2]}])"));
-  ASSERT_EQ(mesh.positions.size(), 3u);
-  EXPECT_NEAR(mesh.positions[1].x, 10, 1e-12);
-  EXPECT_NEAR(mesh.positions[1].y, 2, 1e-12);
-  EXPECT_NEAR(mesh.positions[2].x, 8, 1e-12);
-  EXPECT_EQ(mesh.triangles[0], Triangle(0, 1, 2));
-}
-
-TEST(GlbReader, TurnsMirroredMeshesAround) {
-  const Mesh mesh =
-      readText("m.glb", glbScene(R"([{"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]}])"));
-  EXPECT_EQ(mesh.positions[1], Position(4, 6, 7));
-  EXPECT_EQ(mesh.triangles[0], Triangle(0, 2, 1));
-}
-
-TEST(GlbReader, RefusesDamagedFiles) {
-  expectUnreadable("m.glb", glbScene(R"([{"mesh":7}])"), "damaged");
-  expectUnreadable("m.glb", glbScene(R"([{"mesh":0}])", 4000000000u), "beyond the binary chunk");
-  expectUnreadable("m.glb", glbScene(R"([{"children":[0]}])"), "two parents");
-  expectUnreadable("m.glb", glb("{not json"), "damaged");
-  expectUnreadable("m.glb", glb(R"({"extensionsRequired":["KHR_draco_mesh_compression"]})"),
-                   "draco");
-  expectUnreadable("m.glb", glbScene("[{}]").substr(0, 100), "truncated");
-  expectUnreadable("m.glb", "glTF but not really", "glTF version");
-}
-
 TEST(MeshReader, ReadsTheSampleMeshes) {
   const std::filesystem::path folder = TUFA_TEST_DATA;
   if (!std::filesystem::exists(folder / "ode_spot.obj")) GTEST_SKIP() << "no samples in " << folder;

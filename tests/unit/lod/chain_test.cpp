@@ -118,6 +118,21 @@ TEST(LodChain, EndsBeforeABudgetThatCannotBeMet) {
   expectPromises(chain);
 }
 
+TEST(LodChain, SaysWhatWasComparedForALevelLeftOut) {
+  LodOptions options;
+  options.tolerances = {1.6, 6.4, 25.6, 102.4};  // soon as coarse as a torus can be
+  const LodChain chain = buildLods(*shape(Shape::Torus, 0.05), options);
+  ASSERT_LT(chain.levels.size(), 4u);
+  const std::size_t level = chain.levels.size();
+  const std::string begin = "level " + std::to_string(level) + " was left out: at a tolerance of ";
+  EXPECT_EQ(chain.stopped.rfind(begin, 0), 0u) << chain.stopped;
+  EXPECT_EQ(chain.stopped.find("00000"), std::string::npos) << chain.stopped;
+  const std::string compared = "of the " +
+                               std::to_string(chain.levels.back().mesh.triangleCount()) +
+                               " of level " + std::to_string(level - 1);
+  EXPECT_TRUE(chain.stopped.ends_with(compared)) << chain.stopped;
+}
+
 TEST(LodChain, IsEmptyWhereNoBudgetCanBeMet) {
   LodOptions options;
   options.triangles = {4};
@@ -287,10 +302,10 @@ TEST(LodChain, RefusesOptionsOutOfTheirRange) {
     change(options);
     expectError(ErrorCode::InvalidArgument, part, [&] { (void)buildLods(*grid, options); });
   };
-  refuses("at least 1", [](LodOptions& o) { o.levels = 0; });
+  refuses("1 to 100 levels", [](LodOptions& o) { o.levels = 0; });
   refuses("factor", [](LodOptions& o) { o.factor = 1; });
   refuses("rise", [](LodOptions& o) { o.tolerances = {0.2, 0.1}; });
-  refuses("not negative", [](LodOptions& o) { o.tolerances = {-1}; });
+  refuses("from 0 to 1e+06", [](LodOptions& o) { o.tolerances = {-1}; });
   refuses("fall", [](LodOptions& o) { o.triangles = {100, 100}; });
   refuses("at least 4", [](LodOptions& o) { o.triangles = {100, 3}; });
   refuses("exclude", [](LodOptions& o) {

@@ -87,7 +87,7 @@ TEST(LodFiles, NamesLinksAndDescribesTheLevels) {
   EXPECT_EQ(json["extensionsUsed"], Json({"MSFT_lod"}));
   EXPECT_FALSE(json.contains("extensionsRequired"));
   EXPECT_EQ(json["scenes"][0]["nodes"], Json({0}));
-  EXPECT_EQ(json["scenes"][1]["nodes"], Json({0, 1, 2}));
+  EXPECT_EQ(json["scenes"].size(), 1u);
   EXPECT_EQ(json["nodes"][0]["extensions"]["MSFT_lod"]["ids"], Json({1, 2}));
   for (std::size_t i = 0; i < 3; ++i) {
     const Lod& lod = chain.levels[i];
@@ -108,6 +108,22 @@ TEST(LodFiles, NamesLinksAndDescribesTheLevels) {
               3 * lod.mesh.triangleCount());
     EXPECT_EQ(mesh["extras"]["level"], i);
   }
+}
+
+TEST(LodFiles, HoldASecondSceneOnlyIfAskedTo) {
+  const ScratchFolder folder;
+  const LodChain chain = chainOf(Shape::Torus, 0.1, 2);
+  LodWriteOptions options;
+  writeLods(chain, folder / "t.glb", options);
+  EXPECT_EQ(documentOf(readBytes(folder / "t.glb"))["scenes"].size(), 1u);
+  options.allLevelsScene = true;
+  writeLods(chain, folder / "t.glb", options);
+  const Json json = documentOf(readBytes(folder / "t.glb"));
+  ASSERT_EQ(json["scenes"].size(), 2u);
+  EXPECT_EQ(json["scene"], 0);
+  EXPECT_EQ(json["scenes"][0]["nodes"], Json({0}));
+  EXPECT_EQ(json["scenes"][1]["nodes"], Json({0, 1}));
+  EXPECT_EQ(json["scenes"][1]["name"], "mesh_all_levels");
 }
 
 TEST(LodFiles, OneLevelNeedsNoLinks) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/known_enum.h"
 #include "base/single_precision.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb.h"
@@ -198,6 +199,7 @@ void writePly(const ChunkLevel& level, io::OutputFile& file) {
 
 std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
                                     const std::string& folder, ChunkFormat format) {
+  base::requireKnown(format, ChunkFormat::Ply, "the format of chunks");
   std::vector<std::string> names;
   for (std::size_t number = 0; number < chunk.levels.size(); ++number) {
     const ChunkLevel& level = chunk.levels[number];

@@ -8,6 +8,7 @@
 
 #include "io/chunks/chunk_parts.h"
 #include "io/input_bytes.h"
+#include "io/json_input.h"
 #include "io/output_file.h"
 
 namespace tufa {
@@ -62,7 +63,7 @@ class IndexReader {
   explicit IndexReader(const io::InputBytes& input) : input_(input) {}
 
   ChunkIndex read() const {
-    const Json json = Json::parse(input_.view());
+    const Json json = io::parseJson<Json>(input_.view(), input_);
     if (!json.is_object() || !json.contains("tufa_chunks")) input_.fail("it is no list of chunks");
     if (json["tufa_chunks"] != kVersion) {
       input_.fail("its version is " + textOf(json["tufa_chunks"]).substr(0, 40) + ", not " +
@@ -74,6 +75,7 @@ class IndexReader {
     for (const Json& tolerance : json.at("tolerances_voxels")) {
       index.tolerances.push_back(error(tolerance));
     }
+    require(!index.tolerances.empty(), "it has no levels");
     index.voxelSize = number(json.at("voxel_size"));
     if (!(index.voxelSize > 0)) input_.fail("the size of voxels is not above 0");
     require(json.at("transform").size() == 4, "the transform has not four rows");
@@ -103,10 +105,7 @@ class IndexReader {
     return value;
   }
 
-  [[nodiscard]] std::size_t count(const Json& json) const {
-    require(json.is_number_unsigned(), "a count is missing");
-    return json.get<std::size_t>();
-  }
+  [[nodiscard]] std::size_t count(const Json& json) const { return io::countIn(json, input_); }
 
   [[nodiscard]] int readChunkSize(const Json& json) const {
     const std::size_t size = count(json);
@@ -125,9 +124,9 @@ class IndexReader {
     Coord index;
     for (int axis = 0; axis < 3; ++axis) {
       const Json& place = json[static_cast<std::size_t>(axis)];
-      constexpr std::int64_t kMost = std::int64_t{1} << 29;  // chunks of 8 reach all of index space
-      require(place.is_number_integer() && place >= -kMost && place <= kMost,
-              "an index is no integer of the lattice");
+      constexpr double kMost = 1 << 29;  // chunks of 8 reach all of index space
+      const double number = place.is_number_integer() ? place.get<double>() : 2.0 * kMost;
+      require(std::abs(number) <= kMost, "an index is no integer of the lattice");
       index[axis] = place.get<int>();
     }
     return index;

@@ -4,6 +4,7 @@
 #include <tufa/error.h>
 
 #include <array>
+#include <filesystem>
 
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb_file.h"
@@ -67,6 +68,17 @@ void readPly(const io::InputBytes& input, ChunkLevel& level) {
   }
 }
 
+/// Throws Error(UnreadableFile) for links out of the folder: a folder of chunks from elsewhere
+/// opens no other file of whoever reads it.
+void requireInside(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto file = std::filesystem::canonical(path, error);
+  if (error) return;  // which reading it tells
+  if (file.parent_path() == std::filesystem::canonical(folder, error)) return;
+  throw Error(ErrorCode::UnreadableFile,
+              "cannot read " + path.string() + ": it is a link out of the folder of chunks");
+}
+
 /// Whether the sizes of a mesh are those in chunks.json.
 bool matches(const ChunkLevel& level, const ChunkLevelEntry& entry) {
   const auto sizeOf = [](const auto& strips) {
@@ -93,6 +105,7 @@ ChunkLevel readLevel(const ChunkIndex& index, const ChunkLevelEntry& entry,
                 "cannot read a chunk: " + io::chunkIndexFile(folder).string() + " names no file");
   }
   const std::filesystem::path path = std::filesystem::path(folder) / entry.file;
+  requireInside(path, folder);
   const io::InputBytes input(path);
   if (path.extension() == ".ply") {
     readPly(input, level);

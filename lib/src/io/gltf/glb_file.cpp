@@ -6,6 +6,7 @@
 
 #include "io/gltf/glb.h"
 #include "io/gltf/unpack_view.h"
+#include "io/json_input.h"
 
 namespace tufa::io::glb {
 namespace {
@@ -31,7 +32,9 @@ File::File(const InputBytes& input) : input_(input) {
     const std::uint32_t type = word(at + 4);
     if (length > word(8) - at - 8) input_.failAtByte(at, "a chunk is longer than the file");
     const std::string_view chunk = input_.view().substr(at + 8, length);
-    if (type == kJsonChunk && document_.is_null()) document_ = nlohmann::json::parse(chunk);
+    if (type == kJsonChunk && document_.is_null()) {
+      document_ = parseJson<nlohmann::json>(chunk, input_);
+    }
     if (type == kBinaryChunk && binary_.data() == nullptr) binary_ = chunk;
     at += 8 + length;
   }
@@ -86,7 +89,7 @@ std::vector<std::uint32_t> File::indicesOf(const nlohmann::json& accessorIndex,
   return indices;
 }
 
-std::size_t File::sizeOf(int componentType) const {
+std::size_t File::sizeOf(std::size_t componentType) const {
   switch (componentType) {
     case kByte:
     case kUnsignedByte:
@@ -105,9 +108,9 @@ std::size_t File::sizeOf(int componentType) const {
 /// The bytes of a buffer view: a part of the binary chunk, or unpacked from one.
 std::string_view File::bytesOf(std::size_t index) {
   const nlohmann::json& view = document_.at("bufferViews").at(index);
-  const nlohmann::json extensions = view.value("extensions", nlohmann::json::object());
-  if (!extensions.contains("EXT_meshopt_compression")) return partOfBinary(view);
-  const nlohmann::json& packed = extensions["EXT_meshopt_compression"];
+  const char* const name = "EXT_meshopt_compression";
+  if (!view.contains("extensions") || !view["extensions"].contains(name)) return partOfBinary(view);
+  const nlohmann::json& packed = view["extensions"][name];
   const auto [found, isNew] = unpacked_.try_emplace(index);
   if (isNew) found->second = unpackView(packed, partOfBinary(packed), input_);
   return found->second;
@@ -117,8 +120,8 @@ std::string_view File::partOfBinary(const nlohmann::json& range) const {
   if (range.at("buffer") != 0 || document_.at("buffers").at(0).contains("uri")) {
     input_.fail("its data lies outside the file, not supported");
   }
-  const auto start = range.value("byteOffset", std::size_t{0});
-  const auto length = range.at("byteLength").get<std::size_t>();
+  const std::size_t start = countAt(range, "byteOffset", 0, input_);
+  const std::size_t length = countIn(range.at("byteLength"), input_);
   if (start > binary_.size() || length > binary_.size() - start) failOutside();
   return binary_.substr(start, length);
 }
@@ -129,19 +132,19 @@ void File::failOutside() const {
 
 View File::viewOf(const nlohmann::json& accessorIndex, const std::string& type,
                   std::size_t components) {
-  const nlohmann::json& accessor = document_.at("accessors").at(accessorIndex.get<std::size_t>());
+  const nlohmann::json& accessor = document_.at("accessors").at(countIn(accessorIndex, input_));
   if (accessor.contains("sparse")) input_.fail("sparse accessors are not supported");
   if (accessor.at("type") != type) input_.fail("an accessor is not of type " + type);
-  const auto viewIndex = accessor.at("bufferView").get<std::size_t>();
+  const std::size_t viewIndex = countIn(accessor.at("bufferView"), input_);
   const std::string_view bytes = bytesOf(viewIndex);
   const nlohmann::json& bufferView = document_.at("bufferViews").at(viewIndex);
   View view;
-  view.componentType = accessor.at("componentType").get<int>();
-  view.count = accessor.at("count").get<std::size_t>();
+  view.componentType = countIn(accessor.at("componentType"), input_);
+  view.count = countIn(accessor.at("count"), input_);
   const std::size_t element = components * sizeOf(view.componentType);
-  view.stride = bufferView.value("byteStride", element);
+  view.stride = countAt(bufferView, "byteStride", element, input_);
   view.normalized = accessor.value("normalized", false);
-  const auto offset = accessor.value("byteOffset", std::size_t{0});
+  const std::size_t offset = countAt(accessor, "byteOffset", 0, input_);
   const bool inside =
       view.stride >= element && offset <= bytes.size() &&
       (view.count == 0 || (element <= bytes.size() - offset &&

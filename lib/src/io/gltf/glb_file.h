@@ -17,7 +17,7 @@ struct View {
   const char* data = nullptr;
   std::size_t count = 0;
   std::size_t stride = 0;
-  int componentType = 0;
+  std::size_t componentType = 0;
   bool normalized = false;  ///< integers stand for -1 to 1 or 0 to 1
 };
 
@@ -42,7 +42,7 @@ class File {
 
  private:
   [[nodiscard]] std::uint32_t word(std::size_t offset) const;
-  [[nodiscard]] std::size_t sizeOf(int componentType) const;
+  [[nodiscard]] std::size_t sizeOf(std::size_t componentType) const;
   [[nodiscard]] std::string_view bytesOf(std::size_t view);
   [[nodiscard]] std::string_view partOfBinary(const nlohmann::json& range) const;
   [[noreturn]] void failOutside() const;

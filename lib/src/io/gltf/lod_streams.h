@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/gltf/shaded_mesh.h"
+#include "io/mesh/shaded_mesh.h"
 
 namespace tufa::io {
 

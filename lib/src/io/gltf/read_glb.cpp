@@ -9,6 +9,7 @@
 #include "base/vertex_welder.h"
 #include "io/gltf/glb_file.h"
 #include "io/gltf/node_transform.h"
+#include "io/json_input.h"
 #include "io/mesh/mesh_readers.h"
 
 namespace tufa::io {
@@ -16,9 +17,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kTriangles = 4;
-constexpr int kTriangleStrip = 5;
-constexpr int kTriangleFan = 6;
+constexpr std::size_t kTriangles = 4;
+constexpr std::size_t kTriangleStrip = 5;
+constexpr std::size_t kTriangleFan = 6;
 
 class GlbReader {
  public:
@@ -27,7 +28,7 @@ class GlbReader {
 
   Mesh read() {
     refuseUnknownExtensions();
-    const Json nodes = json_.value("nodes", Json::array());
+    const Json& nodes = arrayAt(json_, "nodes", input_);
     visited_.assign(nodes.size(), false);
     for (const std::size_t root : rootNodes(nodes)) addNode(nodes, root, glb::NodeTransform());
     return std::move(mesh_);
@@ -35,7 +36,7 @@ class GlbReader {
 
  private:
   void refuseUnknownExtensions() {
-    for (const Json& extension : json_.value("extensionsRequired", Json::array())) {
+    for (const Json& extension : arrayAt(json_, "extensionsRequired", input_)) {
       const std::string name = extension.get<std::string>();
       const bool onlyLooks = name.starts_with("KHR_materials") || name.starts_with("KHR_texture") ||
                              name.starts_with("EXT_texture") || name.starts_with("KHR_lights");
@@ -47,16 +48,18 @@ class GlbReader {
 
   [[nodiscard]] std::vector<std::size_t> rootNodes(const Json& nodes) const {
     std::vector<std::size_t> roots;
-    const Json scenes = json_.value("scenes", Json::array());
+    const Json& scenes = arrayAt(json_, "scenes", input_);
     if (!scenes.empty()) {
-      const Json& scene = scenes.at(json_.value("scene", std::size_t{0}));
-      for (const Json& node : scene.value("nodes", Json::array())) roots.push_back(node);
+      const Json& scene = scenes.at(countAt(json_, "scene", 0, input_));
+      for (const Json& node : arrayAt(scene, "nodes", input_)) {
+        roots.push_back(countIn(node, input_));
+      }
       return roots;
     }
     std::vector<bool> isChild(nodes.size(), false);
     for (const Json& node : nodes) {
-      for (const Json& child : node.value("children", Json::array())) {
-        const auto number = child.get<std::size_t>();
+      for (const Json& child : arrayAt(node, "children", input_)) {
+        const std::size_t number = countIn(child, input_);
         if (number >= nodes.size()) {
           input_.fail("a node has the child " + std::to_string(number) + " of " +
                       std::to_string(nodes.size()) + " nodes");
@@ -105,16 +108,16 @@ class GlbReader {
       visited_[index] = true;
       const glb::NodeTransform transform = transformOf(node).under(parent);
       if (node.contains("mesh"))
-        addMesh(json_.at("meshes").at(node["mesh"].get<std::size_t>()), transform);
-      for (const Json& child : node.value("children", Json::array())) {
-        pending.emplace_back(child.get<std::size_t>(), transform);
+        addMesh(json_.at("meshes").at(countIn(node["mesh"], input_)), transform);
+      for (const Json& child : arrayAt(node, "children", input_)) {
+        pending.emplace_back(countIn(child, input_), transform);
       }
     }
   }
 
   void addMesh(const Json& mesh, const glb::NodeTransform& transform) {
     for (const Json& primitive : mesh.at("primitives")) {
-      const int mode = primitive.value("mode", kTriangles);
+      const std::size_t mode = countAt(primitive, "mode", kTriangles, input_);
       if (mode < kTriangles || mode > kTriangleFan) continue;  // points and lines
       if (primitive.contains("extensions") &&
           primitive["extensions"].contains("KHR_draco_mesh_compression")) {
@@ -124,7 +127,7 @@ class GlbReader {
     }
   }
 
-  void addPrimitive(const Json& primitive, int mode, const glb::NodeTransform& transform) {
+  void addPrimitive(const Json& primitive, std::size_t mode, const glb::NodeTransform& transform) {
     const glb::View positions = file_.viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
     const std::size_t first = mesh_.positions.size();
     const std::vector<VertexIndex> vertices =

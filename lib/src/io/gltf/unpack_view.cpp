@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/json_input.h"
+
 namespace tufa::io {
 namespace {
 
@@ -16,8 +18,8 @@ constexpr std::size_t kSlack = 65536;
 
 std::string unpackView(const nlohmann::json& description, std::string_view packed,
                        const InputBytes& input) {
-  const auto count = description.at("count").get<std::size_t>();
-  const auto stride = description.at("byteStride").get<std::size_t>();
+  const std::size_t count = countIn(description.at("count"), input);
+  const std::size_t stride = countIn(description.at("byteStride"), input);
   const auto mode = description.at("mode").get<std::string>();
   if (description.value("filter", "NONE") != "NONE") {
     input.fail("a buffer view is packed with a filter, not supported");

@@ -1,4 +1,4 @@
-// .glb: the binary container of glTF 2.0, one mesh of triangles under one node.
+// .glb: the binary container of glTF 2.0, meshes of triangles under a node each.
 
 #include "io/gltf/glb.h"
 #include "io/mesh/mesh_format.h"
@@ -9,27 +9,25 @@ namespace {
 using glb::Floats;
 using glb::Json;
 
-/// Where the parts of the binary chunk lie.
+/// A part, and where its arrays lie in the binary chunk.
 struct Layout {
+  const Mesh* mesh = nullptr;
+  const ShadedMesh* shaded = nullptr;  ///< null: one vertex for each position
+  Floats middle{};                     ///< what the node's translation gives back
   bool shortIndices = false;
+  std::uint64_t begin = 0;
+  std::uint64_t vertexCount = 0;
+  std::uint64_t normalCount = 0;
   std::uint64_t indexCount = 0;
-  std::uint64_t positionBytes = 0;
-  std::uint64_t normalBytes = 0;
-  std::uint64_t indexBytes = 0;  ///< without padding
-  [[nodiscard]] std::uint64_t bufferBytes() const {
-    return positionBytes + normalBytes + (indexBytes + 3) / 4 * 4;
+  [[nodiscard]] std::uint64_t positionBytes() const { return sizeof(Floats) * vertexCount; }
+  [[nodiscard]] std::uint64_t normalBytes() const { return sizeof(Floats) * normalCount; }
+  /// Without padding.
+  [[nodiscard]] std::uint64_t indexBytes() const { return indexCount * (shortIndices ? 2 : 4); }
+  [[nodiscard]] std::uint64_t padding() const { return (4 - indexBytes() % 4) % 4; }
+  [[nodiscard]] std::uint64_t end() const {
+    return begin + positionBytes() + normalBytes() + indexBytes() + padding();
   }
 };
-
-Layout layOut(const Mesh& mesh) {
-  Layout layout;
-  layout.shortIndices = mesh.positions.size() <= glb::kMostShortVertices;
-  layout.indexCount = 3 * std::uint64_t{mesh.triangleCount()};
-  layout.positionBytes = sizeof(Floats) * mesh.positions.size();
-  layout.normalBytes = sizeof(Floats) * mesh.normals.size();
-  layout.indexBytes = layout.indexCount * (layout.shortIndices ? 2 : 4);
-  return layout;
-}
 
 /// The middle of the mesh in single precision: what the node's translation gives back exactly. Not
 /// inline: GCC 12 at -O3 optimizes a vectorized rounding to float and back to double away, and
@@ -38,6 +36,20 @@ Layout layOut(const Mesh& mesh) {
   return {static_cast<float>(0.5 * (bounds.least.x + bounds.greatest.x)),
           static_cast<float>(0.5 * (bounds.least.y + bounds.greatest.y)),
           static_cast<float>(0.5 * (bounds.least.z + bounds.greatest.z))};
+}
+
+Layout layOut(const MeshPart& part, std::uint64_t begin) {
+  const Mesh& mesh = *part.mesh;
+  Layout layout;
+  layout.mesh = &mesh;
+  layout.shaded = part.shaded ? &*part.shaded : nullptr;
+  layout.middle = needsDoublePrecision(mesh) ? middleOf(boundsOf(mesh)) : Floats{};
+  layout.begin = begin;
+  layout.vertexCount = part.shaded ? part.shaded->sources.size() : mesh.positions.size();
+  layout.normalCount = part.shaded ? part.shaded->normals.size() : mesh.normals.size();
+  layout.indexCount = 3 * std::uint64_t{mesh.triangleCount()};
+  layout.shortIndices = layout.vertexCount <= glb::kMostShortVertices;
+  return layout;
 }
 
 Floats relativeTo(const Floats& origin, const Position& p) {
@@ -51,34 +63,30 @@ std::size_t addView(Json& json, std::uint64_t offset, std::uint64_t bytes, int t
       {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", target}});
 }
 
-Json describe(const Mesh& mesh, const Layout& layout, const Floats& middle,
-              const std::string& name) {
-  const Bounds bounds = boundsOf(mesh);
-  Json json = glb::emptyDocument();
-  json["scenes"] = Json::array({{{"nodes", {0}}}});
-  json["nodes"] = Json::array({{{"name", name}, {"mesh", 0}, {"translation", middle}}});
-  json["buffers"] = Json::array({{{"byteLength", layout.bufferBytes()}}});
-
-  const std::size_t positionView = addView(json, 0, layout.positionBytes, glb::kArrayBuffer);
+/// Adds the mesh of a part and its node.
+void describe(Json& json, const Layout& layout, const std::string& name) {
+  const Bounds bounds = boundsOf(*layout.mesh);
+  const std::size_t positionView =
+      addView(json, layout.begin, layout.positionBytes(), glb::kArrayBuffer);
   Json attributes;
   attributes["POSITION"] = glb::add(json, "accessors",
                                     {{"bufferView", positionView},
                                      {"componentType", glb::kFloat},
-                                     {"count", mesh.positions.size()},
+                                     {"count", layout.vertexCount},
                                      {"type", "VEC3"},
-                                     {"min", relativeTo(middle, bounds.least)},
-                                     {"max", relativeTo(middle, bounds.greatest)}});
-  if (!mesh.normals.empty()) {
-    const std::size_t view =
-        addView(json, layout.positionBytes, layout.normalBytes, glb::kArrayBuffer);
+                                     {"min", relativeTo(layout.middle, bounds.least)},
+                                     {"max", relativeTo(layout.middle, bounds.greatest)}});
+  const std::uint64_t normalBegin = layout.begin + layout.positionBytes();
+  if (layout.normalCount > 0) {
+    const std::size_t view = addView(json, normalBegin, layout.normalBytes(), glb::kArrayBuffer);
     attributes["NORMAL"] = glb::add(json, "accessors",
                                     {{"bufferView", view},
                                      {"componentType", glb::kFloat},
-                                     {"count", mesh.normals.size()},
+                                     {"count", layout.normalCount},
                                      {"type", "VEC3"}});
   }
-  const std::size_t indexView = addView(json, layout.positionBytes + layout.normalBytes,
-                                        layout.indexBytes, glb::kElementArrayBuffer);
+  const std::size_t indexView = addView(json, normalBegin + layout.normalBytes(),
+                                        layout.indexBytes(), glb::kElementArrayBuffer);
   const std::size_t indices =
       glb::add(json, "accessors",
                {{"bufferView", indexView},
@@ -86,57 +94,77 @@ Json describe(const Mesh& mesh, const Layout& layout, const Floats& middle,
                 {"count", layout.indexCount},
                 {"type", "SCALAR"}});
   const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"mode", 4}};
-  json["meshes"] = Json::array({{{"name", name}, {"primitives", Json::array({primitive})}}});
-  return json;
+  const std::size_t mesh =
+      glb::add(json, "meshes", {{"name", name}, {"primitives", Json::array({primitive})}});
+  glb::add(json, "nodes", {{"name", name}, {"mesh", mesh}, {"translation", layout.middle}});
 }
 
 template <class Index>
-void writeIndices(const Mesh& mesh, MeshSink& sink) {
+void writeIndices(const Layout& layout, MeshSink& sink) {
   const auto writeTriangle = [&](VertexIndex a, VertexIndex b, VertexIndex c) {
     const std::array<Index, 3> triangle{static_cast<Index>(a), static_cast<Index>(b),
                                         static_cast<Index>(c)};
     sink.write(triangle.data(), sizeof triangle);
   };
-  forEachItem(sink, mesh.triangles, [&](const Triangle& t) {
+  if (layout.shaded != nullptr) {
+    forEachItem(sink, layout.shaded->indices, [&](VertexIndex vertex) {
+      const auto index = static_cast<Index>(vertex);
+      sink.write(&index, sizeof index);
+    });
+    return;
+  }
+  forEachItem(sink, layout.mesh->triangles, [&](const Triangle& t) {
     writeTriangle(t.vertices[0], t.vertices[1], t.vertices[2]);
   });
-  forEachItem(sink, mesh.quads, [&](const Quad& q) {
+  forEachItem(sink, layout.mesh->quads, [&](const Quad& q) {
     writeTriangle(q.vertices[0], q.vertices[1], q.vertices[2]);
     writeTriangle(q.vertices[0], q.vertices[2], q.vertices[3]);
   });
 }
 
-void writeHead(MeshSink& sink, const Json& document, std::uint64_t binaryBytes) {
-  const std::string head = glb::head(document, binaryBytes);
-  sink.write(head.data(), head.size());
+void writeArrays(const Layout& layout, MeshSink& sink) {
+  const std::vector<Position>& positions = layout.mesh->positions;
+  const auto writePosition = [&](const Position& p) {
+    const Floats relative = relativeTo(layout.middle, p);
+    sink.write(relative.data(), sizeof relative);
+  };
+  if (layout.shaded != nullptr) {
+    forEachItem(sink, layout.shaded->sources,
+                [&](VertexIndex source) { writePosition(positions[source]); });
+  } else {
+    forEachItem(sink, positions, writePosition);
+  }
+  forEachItem(sink, layout.shaded != nullptr ? layout.shaded->normals : layout.mesh->normals,
+              [&](const Normal& n) {
+                const Floats unit = glb::unitNormal(n);
+                sink.write(unit.data(), sizeof unit);
+              });
+  if (layout.shortIndices) {
+    writeIndices<std::uint16_t>(layout, sink);
+  } else {
+    writeIndices<std::uint32_t>(layout, sink);
+  }
+  const std::uint32_t zero = 0;
+  sink.write(&zero, layout.padding());
 }
 
 }  // namespace
 
-void writeGlb(const Mesh& mesh, MeshSink& sink, const std::string& name) {
-  if (mesh.triangleCount() == 0) {
-    writeHead(sink, glb::emptyDocument(), 0);
-    return;
+void writeGlb(std::span<const MeshPart> parts, MeshSink& sink) {
+  Json document = glb::emptyDocument();
+  std::vector<Layout> layouts;
+  std::uint64_t bytes = 0;
+  for (const MeshPart& part : parts) {
+    if (part.mesh->triangleCount() == 0) continue;
+    layouts.push_back(layOut(part, bytes));
+    bytes = layouts.back().end();
+    describe(document, layouts.back(), part.name);
+    document["scenes"][0]["nodes"].push_back(layouts.size() - 1);
   }
-  const Layout layout = layOut(mesh);
-  const Floats middle = needsDoublePrecision(mesh) ? middleOf(boundsOf(mesh)) : Floats{};
-  writeHead(sink, describe(mesh, layout, middle, name), layout.bufferBytes());
-  forEachItem(sink, mesh.positions, [&](const Position& p) {
-    const Floats relative = relativeTo(middle, p);
-    sink.write(relative.data(), sizeof relative);
-  });
-  forEachItem(sink, mesh.normals, [&](const Normal& n) {
-    const Floats unit = glb::unitNormal(n);
-    sink.write(unit.data(), sizeof unit);
-  });
-  if (layout.shortIndices) {
-    writeIndices<std::uint16_t>(mesh, sink);
-  } else {
-    writeIndices<std::uint32_t>(mesh, sink);
-  }
-  const std::uint32_t padding = 0;
-  sink.write(&padding,
-             layout.bufferBytes() - layout.positionBytes - layout.normalBytes - layout.indexBytes);
+  if (bytes > 0) document["buffers"] = Json::array({{{"byteLength", bytes}}});
+  const std::string head = glb::head(document, bytes);
+  sink.write(head.data(), head.size());
+  for (const Layout& layout : layouts) writeArrays(layout, sink);
 }
 
 }  // namespace tufa::io

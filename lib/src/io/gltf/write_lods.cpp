@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/job.h"
+#include "base/known_enum.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/lod_streams.h"
 #include "io/mesh/mesh_format.h"
@@ -21,6 +22,8 @@ void requireInRange(const LodWriteOptions& options) {
   if (!(options.scale > 0 && std::isfinite(options.scale))) {
     throw Error(ErrorCode::InvalidArgument, "the scale must be above 0");
   }
+  base::requireKnown(options.up, UpAxis::Z, "the axis that points up");
+  base::requireKnown(options.compression, LodCompression::Meshopt, "the compression");
 }
 
 /// Builds a .glb of some LODs: the document, and the bytes behind it.
@@ -147,7 +150,7 @@ class LodDocument {
   }
 
   /// Programs that know MSFT_lod find the other LODs by it; those that do not show the first one
-  /// alone; those that go by names find all in a scene of their own.
+  /// alone; those that go by names find all in a scene of their own, if there is to be one.
   void linkLevels() {
     json_["extensionsUsed"].push_back("MSFT_lod");
     Json all = Json::array(), others = Json::array(), coverage = Json::array();
@@ -159,6 +162,7 @@ class LodDocument {
     Json& first = json_["nodes"][0];
     first["extensions"]["MSFT_lod"]["ids"] = others;
     first["extras"]["MSFT_screencoverage"] = coverage;
+    if (!options_.allLevelsScene) return;
     json_["scenes"].push_back({{"name", options_.name + "_all_levels"}, {"nodes", all}});
   }
 
@@ -268,6 +272,8 @@ class LodWriter {
     const Mesh& mesh = chain_.levels[level].mesh;
     WriteOptions options;
     options.name = options_.name + "_LOD" + std::to_string(level);
+    options.creaseAngle = options_.creaseAngle;
+    options.threads = options_.threads;
     tufa::write(mesh, path, options);
     report_.vertices.push_back(mesh.positions.size());
     report_.files.push_back(path);
@@ -295,12 +301,14 @@ void writeLods(const LodChain& chain, const std::filesystem::path& path,
                const LodWriteOptions& options, LodWriteReport* report) {
   io::requireInRange(options);
   LodWriteReport found;
-  io::LodWriter writer(chain, options, found);
-  if (io::namesMany(path)) {
-    writer.writeMany(path);
-  } else {
-    writer.writeOne(path);
-  }
+  base::runIsolated([&] {
+    io::LodWriter writer(chain, options, found);
+    if (io::namesMany(path)) {
+      writer.writeMany(path);
+    } else {
+      writer.writeOne(path);
+    }
+  });
   if (report != nullptr) *report = std::move(found);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/lattice_range.h"
+#include "base/parallel.h"
 #include "io/grid/grid_traits.h"
 #include "io/grid/vdb_reader.h"
 
@@ -48,6 +50,14 @@ void addValue(GridInfo& info, double value, std::size_t count) {
   info.maxValue = std::max(value, info.maxValue.value_or(value));
 }
 
+/// Adds what lies in a node in place of children.
+template <class Node>
+void addTiles(const Node& node, GridInfo& info) {
+  for (auto tile = node.cbeginValueOn(); tile; ++tile) {
+    addValue(info, static_cast<double>(*tile), Node::ChildNodeType::NUM_VOXELS);
+  }
+}
+
 template <class GridT>
 void addValues(const openvdb::GridBase& base, GridInfo& info) {
   if (!base.isType<GridT>()) return;
@@ -58,16 +68,19 @@ void addValues(const openvdb::GridBase& base, GridInfo& info) {
       addValue(info, static_cast<double>(*value), 1);
     }
   }
-  auto tile = tree.cbeginValueOn();
-  tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
-  for (; tile; ++tile) {
-    addValue(info, static_cast<double>(*tile), static_cast<std::size_t>(tile.getVoxelCount()));
-  }
+  using Upper = typename GridT::TreeType::RootNodeType::ChildNodeType;
+  using Lower = typename Upper::ChildNodeType;
+  // Node by node: the iterator of a tree looks for its place in the root's table at each step.
+  addTiles(tree.root(), info);
+  std::vector<const Upper*> uppers;
+  tree.getNodes(uppers);
+  for (const Upper* node : uppers) addTiles(*node, info);
+  std::vector<const Lower*> lowers;
+  tree.getNodes(lowers);
+  for (const Lower* node : lowers) addTiles(*node, info);
 }
 
-}  // namespace
-
-GridInfo describeGrid(const openvdb::GridBase& grid) {
+GridInfo describe(const openvdb::GridBase& grid) {
   GridInfo info;
   info.name = grid.getName();
   info.valueType = grid.valueType();
@@ -92,19 +105,41 @@ GridInfo describeGrid(const openvdb::GridBase& grid) {
   return info;
 }
 
+}  // namespace
+
+GridInfo describeGrid(const openvdb::GridBase& grid) {
+  GridInfo info;
+  base::runIsolated([&] { info = describe(grid); });  // OpenVDB counts in parallel
+  return info;
+}
+
 std::string io::whyNotMeshable(const openvdb::GridBase& grid) {
   if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>()) {
     return "its values are of type " + grid.valueType() + ", not float or double";
   }
   if (!grid.transform().isLinear()) return "its transform is a frustum, not linear";
-  return {};
+  return whyOutOfRange(grid);
+}
+
+std::string io::whyOutOfRange(const openvdb::GridBase& grid) {
+  if (!grid.transform().isLinear()) return {};
+  const openvdb::Vec3d origin = grid.transform().indexToWorld(openvdb::Vec3d(0));
+  base::Lattice lattice{{origin[0], origin[1], origin[2]}, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d unit(0);
+    unit[axis] = 1;
+    const openvdb::Vec3d step = grid.transform().baseMap()->applyJacobian(unit);
+    lattice.steps[axis] = {step[0], step[1], step[2]};
+  }
+  return base::whyOutOfRange(lattice);
 }
 
 std::vector<GridInfo> describeGrids(const std::filesystem::path& path) {
   io::VdbReader reader(path);
   std::vector<GridInfo> infos;
   for (std::size_t n = 0; n < reader.gridCount(); ++n) {
-    infos.push_back(describeGrid(*reader.readGrid(n)));
+    // OpenVDB frees the nodes of a tree in parallel too.
+    base::runIsolated([&] { infos.push_back(describe(*reader.readGrid(n))); });
     infos.back().name = reader.gridName(n);  // tells grids of one name apart
   }
   return infos;

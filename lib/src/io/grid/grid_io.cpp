@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "base/parallel.h"
 #include "io/grid/grid_traits.h"
 #include "io/grid/vdb_reader.h"
 #include "io/output_file.h"
@@ -58,13 +59,29 @@ std::size_t findMeshable(io::VdbReader& reader, const std::filesystem::path& pat
 
 }  // namespace
 
+std::vector<GridName> listGrids(const std::filesystem::path& path) {
+  io::VdbReader reader(path);
+  std::vector<GridName> grids;
+  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
+    grids.push_back({reader.gridName(n), io::whyNotMeshable(*reader.readOutline(n)).empty()});
+  }
+  return grids;
+}
+
 openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
                                 const std::optional<std::string>& name) {
   io::VdbReader reader(path);
   if (reader.gridCount() == 0) {
     throw Error(ErrorCode::UnreadableFile, "cannot read " + path.string() + ": it holds no grid");
   }
-  return reader.readGrid(name ? findNamed(reader, *name, path) : findMeshable(reader, path));
+  if (!name) return reader.readGrid(findMeshable(reader, path));
+  const std::size_t index = findNamed(reader, *name, path);
+  // Of no use for anything: OpenVDB's own functions throw on such transforms.
+  if (const std::string why = io::whyOutOfRange(*reader.readOutline(index)); !why.empty()) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                "grid \"" + *name + "\" in " + path.string() + " cannot be meshed: " + why);
+  }
+  return reader.readGrid(index);
 }
 
 void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
@@ -75,7 +92,8 @@ void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
   try {
-    VdbWriter().writeTo(stream, grids, file.seekable());
+    // OpenVDB counts voxels in parallel for the metadata.
+    base::runIsolated([&] { VdbWriter().writeTo(stream, grids, file.seekable()); });
   } catch (const Error&) {
     throw;
   } catch (const openvdb::Exception& error) {

@@ -1,13 +1,14 @@
 #include "io/grid/vdb_reader.h"
 
-#include <openvdb/io/DelayedLoadMetadata.h>
-
 #include <tufa/error.h>
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <new>
+
+#include "io/grid/head_checks.h"
+#include "io/grid/tree_walker.h"
 
 namespace tufa::io {
 
@@ -41,6 +42,8 @@ void VdbReader::guarded(const std::string& what, const std::function<void()>& wo
     throw;
   } catch (const std::ios_base::failure&) {
     fail("the file ends inside " + what + ", it is truncated or damaged");
+  } catch (const DamagedGrid& damage) {
+    fail(what + " is damaged: " + damage.what());
   } catch (const std::length_error&) {
     fail(what + " is damaged");
   } catch (const std::bad_alloc&) {
@@ -55,7 +58,7 @@ void VdbReader::guarded(const std::string& what, const std::function<void()>& wo
 void VdbReader::requireVdb() {
   std::error_code error;
   const auto status = std::filesystem::status(path_, error);
-  if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+  if (status.type() == std::filesystem::file_type::not_found) fail(std::strerror(ENOENT));
   if (error) fail(error.message());
   if (std::filesystem::is_directory(status)) fail("it is a folder");
   if (!std::filesystem::is_regular_file(status)) fail("it is not a regular file");
@@ -81,10 +84,13 @@ void VdbReader::readHead() {
   streamMetadata_.reset(new openvdb::io::StreamMetadata);
   openvdb::io::setStreamMetadataPtr(stream_, streamMetadata_);
   readHeader(stream_);
+  if (fileVersion() < kOldestFormat) {
+    fail("its format is version " + std::to_string(fileVersion()) + ", older than OpenVDB 1.0");
+  }
   setFormatVersion(stream_);
   setLibraryVersion(stream_);
   setDataCompression(stream_);
-  requireSoundMetadata();
+  requireSoundFileMetadata();
   openvdb::MetaMap fileMetadata;
   fileMetadata.readMeta(stream_);
 
@@ -106,8 +112,7 @@ void VdbReader::readHead() {
 
 void VdbReader::readSequentially(std::size_t index) {
   Entry& entry = entries_[index];
-  requireSoundGridHead();
-  Archive::readGrid(entry.whole, entry.descriptor, stream_);
+  readHere(entry.whole, entry.descriptor);
   if (!entry.descriptor.isInstance()) return;
   const auto parent = std::find_if(entries_.begin(), entries_.end() - 1, [&](const Entry& other) {
     return other.descriptor.uniqueName() == entry.descriptor.instanceParentName();
@@ -152,16 +157,23 @@ void VdbReader::takeMetadata() {
   for (std::uint32_t n = 0; n < count; ++n) {
     takeText();  // the name
     const std::string type = takeText();
-    const std::string value = takeText();
-    if (type != openvdb::io::DelayedLoadMetadata::staticTypeName() || value.size() < 4) continue;
-    // One number for each leaf, packed: their count says how much room OpenVDB will make.
-    std::uint32_t leaves = 0;
-    std::memcpy(&leaves, value.data(), sizeof leaves);
-    if (leaves > fileBytes_) fail("it claims " + std::to_string(leaves) + " leaves: damaged");
+    requireSoundMetadata(type, takeText(), fileBytes_);
   }
 }
 
-void VdbReader::requireSoundMetadata() {
+/// A frustum holds a second map, in which OpenVDB would look for a third and so on.
+void VdbReader::takeMap(bool mayBeFrustum) {
+  const std::string map = takeText();
+  if (map != openvdb::math::NonlinearFrustumMap::mapType()) return;
+  if (!mayBeFrustum) fail("it has a frustum within a frustum: damaged");
+  const bool realBox = fileVersion() >= openvdb::OPENVDB_FILE_VERSION_FLOAT_FRUSTUM_BBOX;
+  const std::size_t boxBytes = 6 * (realBox ? sizeof(double) : sizeof(std::int32_t));
+  constexpr std::size_t kTaperDepthBytes = 2 * sizeof(double);
+  stream_.seekg(static_cast<std::streamoff>(boxBytes + kTaperDepthBytes), std::ios_base::cur);
+  takeMap(false);
+}
+
+void VdbReader::requireSoundFileMetadata() {
   const auto start = stream_.tellg();
   takeMetadata();
   stream_.seekg(start);
@@ -171,7 +183,7 @@ void VdbReader::requireSoundDescriptor() {
   const auto start = stream_.tellg();
   takeText();  // the grid's name
   takeText();  // its type
-  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) takeText();  // its parent
+  takeText();  // its parent
   stream_.seekg(start);
 }
 
@@ -179,14 +191,30 @@ void VdbReader::requireSoundGridHead() {
   const auto start = stream_.tellg();
   if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION) takeNumber();
   takeMetadata();
-  if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) {
-    const std::string map = takeText();
-    if (map == openvdb::math::NonlinearFrustumMap::mapType()) {
-      constexpr std::streamoff kBoxTaperDepth = 8 * sizeof(double);
-      stream_.seekg(kBoxTaperDepth, std::ios_base::cur);
-      takeText();  // the kind of its second map
-    }
+  takeMap(true);
+  stream_.seekg(start);
+}
+
+/// Behind a head that is sound.
+void VdbReader::requireSoundTree(const GridDescriptor& descriptor) {
+  if (descriptor.isInstance()) return;
+  const auto start = stream_.tellg();
+  const GridBase::Ptr head = createGrid(descriptor);
+  readGridCompression(stream_);
+  head->readMeta(stream_);
+  head->readTransform(stream_);
+  const auto layout = layoutOf(*head);
+  if (!layout) {
+    fail("the sizes in grids of type " + descriptor.gridType() +
+         " cannot be checked, as in grid \"" + descriptor.gridName() + "\"");
   }
+  // Programs that write a single grid may leave its end out.
+  const bool ends = inputHasGridOffsets() && descriptor.getEndPos() > descriptor.getGridPos();
+  const std::uint64_t end = ends ? static_cast<std::uint64_t>(descriptor.getEndPos()) : fileBytes_;
+  // The metadata, not the descriptor, says whether values are in half precision.
+  const TreeCoding coding{fileVersion(), openvdb::io::getDataCompression(stream_),
+                          head->saveFloatAsHalf()};
+  TreeWalker(stream_, end, *layout, coding).walk();
   stream_.seekg(start);
 }
 
@@ -213,9 +241,7 @@ GridBase::Ptr VdbReader::readOutline(std::size_t index) {
     requireSoundGridHead();
     readGridCompression(stream_);
     grid->readMeta(stream_);
-    if (fileVersion() >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING) {
-      grid->readTransform(stream_);
-    }
+    grid->readTransform(stream_);
   });
   grid->setName(entry.descriptor.gridName());
   return grid;
@@ -224,9 +250,31 @@ GridBase::Ptr VdbReader::readOutline(std::size_t index) {
 GridBase::Ptr VdbReader::readTree(const GridDescriptor& descriptor) {
   GridBase::Ptr grid = createGrid(descriptor);
   descriptor.seekToGrid(stream_);
-  requireSoundGridHead();
-  Archive::readGrid(grid, descriptor, stream_);
+  readHere(grid, descriptor);
   return grid;
+}
+
+void VdbReader::readHere(const GridBase::Ptr& grid, const GridDescriptor& descriptor) {
+  requireSoundGridHead();
+  requireSoundTree(descriptor);
+  const auto layout = layoutOf(*grid);
+  if (layout && layout->leaf == TreeLayout::Leaf::Points && !descriptor.isInstance()) {
+    readPoints(*grid);
+  } else {
+    Archive::readGrid(grid, descriptor, stream_);
+  }
+}
+
+/// What leaves of points hold is pages of attributes, whose sizes OpenVDB trusts too. Points cannot
+/// be meshed: they are not read.
+void VdbReader::readPoints(GridBase& grid) {
+  if (!inputHasGridOffsets()) fail("it has points, and does not say where they end");
+  readGridCompression(stream_);
+  grid.readMeta(stream_);
+  grid.removeMeta(GridBase::META_FILE_DELAYED_LOAD);
+  grid.readTransform(stream_);
+  grid.readTopology(stream_);
+  openvdb::io::setGridBackgroundValuePtr(stream_, nullptr);  // it is that of the root just read
 }
 
 GridBase::Ptr VdbReader::readGrid(std::size_t index) {

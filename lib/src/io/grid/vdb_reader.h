@@ -26,10 +26,10 @@ class VdbReader : private openvdb::io::Archive {
   [[nodiscard]] std::string gridName(std::size_t index) const;
   [[nodiscard]] bool isNamed(std::size_t index, const std::string& name) const;
 
-  /// An empty grid with the metadata and, for all but files of before 2012, the transform.
+  /// An empty grid with the metadata and the transform.
   [[nodiscard]] openvdb::GridBase::Ptr readOutline(std::size_t index);
 
-  /// The grid with all its values.
+  /// The grid with all its values; of points only the tree, without what its leaves hold.
   [[nodiscard]] openvdb::GridBase::Ptr readGrid(std::size_t index);
 
  private:
@@ -43,17 +43,22 @@ class VdbReader : private openvdb::io::Archive {
   void readSequentially(std::size_t index);
   void requireInside(const openvdb::io::GridDescriptor& descriptor) const;
 
-  // OpenVDB makes room for whatever length or count a file claims, up to 4 GiB at a time. These
-  // look ahead, fail where that is more than the file can hold, and leave the stream where it was.
-  void requireSoundMetadata();
+  // OpenVDB makes room for whatever length or count a file claims, and reads over the end of room
+  // that is too small. These look ahead, fail where what is claimed cannot be so, and leave the
+  // stream where it was.
+  void requireSoundFileMetadata();
   void requireSoundDescriptor();
   void requireSoundGridHead();
+  void requireSoundTree(const openvdb::io::GridDescriptor& descriptor);
 
   [[nodiscard]] std::uint64_t bytesLeft();
   std::uint32_t takeNumber();
   std::string takeText();
   void takeMetadata();
+  void takeMap(bool mayBeFrustum);
   openvdb::GridBase::Ptr readTree(const openvdb::io::GridDescriptor& descriptor);
+  void readHere(const openvdb::GridBase::Ptr& grid, const openvdb::io::GridDescriptor& descriptor);
+  void readPoints(openvdb::GridBase& grid);
   void guarded(const std::string& what, const std::function<void()>& work) const;
   [[noreturn]] void fail(const std::string& cause) const;
 

@@ -3,7 +3,11 @@
 #include <tufa/io.h>
 #include <tufa/mesh.h>
 #include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
 
+#include "io/mesh/shaded_mesh.h"
 #include "io/output_file.h"
 
 namespace tufa::io {
@@ -31,7 +35,8 @@ void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, c
 /// Writes bytes to a file and reports progress of the whole.
 class MeshSink {
  public:
-  MeshSink(OutputFile& file, const Mesh& mesh, const WriteOptions& options);
+  /// `total` positions, normals and faces are to come; `begin` of the whole call is done already.
+  MeshSink(OutputFile& file, std::size_t total, double begin, const Progress& progress);
 
   void write(const void* data, std::size_t size) { file_.write(data, size); }
 
@@ -44,6 +49,7 @@ class MeshSink {
  private:
   OutputFile& file_;
   const Progress& progress_;
+  double begin_ = 0;
   std::size_t done_ = 0;
   std::size_t total_ = 0;
 };
@@ -59,11 +65,18 @@ void forEachItem(MeshSink& sink, const Items& items, Body&& body) {
   sink.advance(done % MeshSink::kStride);
 }
 
+/// One mesh of a file that may hold several.
+struct MeshPart {
+  const Mesh* mesh = nullptr;
+  std::string name;
+  std::optional<ShadedMesh> shaded;  ///< if its normals are split at creases
+};
+
 // One format each.
 void writePly(const Mesh& mesh, MeshSink& sink);
-void writeObj(const Mesh& mesh, MeshSink& sink, const std::string& name);
 void writeOff(const Mesh& mesh, MeshSink& sink);
 void writeStl(const Mesh& mesh, MeshSink& sink);
-void writeGlb(const Mesh& mesh, MeshSink& sink, const std::string& name);
+void writeObj(std::span<const MeshPart> parts, MeshSink& sink);
+void writeGlb(std::span<const MeshPart> parts, MeshSink& sink);
 
 }  // namespace tufa::io

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/job.h"
 #include "base/single_precision.h"
 #include "io/mesh/mesh_format.h"
 
@@ -64,20 +65,94 @@ void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, c
                                             " can hold");
 }
 
-MeshSink::MeshSink(OutputFile& file, const Mesh& mesh, const WriteOptions& options)
-    : file_(file),
-      progress_(options.progress),
-      total_(mesh.positions.size() + mesh.normals.size() + mesh.quads.size() +
-             mesh.triangles.size() + 1) {}
+MeshSink::MeshSink(OutputFile& file, std::size_t total, double begin, const Progress& progress)
+    : file_(file), progress_(progress), begin_(begin), total_(total + 1) {}
 
 void MeshSink::advance(std::size_t count) {
   done_ = std::min(done_ + count, total_);
   if (!progress_) return;
-  if (!progress_("writing", static_cast<double>(done_) / static_cast<double>(total_))) {
+  const double share = static_cast<double>(done_) / static_cast<double>(total_);
+  if (!progress_("writing", begin_ + (1 - begin_) * share)) {
     throw Error(ErrorCode::Cancelled, "cancelled while writing");
   }
 }
 
+namespace {
+
+/// The share of a call that splitting at creases takes; the rest goes into bytes.
+constexpr double kShadingEnd = 0.4;
+
+void requireSound(const MeshPart& part) {
+  const Mesh& mesh = *part.mesh;
+  if (mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) return;
+  throw Error(ErrorCode::InvalidArgument, "the mesh has " + std::to_string(mesh.normals.size()) +
+                                              " normals for " +
+                                              std::to_string(mesh.positions.size()) + " positions");
+}
+
+bool splits(const MeshPart& part, const WriteOptions& options) {
+  return options.creaseAngle < 180 && !part.mesh->normals.empty();
+}
+
+/// Splits the normals of those parts that have some; returns the share of the call that took.
+double splitNormals(std::span<MeshPart> parts, const WriteOptions& options) {
+  if (std::none_of(parts.begin(), parts.end(),
+                   [&](const MeshPart& part) { return splits(part, options); })) {
+    return 0;
+  }
+  base::Job job(options.threads, options.progress);
+  job.run([&] {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const auto done = static_cast<double>(i + 1) / static_cast<double>(parts.size());
+      job.beginStage("normals", kShadingEnd * done);
+      if (!splits(parts[i], options)) continue;
+      parts[i].shaded = splitAtCreases(*parts[i].mesh, options.creaseAngle, job);
+    }
+    job.finish();
+  });
+  return kShadingEnd;
+}
+
+bool hasNormalsAtCorners(MeshFormat format) {
+  return format == MeshFormat::Obj || format == MeshFormat::Glb;
+}
+
+void writeParts(std::span<MeshPart> parts, MeshFormat format, const std::filesystem::path& path,
+                const WriteOptions& options) {
+  if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
+    throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
+  }
+  std::size_t total = 0;
+  for (const MeshPart& part : parts) {
+    requireSound(part);
+    const Mesh& mesh = *part.mesh;
+    total +=
+        mesh.positions.size() + mesh.normals.size() + mesh.quads.size() + mesh.triangles.size();
+  }
+  OutputFile file(path);
+  const double begin = hasNormalsAtCorners(format) ? splitNormals(parts, options) : 0;
+  MeshSink sink(file, total, begin, options.progress);
+  switch (format) {
+    case MeshFormat::Ply:
+      writePly(*parts.front().mesh, sink);
+      break;
+    case MeshFormat::Obj:
+      writeObj(parts, sink);
+      break;
+    case MeshFormat::Stl:
+      writeStl(*parts.front().mesh, sink);
+      break;
+    case MeshFormat::Off:
+      writeOff(*parts.front().mesh, sink);
+      break;
+    case MeshFormat::Glb:
+      writeGlb(parts, sink);
+      break;
+  }
+  file.commit();
+}
+
+}  // namespace
 }  // namespace io
 
 void requireMeshEnding(const std::filesystem::path& path) {
@@ -86,31 +161,20 @@ void requireMeshEnding(const std::filesystem::path& path) {
 
 void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
   const auto format = io::isBareDevice(path) ? io::MeshFormat::Ply : io::formatOf(path);
-  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
+  io::MeshPart part{&mesh, options.name, {}};
+  io::writeParts({&part, 1}, format, path, options);
+}
+
+void writeMeshes(const std::vector<NamedMesh>& meshes, const std::filesystem::path& path,
+                 const WriteOptions& options) {
+  const auto format = io::formatOf(path);
+  if (!io::hasNormalsAtCorners(format)) {
     throw Error(ErrorCode::InvalidArgument,
-                "the mesh has " + std::to_string(mesh.normals.size()) + " normals for " +
-                    std::to_string(mesh.positions.size()) + " positions");
+                path.string() + ": of the formats only .glb and .obj hold several meshes");
   }
-  io::OutputFile file(path);
-  io::MeshSink sink(file, mesh, options);
-  switch (format) {
-    case io::MeshFormat::Ply:
-      io::writePly(mesh, sink);
-      break;
-    case io::MeshFormat::Obj:
-      io::writeObj(mesh, sink, options.name);
-      break;
-    case io::MeshFormat::Stl:
-      io::writeStl(mesh, sink);
-      break;
-    case io::MeshFormat::Off:
-      io::writeOff(mesh, sink);
-      break;
-    case io::MeshFormat::Glb:
-      io::writeGlb(mesh, sink, options.name);
-      break;
-  }
-  file.commit();
+  std::vector<io::MeshPart> parts;
+  for (const NamedMesh& named : meshes) parts.push_back({&named.mesh, named.name, {}});
+  io::writeParts(parts, format, path, options);
 }
 
 }  // namespace tufa

@@ -1,5 +1,4 @@
-#include "io/gltf/shaded_mesh.h"
-#include "base/vec3.h"
+#include "io/mesh/shaded_mesh.h"
 
 #include <meshoptimizer.h>
 
@@ -8,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/vec3.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -93,7 +93,7 @@ class CreaseSplitter {
 
   void gatherCorners() {
     requireAtMost(std::numeric_limits<VertexIndex>::max(), 3 * std::uint64_t{triangles_.size()},
-                  "indices", ".glb");
+                  "indices", "a mesh split at creases");
     begin_.assign(mesh_.positions.size() + 1, 0);
     for (const Triangle& t : triangles_) {
       for (const VertexIndex v : t.vertices) ++begin_[v + 1];

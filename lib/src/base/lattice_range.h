@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "base/vec3.h"
+
+namespace tufa::base {
+
+/// Where the lattice points of a grid lie: that of index 0, and the steps along the three axes, in
+/// world space.
+struct Lattice {
+  Vec3 origin;
+  std::array<Vec3, 3> steps;
+};
+
+/// Why a surface on that lattice cannot be computed, with what to do about it; nothing if it can.
+/// Within the range, positions and distances fit single precision with room for products of two,
+/// and a double tells 4096 places apart along each voxel.
+[[nodiscard]] std::string whyOutOfRange(const Lattice& lattice);
+
+/// Throws Error(InvalidArgument) unless grids can be made with voxels of that size.
+void requireVoxelSize(double voxelSize);
+
+/// Throws Error(InvalidArgument) unless narrow bands can be made that wide: from 1 to 1000 voxels.
+void requireHalfWidth(double halfWidth);
+
+}  // namespace tufa::base

@@ -1,0 +1,244 @@
+// The tufa command as people and pipelines use it: what it refuses, and what it says.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <tufa/io.h>
+#include <tufa/shapes.h>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "tools/command_fixture.h"
+
+namespace tufa {
+namespace {
+
+using test::CommandTest;
+using test::Outcome;
+using test::readBytes;
+using test::writeBytes;
+using Json = nlohmann::json;
+
+class Usage : public CommandTest {
+ protected:
+  /// Shapes of one file, coarse.
+  void writeShapes(const std::string& file, const std::vector<Shape>& shapes) {
+    ShapeOptions options;
+    options.voxelSize = 0.1;
+    std::vector<openvdb::GridBase::ConstPtr> grids;
+    for (const Shape shape : shapes) grids.push_back(makeShape(shape, options));
+    writeGrids(grids, folder / file);
+  }
+
+  [[nodiscard]] Json documentOf(const std::string& glb) const {
+    const std::string bytes = readBytes(folder / glb);
+    return Json::parse(bytes.substr(20, static_cast<unsigned char>(bytes.at(12)) +
+                                            256u * static_cast<unsigned char>(bytes.at(13))));
+  }
+};
+
+std::string lastLineOf(const std::string& text) {
+  const std::size_t end = text.find_last_not_of('\n');
+  const std::size_t begin = text.rfind('\n', end);
+  return text.substr(begin + 1, end - begin);
+}
+
+TEST_F(Usage, MeshSplitsNormalsWhereTheFieldIsADistance) {
+  writeShapes("box.vdb", {Shape::Box});
+  writeShapes("fog.vdb", {Shape::Fog});
+  // More vertices in the file than the mesh has, or as many.
+  const auto added = [&](const std::string& arguments) {
+    const Outcome outcome = run("mesh " + arguments + " -o m.glb --json");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return documentOf("m.glb")["accessors"][0]["count"].get<int>() -
+           Json::parse(outcome.out).at("vertices").get<int>();
+  };
+  EXPECT_GT(added("box.vdb"), 0);
+  EXPECT_EQ(added("box.vdb --crease 180"), 0);
+  EXPECT_EQ(added("fog.vdb --iso 0.3"), 0);
+  EXPECT_GT(added("fog.vdb --iso 0.3 --crease 20"), 0);
+  expectFailure("mesh box.vdb -o n.glb --crease 181", 2, "--crease");
+}
+
+TEST_F(Usage, RefusesAnOutputThatIsAnInput) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb --quiet -o in.ply").exitCode, 0);
+  ASSERT_EQ(run("chunks s.vdb --quiet --levels 1 -o d").exitCode, 0);
+  std::filesystem::create_symlink("in.ply", folder / "link.vdb");
+  std::filesystem::create_symlink("s.vdb", folder / "link_LOD1.ply");
+  std::filesystem::create_hard_link(folder / "s.vdb", folder / "hard.stl");
+  std::string chunk;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "d")) {
+    if (entry.path().extension() == ".glb") chunk = "d/" + entry.path().filename().string();
+  }
+  const std::string volume = readBytes(folder / "s.vdb");
+  const std::string mesh = readBytes(folder / "in.ply");
+  expectFailure("voxelize in.ply -o in.ply --voxel 0.1", 2, ".vdb");
+  expectFailure("voxelize in.ply -o link.vdb --voxel 0.1", 2, "overwritten");
+  expectFailure("voxelize ./in.ply -o d/../link.vdb --voxel 0.1", 2, "overwritten");
+  expectFailure("mesh s.vdb -o hard.stl", 2, "overwritten");
+  expectFailure("lod s.vdb --separate -o link.ply", 2, "overwritten");
+  expectFailure("chunks --assemble d --lods all:0 -o " + chunk, 2, "overwritten");
+  EXPECT_EQ(readBytes(folder / "s.vdb"), volume);
+  EXPECT_EQ(readBytes(folder / "in.ply"), mesh);
+}
+
+TEST_F(Usage, ChecksTheEndingOfEveryOutput) {
+  makeSphere();
+  expectFailure("make sphere -o s.stl", 2, ".vdb");
+  expectFailure("make sphere -o s", 2, ".vdb");
+  expectFailure("voxelize none.ply --voxel 1 -o v.ply", 2, ".vdb");
+  expectFailure("mesh s.vdb -o m.vdb", 2, "ending");
+  expectFailure("lod s.vdb -o m.vdb", 2, "ending");
+  expectFailure("lod s.vdb -o m.glb --report page.glb", 2, ".html");
+  expectFailure("chunks s.vdb -o x.glb", 2, "--assemble");
+}
+
+TEST_F(Usage, FogNeedsAnIsovalue) {
+  writeShapes("fog.vdb", {Shape::Fog});
+  for (const char* command :
+       {"mesh fog.vdb -o m.ply", "lod fog.vdb -o m.glb", "chunks fog.vdb -o d"}) {
+    expectFailure(command, 2, "values from");
+    expectFailure(command, 2, "--iso auto");
+    expectFailure(std::string(command) + " --iso some", 2, "--iso is a number or auto");
+  }
+  const Outcome automatic = run("mesh fog.vdb -o m.ply --iso auto");
+  EXPECT_EQ(automatic.exitCode, 0) << automatic.err;
+  EXPECT_NE(automatic.err.find("note: isovalue 0."), std::string::npos) << automatic.err;
+  expectFailure("check m.ply --against fog.vdb", 2, "--iso");
+  const Outcome given = run("mesh fog.vdb -o m.ply --iso 0.3 --json");
+  EXPECT_EQ(given.exitCode, 0);
+  EXPECT_EQ(given.err, "");
+  EXPECT_EQ(Json::parse(given.out).at("isovalue"), 0.3);
+}
+
+TEST_F(Usage, NamesTheGridThatItTook) {
+  writeShapes("all.vdb", {Shape::Sphere, Shape::Box, Shape::Torus});
+  const Outcome outcome = run("mesh all.vdb -o m.ply");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_NE(outcome.err.find("\"sphere\" was taken, one of 3"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.out.rfind("grid \"sphere\": ", 0), 0u) << outcome.out;
+  EXPECT_EQ(run("mesh all.vdb -o m.ply --grid box").err, "");
+  EXPECT_EQ(run("mesh all.vdb -o m.ply --quiet").err, "");
+}
+
+TEST_F(Usage, MeshesSeveralGrids) {
+  writeShapes("all.vdb", {Shape::Sphere, Shape::Box, Shape::Torus});
+  const Outcome outcome = run("mesh all.vdb -o m.glb --grid '*o*' --check --json");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const Json grids = Json::parse(outcome.out).at("grids");
+  ASSERT_EQ(grids.size(), 2u);
+  EXPECT_EQ(grids[0]["grid"], "box");
+  EXPECT_EQ(grids[1]["grid"], "torus");
+  EXPECT_EQ(grids[1]["check"]["euler_characteristic"], 0);
+  const Json document = documentOf("m.glb");
+  ASSERT_EQ(document["nodes"].size(), 2u);
+  EXPECT_EQ(document["nodes"][1]["name"], "torus");
+  EXPECT_EQ(document["scenes"][0]["nodes"], Json({0, 1}));
+  const std::size_t triangles =
+      grids[0]["triangles"].get<std::size_t>() + grids[1]["triangles"].get<std::size_t>();
+  EXPECT_EQ(readMesh(folder / "m.glb").triangleCount(), triangles);
+
+  EXPECT_EQ(run("mesh all.vdb -o m.obj --grid torus --grid box --quiet").exitCode, 0);
+  EXPECT_EQ(readMesh(folder / "m.obj").triangleCount(), triangles);
+  EXPECT_EQ(run("mesh all.vdb -o 'm_{}.ply' --grid '*' --quiet").exitCode, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "m_sphere.ply"));
+  EXPECT_EQ(readMesh(folder / "m_box.ply").triangleCount(), grids[0]["triangles"]);
+  expectFailure("mesh all.vdb -o n.ply --grid '*'", 2, "{}");
+  expectFailure("mesh all.vdb -o n.glb --grid 'x*'", 3, "\"sphere\", \"box\", \"torus\"");
+}
+
+TEST_F(Usage, SuggestsASubcommand) {
+  expectFailure("mehs s.vdb -o m.ply", 2, "did you mean mesh?");
+  expectFailure("vox", 2, "did you mean voxelize?");
+  expectFailure("help chnks", 2, "did you mean chunks?");
+  const Outcome help = run("help mesh");
+  EXPECT_EQ(help.exitCode, 0);
+  EXPECT_EQ(help.out, run("mesh --help").out);
+  EXPECT_NE(run("help").out.find("voxelize"), std::string::npos);
+}
+
+TEST_F(Usage, SaysWhatIsWrongInFewWords) {
+  makeSphere();
+  expectFailure("mesh s.vdb a b c -o m.ply", 2,
+                "unexpected arguments a b c (see tufa mesh --help)");
+  expectFailure("mesh", 2, "(see tufa mesh --help)");
+  expectFailure("lod s.vdb -o m.glb --scale -1", 2, "--scale: -1 is not a number above 0 (see");
+  expectFailure("make sphere --voxel 1e-6 -o v.vdb", 2, "--voxel: OpenVDB takes no voxels");
+  for (const char* command : {"mesh none.vdb -o m.ply", "check none.ply", "info none.vdb",
+                              "chunks --assemble none --lods all:0 -o m.ply"}) {
+    expectFailure(command, 3, ": No such file or directory\n");
+  }
+  EXPECT_EQ(run("mesh s.vdb -o m.ply --quiet --tolerance 0.005W").exitCode, 0);
+  const Outcome chunks = run("chunks s.vdb -o d --levels 1 --only 9,0,0 --only 0,0,0");
+  EXPECT_EQ(chunks.exitCode, 0);
+  EXPECT_NE(chunks.err.find("no surface in chunk 9,0,0"), std::string::npos) << chunks.err;
+}
+
+TEST_F(Usage, TellsOfFailuresInJson) {
+  makeSphere();
+  const auto errorOf = [&](const std::string& arguments, int exitCode) {
+    const Outcome outcome = run(arguments + " --json");
+    EXPECT_EQ(outcome.exitCode, exitCode);
+    const Json error = Json::parse(outcome.out).at("error");
+    EXPECT_EQ("tufa: " + error.at("message").get<std::string>() + "\n", outcome.err);
+    return error.at("code").get<std::string>();
+  };
+  EXPECT_EQ(errorOf("mesh none.vdb -o m.ply", 3), "unreadable_file");
+  EXPECT_EQ(errorOf("mesh s.vdb -o none/m.ply", 3), "unwritable_file");
+  EXPECT_EQ(errorOf("mesh s.vdb -o m.ply --grid x", 3), "unknown_grid");
+  EXPECT_EQ(errorOf("mesh s.vdb -o m.ply --iso 9", 3), "unsupported_grid");
+  EXPECT_EQ(errorOf("mesh s.vdb", 2), "invalid_argument");
+}
+
+TEST_F(Usage, WritesEmptyFramesIfAllowed) {
+  makeSphere();
+  writeGrids({openvdb::FloatGrid::create(1.0f)}, folder / "empty.vdb");
+  for (const char* volume : {"empty.vdb", "s.vdb --iso 9"}) {
+    for (const char* output : {"m.ply", "m.obj", "m.stl", "m.off", "m.glb"}) {
+      const Outcome outcome =
+          run(std::string("mesh ") + volume + " --allow-empty --check --json -o " + output);
+      EXPECT_EQ(outcome.exitCode, 0) << volume << " " << output << outcome.err;
+      EXPECT_EQ(Json::parse(outcome.out).at("triangles"), 0);
+      EXPECT_TRUE(std::filesystem::exists(folder / output));
+      std::filesystem::remove(folder / output);
+    }
+  }
+  EXPECT_EQ(run("lod s.vdb --iso 9 --allow-empty -o m.glb").exitCode, 0);
+}
+
+TEST_F(Usage, SaysInItsLastLineWhatItWrote) {
+  const auto lastLine = [&](const std::string& arguments) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << arguments << outcome.err;
+    return lastLineOf(outcome.out);
+  };
+  EXPECT_EQ(lastLine("make sphere --voxel 0.1 -o s.vdb").rfind("wrote s.vdb, ", 0), 0u);
+  EXPECT_EQ(lastLine("mesh s.vdb --check -o m.ply").rfind("wrote m.ply, ", 0), 0u);
+  EXPECT_EQ(lastLine("voxelize m.ply --voxel 0.1 -o v.vdb").rfind("wrote v.vdb, ", 0), 0u);
+  EXPECT_EQ(lastLine("lod s.vdb --levels 2 -o l.glb").rfind("wrote l.glb, ", 0), 0u);
+  EXPECT_EQ(lastLine("lod s.vdb --levels 2 --separate -o l.ply")
+                .rfind("wrote 2 files, l_LOD0.ply to l_LOD1.ply, ", 0),
+            0u);
+  EXPECT_EQ(lastLine("chunks s.vdb --levels 1 -o d").rfind("wrote 9 files to d, ", 0), 0u);
+  EXPECT_EQ(lastLine("chunks --assemble d --lods all:0 -o a.ply").rfind("wrote a.ply, ", 0), 0u);
+}
+
+TEST_F(Usage, MakeAndVoxelizeAreQuietOrSpeakJson) {
+  const Outcome made = run("make sphere --voxel 0.1 -o s.vdb --json");
+  EXPECT_EQ(Json::parse(made.out).at("output"), "s.vdb");
+  ASSERT_EQ(run("mesh s.vdb --quiet -o m.ply").exitCode, 0);
+  const Outcome voxelized = run("voxelize m.ply --voxel 0.1 -o v.vdb --json");
+  const Json json = Json::parse(voxelized.out);
+  EXPECT_EQ(json.at("file"), "m.ply");
+  EXPECT_GT(json.at("active_voxels"), 0);
+  for (const char* arguments : {"make sphere --voxel 0.1 -o s.vdb --quiet",
+                                "voxelize m.ply --voxel 0.1 -o v.vdb --quiet"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_EQ(outcome.out + outcome.err, "") << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace tufa

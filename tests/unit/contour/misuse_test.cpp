@@ -1,0 +1,158 @@
+// What a program may hand to the library by mistake: InvalidArgument, not a crash or endless work.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <tufa/chunks.h>
+#include <tufa/contour.h>
+#include <tufa/lod.h>
+#include <tufa/shapes.h>
+#include <tufa/voxelize.h>
+#include <limits>
+
+#include "support/expect_error.h"
+#include "support/scratch_folder.h"
+
+namespace tufa {
+namespace {
+
+using test::expectError;
+
+class Misuse : public ::testing::Test {
+ protected:
+  openvdb::FloatGrid::Ptr ball = [] {
+    ShapeOptions options;
+    options.voxelSize = 0.2;
+    return makeShape(Shape::Sphere, options);
+  }();
+  Mesh mesh = contour(*ball);
+  ChunkSink sink = [](const ChunkIndex&, Chunk&&) {};
+
+  template <class Work>
+  static void expectRefused(const std::string& part, Work&& work) {
+    expectError(ErrorCode::InvalidArgument, part, work);
+  }
+
+  /// For every call that takes these options.
+  void expectRefusedByAll(const std::string& part, const ContourOptions& options) {
+    LodOptions lods;
+    ChunkOptions chunks;
+    lods.contour = chunks.contour = options;
+    expectRefused(part, [&] { (void)contour(*ball, options); });
+    expectRefused(part, [&] { (void)buildLods(*ball, lods); });
+    expectRefused(part, [&] { (void)buildChunks(*ball, chunks, sink); });
+  }
+};
+
+TEST_F(Misuse, OfThreads) {
+  for (const int threads : {-1, 4097, 1000000000, std::numeric_limits<int>::max()}) {
+    ContourOptions options;
+    options.threads = threads;
+    expectRefusedByAll("threads is", options);
+    ShapeOptions shape;
+    shape.threads = threads;
+    expectRefused("threads is", [&] { (void)makeShape(Shape::Sphere, shape); });
+    VoxelizeOptions voxels{0.1, 3, threads, {}};
+    expectRefused("threads is", [&] { (void)voxelize(mesh, voxels); });
+  }
+}
+
+TEST_F(Misuse, OfLevelsOfLeaves) {
+  for (const int level : {-1, 32, 40, std::numeric_limits<int>::min()}) {
+    const std::string part = "level " + std::to_string(level);
+    expectRefused(part, [&] { (void)isRestricted({{Coord(0), level}}); });
+  }
+  EXPECT_TRUE(isRestricted({{Coord(0), 31}}));
+}
+
+TEST_F(Misuse, OfTheSink) {
+  expectRefused("no sink", [&] { (void)buildChunks(*ball, {}, nullptr); });
+}
+
+TEST_F(Misuse, OfNumbersOfLevels) {
+  LodOptions options;
+  for (const int levels : {0, -1, 101, 1000000000}) {
+    options.levels = levels;
+    expectRefused("1 to 100 levels", [&] { (void)buildLods(*ball, options); });
+  }
+  options.levels = 100;
+  EXPECT_FALSE(buildLods(*ball, options).levels.empty());
+  options.tolerances.assign(101, 1);
+  expectRefused("100 levels at most", [&] { (void)buildLods(*ball, options); });
+}
+
+TEST_F(Misuse, OfHalfWidths) {
+  for (const double width : {1001.0, 1e9, 0.5, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+    ShapeOptions shape;
+    shape.halfWidth = width;
+    expectRefused("half width", [&] { (void)makeShape(Shape::Sphere, shape); });
+    expectRefused("half width", [&] { (void)voxelize(mesh, {0.1, width, 0, {}}); });
+  }
+}
+
+TEST_F(Misuse, OfEnums) {
+  for (const int number : {-1, 17, 1000000000}) {
+    ContourOptions options;
+    options.inside = static_cast<Inside>(number);
+    expectRefusedByAll("has no meaning", options);
+    options = {};
+    options.ambiguity = static_cast<Ambiguity>(number);
+    expectRefusedByAll("has no meaning", options);
+    options = {};
+    options.normals = static_cast<Normals>(number);
+    expectRefusedByAll("has no meaning", options);
+    options = {};
+    options.nonFinite = static_cast<NonFinite>(number);
+    expectRefusedByAll("has no meaning", options);
+
+    const auto shape = static_cast<Shape>(number);
+    expectRefused("has no meaning", [&] { (void)makeShape(shape); });
+    expectRefused("has no meaning", [&] { (void)shapeDistance(shape, {0, 0, 0}); });
+    expectRefused("has no meaning", [&] { (void)shapeCreasePoints(shape, 0.1); });
+
+    const test::ScratchFolder folder;
+    const LodChain chain = buildLods(*ball, {});
+    LodWriteOptions writing;
+    writing.up = static_cast<UpAxis>(number);
+    expectRefused("has no meaning", [&] { writeLods(chain, folder / "m.glb", writing); });
+    writing = {};
+    writing.compression = static_cast<LodCompression>(number);
+    expectRefused("has no meaning", [&] { writeLods(chain, folder / "m.glb", writing); });
+    expectRefused("has no meaning", [&] {
+      (void)writeChunk({}, {}, (folder / "").string(), static_cast<ChunkFormat>(number));
+    });
+    EXPECT_EQ(folder.fileCount(), 0);
+  }
+}
+
+TEST_F(Misuse, OfFactorsAndTolerances) {
+  for (const double factor : {1e300, 1e7, 1.0, 0.0, -4.0, std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN()}) {
+    LodOptions lods;
+    lods.factor = factor;
+    expectRefused("factor", [&] { (void)buildLods(*ball, lods); });
+    ChunkOptions chunks;
+    chunks.factor = factor;
+    expectRefused("factor", [&] { (void)buildChunks(*ball, chunks, sink); });
+  }
+  LodOptions lods;
+  lods.tolerances = {0.1, 1e300};
+  expectRefused("tolerance must be from 0 to 1e+06", [&] { (void)buildLods(*ball, lods); });
+  ChunkOptions chunks;
+  chunks.levels = 16;
+  chunks.factor = 1e6;
+  EXPECT_EQ(buildChunks(*ball, chunks, sink).tolerances.back(), 1e6);
+}
+
+TEST_F(Misuse, OfAToleranceGrid) {
+  const auto frustum = openvdb::FloatGrid::create(1);
+  const openvdb::BBoxd box(openvdb::Vec3d(0), openvdb::Vec3d(100));
+  frustum->setTransform(openvdb::math::Transform::createFrustumTransform(box, 0.5, 10, 0.1));
+  ContourOptions options;
+  options.toleranceGrid = frustum;
+  expectRefusedByAll("is a frustum", options);
+}
+
+}  // namespace
+}  // namespace tufa

@@ -1,0 +1,134 @@
+#include "lod_run.h"
+
+#include <tufa/error.h>
+#include <tufa/io.h>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/vec3.h"
+#include "checker.h"
+#include "console.h"
+#include "lod_page.h"
+#include "progress_bar.h"
+#include "report.h"
+#include "volume.h"
+
+namespace tufa::tools {
+namespace {
+
+/// The smallest angle of all triangles, in degrees.
+double smallestAngle(const Mesh& mesh) {
+  constexpr double kDegrees = 180 / 3.14159265358979323846;
+  double smallest = 180;
+  for (const Triangle& t : triangulate(mesh)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto point = [&](std::size_t k) {
+        return Vec3(mesh.positions[t.vertices[(i + k) % 3]]);
+      };
+      const Vec3 a = point(1) - point(0), b = point(2) - point(0);
+      smallest = std::min(smallest, kDegrees * std::atan2(a.cross(b).length(), a.dot(b)));
+    }
+  }
+  return smallest;
+}
+
+LodOptions chainOptions(const LodArguments& arguments, const openvdb::GridBase& grid,
+                        ProgressBar& bar) {
+  LodOptions options = arguments.lod;
+  options.contour.isovalue = readIsovalue(arguments.isovalue, grid, arguments.input);
+  options.contour.tolerance = readTolerance("--tolerance", arguments.tolerance, grid);
+  for (const std::string& text : arguments.tolerances) {
+    options.tolerances.push_back(readTolerance("--tolerances", text, grid));
+  }
+  options.contour.progress = bar.callback();
+  return options;
+}
+
+LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
+  LodRun run;
+  std::shared_ptr<openvdb::GridBase> grid;
+  run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
+  run.gridName = nameOf(*grid);
+  if (!arguments.allowEmpty) requireVoxels(*grid, arguments.input);
+  const LodOptions options = chainOptions(arguments, *grid, bar);
+  run.dropping = options.allowTopologyChange;
+  run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
+  if (run.chain.levels.empty() && !run.chain.stopped.empty()) {
+    throw Error(ErrorCode::InvalidArgument, run.chain.stopped);
+  }
+  if (!arguments.quiet) {
+    noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
+    if (!arguments.grid) noteChoice(arguments.input, run.gridName);
+  }
+  if (!arguments.allowEmpty) {
+    requireSurface(run.chain.levels.empty() ? Mesh() : run.chain.levels[0].mesh,
+                   run.contour.isovalue, *grid, arguments.input);
+  }
+  if (arguments.report) {
+    ContourOptions uniform = options.contour;
+    uniform.uniform = true;
+    uniform.progress = bar.callback();
+    run.reference = contour(*grid, uniform);
+  }
+  grid.reset();
+
+  for (const Lod& lod : run.chain.levels) run.smallestAngles.push_back(smallestAngle(lod.mesh));
+  if (arguments.check) {
+    CheckOptions checkOptions;
+    checkOptions.threads = options.contour.threads;
+    run.checkSeconds = timed([&] {
+      const Progress progress = bar.callback();
+      const auto count = static_cast<double>(run.chain.levels.size());
+      for (std::size_t level = 0; level < run.chain.levels.size(); ++level) {
+        checkOptions.progress = [&](std::string_view stage, double fraction) {
+          return progress(stage, (static_cast<double>(level) + fraction) / count);
+        };
+        run.checks.push_back(check(run.chain.levels[level].mesh, checkOptions));
+      }
+    });
+  }
+  LodWriteOptions writing = arguments.writing;
+  writing.threads = options.contour.threads;
+  writing.progress = bar.callback();
+  run.writeSeconds = timed([&] { writeLods(run.chain, arguments.output, writing, &run.written); });
+  return run;
+}
+
+/// Of the calls that a run makes: how long each is likely to take.
+std::vector<double> callShares(const LodArguments& arguments) {
+  std::vector<double> shares{kContourShare};
+  if (arguments.report) shares.push_back(0.2 * kContourShare);  // the uniform mesh
+  if (arguments.check) shares.push_back(kCheckShare);
+  shares.push_back(kWriteShare);
+  if (arguments.report) shares.push_back(kCheckShare);  // pictures
+  return shares;
+}
+
+void writeReport(const LodRun& run, const LodArguments& arguments, ProgressBar& bar) {
+  LodPage page;
+  page.title = arguments.writing.name + ": levels of detail";
+  page.summary = arguments.input + (run.gridName.empty() ? "" : ", grid " + run.gridName) + ", " +
+                 formatCount(run.contour.activeVoxels) + " active voxels of " +
+                 formatNumber(run.chain.voxelSize) +
+                 " world units. Errors are distances to the uniform mesh of the grid.";
+  if (!run.chain.stopped.empty()) page.summary += " Note: " + run.chain.stopped + ".";
+  page.rows = tableOf(run);
+  page.headings = page.rows.front();
+  page.rows.erase(page.rows.begin());
+  page.yUp = arguments.writing.up == UpAxis::Y;
+  page.threads = arguments.lod.contour.threads;
+  page.progress = bar.callback();
+  writeLodPage(run.chain, run.reference, page, *arguments.report);
+}
+
+}  // namespace
+
+LodRun makeLods(const LodArguments& arguments) {
+  ProgressBar bar(arguments.quiet, callShares(arguments));
+  LodRun run = runStages(arguments, bar);
+  if (arguments.report) writeReport(run, arguments, bar);
+  return run;
+}
+
+}  // namespace tufa::tools

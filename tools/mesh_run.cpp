@@ -1,0 +1,149 @@
+#include "mesh_run.h"
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "checker.h"
+#include "console.h"
+#include "paths.h"
+#include "progress_bar.h"
+#include "volume.h"
+
+namespace tufa::tools {
+namespace {
+
+constexpr double kCreaseAngle = 40;
+constexpr double kNoCreases = 180;
+
+/// Whether the output's file name has a place for the name of a grid.
+bool hasBraces(const std::string& output) {
+  return std::filesystem::path(output).filename().string().find("{}") != std::string::npos;
+}
+
+/// The output with braces replaced by the grid's name, which may hold what a file name may not.
+std::string outputOf(const std::string& output, const std::string& grid) {
+  const std::filesystem::path path = output;
+  std::string name = path.filename().string();
+  const std::size_t braces = name.find("{}");
+  if (braces == std::string::npos) return output;
+  std::string part = grid.empty() ? "mesh" : grid;
+  for (char& c : part) {
+    if (c == '/' || c == '\0') c = '_';
+  }
+  name.replace(braces, 2, part);
+  return (path.parent_path() / name).string();
+}
+
+GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string>& name,
+                 ProgressBar& bar) {
+  GridRun run;
+  std::shared_ptr<openvdb::GridBase> grid;
+  run.readSeconds = timed([&] { grid = readVolume(arguments.input, name); });
+  run.grid = name.value_or(nameOf(*grid));
+  run.output = outputOf(arguments.output, run.grid);
+  if (!arguments.allowEmpty) requireVoxels(*grid, arguments.input);
+
+  ContourOptions options = arguments.contour;
+  options.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
+  options.tolerance = readTolerance("--tolerance", arguments.tolerance, *grid);
+  if (arguments.toleranceGrid) {
+    options.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
+  }
+  options.progress = bar.callback();
+  run.contourSeconds = timed([&] { run.mesh = contour(*grid, options, &run.contour); });
+  if (!arguments.quiet) noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
+  if (!arguments.allowEmpty) {
+    requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
+  }
+  return run;
+}
+
+void checkMesh(GridRun& run, const MeshArguments& arguments, ProgressBar& bar) {
+  // There is nothing to say of an empty mesh.
+  if (run.mesh.triangleCount() == 0) return;
+  CheckOptions options;
+  options.threads = arguments.contour.threads;
+  options.progress = bar.callback();
+  run.checkSeconds = timed([&] { run.check = check(run.mesh, options); });
+}
+
+WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, ProgressBar& bar) {
+  WriteOptions options;
+  if (!run.grid.empty()) options.name = run.grid;
+  options.creaseAngle =
+      arguments.creaseAngle.value_or(run.contour.distanceField ? kCreaseAngle : kNoCreases);
+  options.threads = arguments.contour.threads;
+  options.progress = bar.callback();
+  return options;
+}
+
+/// One file for all grids, or one for each where the name has braces.
+void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
+  if (run.grids.size() == 1 || hasBraces(arguments.output)) {
+    for (const GridRun& grid : run.grids) {
+      write(grid.mesh, grid.output, writeOptions(arguments, grid, bar));
+    }
+    return;
+  }
+  std::vector<NamedMesh> meshes;
+  for (GridRun& grid : run.grids) meshes.push_back({grid.grid, std::move(grid.mesh)});
+  writeMeshes(meshes, arguments.output, writeOptions(arguments, run.grids.front(), bar));
+  for (std::size_t i = 0; i < meshes.size(); ++i) run.grids[i].mesh = std::move(meshes[i].mesh);
+}
+
+/// One file holds several meshes in some formats only.
+void requireRoomForAll(const std::vector<std::string>& grids, const std::string& output) {
+  const std::string ending = endingOf(output);
+  if (grids.size() < 2 || hasBraces(output) || ending == ".glb" || ending == ".obj") return;
+  throw Error(ErrorCode::InvalidArgument,
+              output + " would hold " + std::to_string(grids.size()) +
+                  " meshes, as only .glb and .obj can; write {} in the file name for one file a "
+                  "grid");
+}
+
+/// Of the calls that a run makes: how long each is likely to take.
+std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids) {
+  std::vector<double> shares(grids, kContourShare);
+  if (arguments.check) shares.insert(shares.end(), grids, kCheckShare);
+  const bool oneFile = grids == 1 || !hasBraces(arguments.output);
+  shares.insert(shares.end(), oneFile ? 1 : grids, kWriteShare);
+  return shares;
+}
+
+}  // namespace
+
+void requireFeasible(const MeshArguments& arguments) {
+  if (arguments.check) requireChecker();
+  requireMeshEnding(arguments.output);
+  requireDistinct(arguments.output, {arguments.input});
+  requireWritable(arguments.output);
+}
+
+MeshRun meshFile(const MeshArguments& arguments) {
+  MeshRun run;
+  std::vector<std::string> names;
+  if (!arguments.grids.empty()) {
+    names = chooseGrids(arguments.input, arguments.grids);
+    requireRoomForAll(names, arguments.output);
+  }
+  ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, names.size())));
+  if (names.empty()) {
+    run.grids.push_back(meshGrid(arguments, {}, bar));
+    if (!arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);
+  } else {
+    for (const std::string& name : names) {
+      requireDistinct(outputOf(arguments.output, name), {arguments.input});
+      run.grids.push_back(meshGrid(arguments, name, bar));
+    }
+  }
+  if (arguments.check) {
+    for (GridRun& grid : run.grids) checkMesh(grid, arguments, bar);
+  }
+  run.writeSeconds = timed([&] { writeAll(run, arguments, bar); });
+  return run;
+}
+
+}  // namespace tufa::tools

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <tufa/check.h>
+#include <tufa/contour.h>
+#include <tufa/io.h>
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tufa::tools {
+
+/// What `tufa mesh` was asked for.
+struct MeshArguments {
+  std::string input;
+  std::string output;
+  std::vector<std::string> grids;  ///< names and patterns; none: the library chooses one
+  ContourOptions contour;
+  std::optional<std::string> isovalue;
+  std::string tolerance = "0.1";
+  std::optional<std::string> toleranceGrid;
+  std::optional<double> creaseAngle;  ///< degrees; unset: 40 where the field is a distance field
+  bool allowEmpty = false;
+  bool check = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// The mesh of one grid: what was found and how long its parts took.
+struct GridRun {
+  std::string grid;
+  std::string output;  ///< the file it went into
+  Mesh mesh;
+  ContourReport contour;
+  std::optional<CheckReport> check;
+  double readSeconds = 0;
+  double contourSeconds = 0;
+  double checkSeconds = 0;
+};
+
+/// The meshes of one file.
+struct MeshRun {
+  std::vector<GridRun> grids;
+  double writeSeconds = 0;
+};
+
+/// Refuses what cannot be done, before any work. Throws Error.
+void requireFeasible(const MeshArguments& arguments);
+
+/// Reads, meshes, checks and writes.
+[[nodiscard]] MeshRun meshFile(const MeshArguments& arguments);
+
+/// What a run did, for programs: the keys of its grid, or a list of them if there are several.
+[[nodiscard]] nlohmann::ordered_json toJson(const MeshRun& run, const MeshArguments& arguments);
+
+/// The same for people: some lines of text, the last one about what was written.
+[[nodiscard]] std::string describe(const MeshRun& run);
+
+}  // namespace tufa::tools

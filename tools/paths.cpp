@@ -1,0 +1,78 @@
+#include "paths.h"
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <cstdint>
+#include <system_error>
+
+#include "console.h"
+
+namespace tufa::tools {
+namespace {
+
+bool isPipeOrDevice(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  return std::filesystem::exists(status) && std::filesystem::is_other(status);
+}
+
+}  // namespace
+
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  // Nothing is lost in a pipe or a device that is read from and written to.
+  if (isPipeOrDevice(a)) return false;
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error) && !error) return true;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(a), error) ==
+         std::filesystem::weakly_canonical(std::filesystem::absolute(b), error);
+}
+
+void requireDistinct(const std::filesystem::path& output,
+                     const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    if (!sameFile(output, input)) continue;
+    const std::string same = output == input ? "" : ", which is the same file as " + input.string();
+    throw Error(ErrorCode::InvalidArgument,
+                "the input would be overwritten by the output " + output.string() + same);
+  }
+}
+
+void requireVolumeEnding(const std::filesystem::path& path) {
+  if (endingOf(path) == ".vdb" || isPipeOrDevice(path)) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "a volume is written as .vdb, which " + path.string() + " does not end in");
+}
+
+void requirePageEnding(const std::filesystem::path& path) {
+  const std::string ending = endingOf(path);
+  if (ending == ".html" || ending == ".htm" || isPipeOrDevice(path)) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "a page is written as .html, which " + path.string() + " does not end in");
+}
+
+std::string endingOf(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return ending;
+}
+
+std::string describeWritten(const std::vector<std::filesystem::path>& files, double seconds) {
+  std::uintmax_t bytes = 0;
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error) bytes += size;
+  }
+  std::string text = "wrote ";
+  if (files.size() == 1) text += files.front().string();
+  if (files.size() > 1) {
+    text += formatCount(files.size()) + " files, " + files.front().string() + " to " +
+            files.back().string();
+  }
+  if (bytes > 0) text += ", " + formatCount(bytes) + " bytes";
+  return text + ", in " + shortNumber(seconds) + " s\n";
+}
+
+}  // namespace tufa::tools

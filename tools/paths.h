@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tufa::tools {
+
+// What is refused of the names of files before anything is read.
+
+/// Whether two names lead to one file, be it there or not. Pipes and devices can be shared.
+[[nodiscard]] bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// Throws Error(InvalidArgument) if the output is one of the inputs, be it through links or another
+/// way to spell its name.
+void requireDistinct(const std::filesystem::path& output,
+                     const std::vector<std::filesystem::path>& inputs);
+
+/// Throws Error(InvalidArgument) unless the name of a volume to write ends in .vdb, or is that of a
+/// pipe or a device.
+void requireVolumeEnding(const std::filesystem::path& path);
+
+/// Throws Error(InvalidArgument) unless the name of a page to write ends in .html or .htm.
+void requirePageEnding(const std::filesystem::path& path);
+
+/// The ending of a file name in small letters, with its point.
+[[nodiscard]] std::string endingOf(const std::filesystem::path& path);
+
+/// The last line of a summary: "wrote OUT, 12,345 bytes, in 0.1 s", or how many files and which. No
+/// size for pipes and devices.
+[[nodiscard]] std::string describeWritten(const std::vector<std::filesystem::path>& files,
+                                          double seconds);
+
+}  // namespace tufa::tools
