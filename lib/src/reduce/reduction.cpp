@@ -27,6 +27,11 @@ constexpr Index kLittle = 16;
 constexpr float kFirstTolerance = 0.02f;
 constexpr float kLeastStep = 1.06f;
 constexpr float kMostStep = 1.6f;
+// Where a tolerance gave nothing it is doubled. Where that gave nothing so often, above so many
+// voxels, it is the topology or the shape that is in the way.
+constexpr float kStuckStep = 2;
+constexpr int kMostStuck = 3;
+constexpr float kNarrowTolerance = 2;
 // What was beyond the tolerance is held within so many tolerances and voxels.
 constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 2;
@@ -104,6 +109,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   limits.sliverShare = options_.sliverShare;
   limits.turnCosine = std::cos(options_.mostTurn * kRadians);
   limits.flips = options_.flips;
+  limits.isLoose = count > 0;  // its error is measured, and not held to a tolerance
   limits.switchedOff = options_.switchedOff;
   for (int i = 0, left = phases; left > 0 && triangleCount() > count; ++i, --left) {
     const bool isLast = left == 1 && phases == options_.phases;
@@ -139,16 +145,19 @@ void Reduction::buildParts() {
 float Reduction::toCount(Index count, float mostTolerance) {
   float tolerance = std::max(tolerance_, kFirstTolerance);
   trees_.clear(), nextTree_ = 0;
-  for (;;) {
-    reduce(std::min(tolerance, mostTolerance), count, options_.phases);
-    if (triangleCount() <= count + 1 || tolerance >= mostTolerance) {
-      measure(tolerance_);
-      return std::min(tolerance, mostTolerance);
-    }
+  for (int stuck = 0;;) {
+    tolerance = std::min(tolerance, mostTolerance);
+    const Index before = triangleCount();
+    reduce(tolerance, count, options_.phases);
+    stuck = triangleCount() == before ? stuck + 1 : 0;
+    if (triangleCount() <= count + 1 || tolerance >= mostTolerance) break;
+    if (stuck == kMostStuck && tolerance > kNarrowTolerance) break;
     const float ratio =
         static_cast<float>(triangleCount()) / static_cast<float>(std::max<Index>(count, 1));
-    tolerance *= std::clamp(std::pow(ratio, 0.4f), kLeastStep, kMostStep);
+    tolerance *= stuck > 0 ? kStuckStep : std::clamp(std::pow(ratio, 0.4f), kLeastStep, kMostStep);
   }
+  measure(tolerance_);
+  return triangleCount() <= count + 1 ? tolerance : mostTolerance;
 }
 
 // The collapses that a phase may still make, shared among parts by their inner vertices.
