@@ -22,6 +22,7 @@
 #include "number.h"
 #include "paths.h"
 #include "progress_bar.h"
+#include "staged_folder.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -87,15 +88,6 @@ void requireWritableFolder(const std::filesystem::path& folder) {
   requireWritable(std::filesystem::is_directory(folder) ? folder / "chunks.json" : folder);
 }
 
-/// Makes the folder if it is not there, or throws Error(UnwritableFile).
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directory(folder, error);
-  if (!error) return;
-  throw Error(ErrorCode::UnwritableFile,
-              "cannot make the folder " + folder + ": " + error.message());
-}
-
 /// Adds the chunks of an earlier run that this one has not built again.
 void keepOthers(ChunkIndex& index, const std::string& folder) {
   if (!std::filesystem::exists(std::filesystem::path(folder) / "chunks.json")) return;
@@ -133,11 +125,12 @@ ChunksRun build(const ChunksArguments& arguments) {
   requireVoxels(*grid, arguments.input);
   const ChunkOptions options = chunkOptions(arguments, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
-  std::map<tufa::Coord, std::vector<std::string>> files;
+  std::map<tufa::Coord, std::vector<ChunkFile>> files;
+  std::optional<StagedFolder> staged;
   const ChunkSink sink = [&](const ChunkIndex& index, Chunk&& chunk) {
     run.writeSeconds += timed([&] {
-      makeFolder(arguments.output);
-      files[chunk.index] = writeChunk(index, chunk, arguments.output, format);
+      if (!staged) staged.emplace(arguments.output);
+      files[chunk.index] = writeChunk(index, chunk, staged->path(), format);
     });
   };
   run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
@@ -148,16 +141,20 @@ ChunksRun build(const ChunksArguments& arguments) {
   }
   noteMissing(run.index, options.only);
   for (ChunkEntry& chunk : run.index.chunks) {
-    const std::vector<std::string>& names = files.at(chunk.index);
-    for (std::size_t i = 0; i < names.size(); ++i) chunk.levels[i].file = names[i];
+    const std::vector<ChunkFile>& made = files.at(chunk.index);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      chunk.levels[i].file = made[i].name;
+      chunk.levels[i].checksum = made[i].checksum;
+    }
   }
   if (options.only.empty() && run.index.chunks.empty()) {
     requireSurface({}, run.contour.isovalue, *grid, arguments.input);
   }
-  makeFolder(arguments.output);
   ChunkIndex all = run.index;
   if (!options.only.empty()) keepOthers(all, arguments.output);
-  writeChunkIndex(all, arguments.output);
+  if (!staged) staged.emplace(arguments.output);
+  writeChunkIndex(all, staged->path());
+  staged->commit("chunks.json");
   return run;
 }
 

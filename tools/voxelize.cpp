@@ -71,6 +71,11 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen) {
   voxelize
       ->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")
       ->capture_default_str();
+  voxelize
+      ->add_option("--band-voxels", options.bandVoxels,
+                   "most voxels of the band, in estimate from the mesh's area")
+      ->check(above0())
+      ->capture_default_str();
   addThreadsOption(*voxelize, options.threads);
   voxelize->add_flag("--json", arguments->json, "one JSON object on standard output");
   voxelize->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");

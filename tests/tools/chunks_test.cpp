@@ -5,7 +5,9 @@
 #include <tufa/chunks.h>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 
 #include "tools/command_fixture.h"
@@ -112,6 +114,57 @@ TEST_F(ChunksCommand, MakesChunksAloneAsTheyAreTogether) {
     EXPECT_EQ(readBytes(folder / "d" / name), readBytes(folder / "together" / name)) << name;
   }
   expectFailure("chunks v.vdb -o d --chunk 16 --levels 2 --only 0,0,0", 2, "of other options");
+}
+
+TEST_F(ChunksCommand, CancelledRunsLeaveTheFirstResult) {
+  makeChunks("--quiet");
+  const auto contents = [&] {
+    std::map<std::string, std::string> files;
+    for (const std::string& name : namesIn("d")) files[name] = readBytes(folder / "d" / name);
+    return files;
+  };
+  const auto first = contents();
+  const std::string second = "chunks v.vdb -o d --chunk 16 --levels 3 --tolerance 0.3 --quiet";
+  ASSERT_EQ(run(second).exitCode, 0);
+  const auto replaced = contents();
+  makeChunks("--quiet");
+  int cancelled = 0;
+  for (int milliseconds = 5; milliseconds <= 400; milliseconds += milliseconds / 4 + 5) {
+    const std::string before =
+        "timeout --preserve-status -s INT " + std::to_string(milliseconds * 1e-3) + " ";
+    const int exitCode = run(second, "", before).exitCode;
+    if (exitCode == 0) {
+      EXPECT_EQ(contents(), replaced);
+      makeChunks("--quiet");
+      continue;
+    }
+    ++cancelled;
+    ASSERT_EQ(contents(), first) << milliseconds;
+    std::filesystem::remove_all(folder / "new");
+    const std::string fresh = "chunks v.vdb -o new --chunk 16 --levels 3 --quiet";
+    if (run(fresh, "", before).exitCode != 0) {
+      EXPECT_FALSE(std::filesystem::exists(folder / "new"));
+    }
+  }
+  EXPECT_GT(cancelled, 0);
+}
+
+/// Whenever it comes, SIGKILL leaves one of the two results or a mixture that is told.
+TEST_F(ChunksCommand, KilledRunsLeaveNoMixtureUntold) {
+  makeChunks("--quiet");
+  const std::string second = "chunks v.vdb -o d --chunk 16 --levels 3 --tolerance 0.3 --quiet";
+  std::mt19937 random(1);
+  for (int n = 0; n < 100; ++n) {
+    const double seconds = 1e-3 * static_cast<double>(random() % 300);
+    run(second + (n % 2 == 0 ? "" : " --format ply"), "",
+        "timeout -s KILL " + std::to_string(seconds) + " ");
+    const Outcome outcome = run("chunks --assemble d --lods all:0 -o m.ply --check --quiet");
+    EXPECT_TRUE(
+        outcome.exitCode == 0 ||
+        (outcome.exitCode == 3 && outcome.err.find("another checksum") != std::string::npos))
+        << outcome.exitCode << " " << outcome.err;
+    if (outcome.exitCode != 0) makeChunks("--quiet");
+  }
 }
 
 TEST_F(ChunksCommand, RefusesWhatItCannotDo) {

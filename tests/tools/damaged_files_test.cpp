@@ -12,58 +12,22 @@
 #include <vector>
 
 #include "tools/command_fixture.h"
+#include "tools/limited_run.h"
 
 namespace tufa {
 namespace {
 
+using test::kSanitized;
 using test::readBytes;
 using test::ScratchFolder;
 using test::writeBytes;
 
-/// A sanitizer takes terabytes of addresses, and time.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
 class DamagedFiles : public ::testing::Test {
  protected:
-  struct Outcome {
-    int exitCode = -1;  ///< -1 for a signal
-    double cpuSeconds = 0;
-    std::string err;
-  };
+  using Outcome = test::LimitedOutcome;
 
-  /// Runs the command under the limits. The limit of time ends a hang.
   Outcome run(const std::vector<std::string>& words) {
-    const std::string errors = folder / "errors";
-    const pid_t child = ::fork();
-    if (child == 0) {
-      constexpr rlim_t kBytes = rlim_t{1} << 30;
-      constexpr rlim_t kSeconds = kSanitized ? 60 : 5;
-      const rlimit addresses{kBytes, kBytes};
-      const rlimit seconds{kSeconds, kSeconds};
-      if (!kSanitized) ::setrlimit(RLIMIT_AS, &addresses);
-      ::setrlimit(RLIMIT_CPU, &seconds);
-      ::alarm(kSanitized ? 600 : 120);  // a wait for something that never comes takes no CPU time
-      std::vector<char*> arguments;
-      std::vector<std::string> copies = words;
-      for (std::string& word : copies) arguments.push_back(word.data());
-      arguments.push_back(nullptr);
-      if (::freopen(errors.c_str(), "w", stderr) == nullptr) ::_exit(126);
-      if (::freopen("/dev/null", "w", stdout) == nullptr) ::_exit(126);
-      ::execv(TUFA_COMMAND, arguments.data());
-      ::_exit(127);
-    }
-    int status = 0;
-    rusage usage{};
-    ::wait4(child, &status, 0, &usage);
-    const auto seconds = [](const timeval& time) {
-      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            seconds(usage.ru_utime) + seconds(usage.ru_stime), readBytes(errors)};
+    return test::runLimited(words, folder / "errors");
   }
 
   std::vector<std::string> commandFor(const std::string& file) {

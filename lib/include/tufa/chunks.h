@@ -71,6 +71,7 @@ struct Chunk {
 /// What is known of one LOD of a chunk without its mesh.
 struct ChunkLevelEntry {
   std::string file;                     ///< relative to the folder; empty if not written
+  std::string checksum;                 ///< of the file, as writeChunk() gives it; empty: unknown
   std::size_t vertices = 0;             ///< with those of both kinds of strips
   std::size_t interiorTriangles = 0;    ///< of ChunkLevel::interior
   std::size_t regularTriangles = 0;     ///< of all six regular strips
@@ -153,10 +154,16 @@ enum class ChunkFormat {
   Ply,  ///< a face property `part`: 0 the interior, 1 to 6 regular strips, 7 to 12 transition ones
 };
 
-/// Writes the meshes of a chunk into a folder, one file for each LOD, and returns their names,
-/// relative to it. Each file appears whole or not at all. Throws Error(UnwritableFile).
-TUFA_API std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
-                                             const std::string& folder, ChunkFormat format);
+/// A file of a chunk.
+struct ChunkFile {
+  std::string name;      ///< relative to the folder; empty if the LOD has no triangles
+  std::string checksum;  ///< of its bytes, FNV-1a of 64 bits, in hexadecimal digits
+};
+
+/// Writes the meshes of a chunk into a folder and returns the files, one for each LOD. Each appears
+/// whole or not at all. Throws Error(UnwritableFile).
+TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
+                                           const std::string& folder, ChunkFormat format);
 
 /// Writes chunks.json. Throws Error(UnwritableFile).
 TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
@@ -164,7 +171,8 @@ TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder
 /// Reads chunks.json. Throws Error(UnreadableFile).
 [[nodiscard]] TUFA_API ChunkIndex readChunkIndex(const std::string& folder);
 
-/// Reads the meshes of a chunk back, without seams. Throws Error(UnreadableFile).
+/// Reads the meshes of a chunk back, without seams. Throws Error(UnreadableFile), also for a file
+/// that is another one than chunks.json lists.
 [[nodiscard]] TUFA_API Chunk readChunk(const ChunkIndex& index, std::size_t chunk,
                                        const std::string& folder);
 

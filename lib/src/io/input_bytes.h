@@ -19,6 +19,9 @@ class InputBytes {
   [[nodiscard]] std::string_view view() const { return {bytes_.get(), size_}; }
   [[nodiscard]] std::size_t size() const { return size_; }
 
+  /// The file's name.
+  [[nodiscard]] std::string name() const { return path_.string(); }
+
   /// Throws Error(UnreadableFile) that names the file and the cause.
   [[noreturn]] void fail(const std::string& cause) const;
   [[noreturn]] void failAtByte(std::size_t offset, const std::string& cause) const;

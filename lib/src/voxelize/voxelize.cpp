@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <thread>
 
 #include "base/job.h"
 #include "base/lattice_range.h"
 #include "base/number_text.h"
+#include "base/vec3.h"
 
 namespace tufa {
 namespace {
@@ -98,6 +100,25 @@ void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
                   base::numberText(kLimit));
 }
 
+/// Throws for bands of more voxels than the options allow.
+void requireUsableBand(const Mesh& mesh, const VoxelizeOptions& options) {
+  double area = 0;
+  for (const Triangle& t : triangulate(mesh)) {
+    const auto corner = [&](std::size_t k) {
+      return Vec3(mesh.positions[t.vertices[k]]) / options.voxelSize;
+    };
+    area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).length() / 2;
+  }
+  // Around faces, and around a mesh much smaller than the band is wide.
+  const double ball = 4.0 / 3 * std::numbers::pi * std::pow(options.halfWidth, 3);
+  const double voxels = 2 * options.halfWidth * area + ball;
+  if (voxels <= options.bandVoxels) return;
+  throw Error(ErrorCode::LimitExceeded,
+              "the band around the mesh has about " + base::numberText(voxels) +
+                  " voxels, more than " + base::numberText(options.bandVoxels) +
+                  "; take larger voxels, or raise the limit (--band-voxels)");
+}
+
 }  // namespace
 
 openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
@@ -108,6 +129,7 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   }
   requireUsableFaces(mesh);
   requireUsableExtent(mesh, options);
+  requireUsableBand(mesh, options);
   openvdb::initialize();
 
   ProgressInterrupter interrupter(options.progress);

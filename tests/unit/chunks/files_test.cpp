@@ -22,8 +22,12 @@ class ChunkFiles : public ::testing::Test {
  protected:
   void write(ChunkFormat format) {
     for (std::size_t i = 0; i < chunks.size(); ++i) {
-      const std::vector<std::string> names = writeChunk(index, chunks[i], name, format);
-      for (std::size_t k = 0; k < names.size(); ++k) index.chunks[i].levels[k].file = names[k];
+      const std::vector<ChunkFile> files = writeChunk(index, chunks[i], name, format);
+      for (std::size_t k = 0; k < files.size(); ++k) {
+        index.chunks[i].levels[k].file = files[k].name;
+        // Those who test other guards leave this one out.
+        if (summed) index.chunks[i].levels[k].checksum = files[k].checksum;
+      }
     }
     writeChunkIndex(index, name);
   }
@@ -52,6 +56,7 @@ class ChunkFiles : public ::testing::Test {
     }
   }
 
+  bool summed = false;
   const ScratchFolder folder;
   const std::string name = (folder / "").string();
   std::vector<Chunk> chunks = test::makeDrum();
@@ -240,6 +245,24 @@ TEST_F(ChunkFiles, IndexThatSaysWhatCannotBeIsRefused) {
   expectUnreadable("no list of chunks");
   writeBytes(folder / "chunks.json", "[");
   expectUnreadable("its JSON is damaged");
+}
+
+/// The counts of two runs may be the same.
+TEST_F(ChunkFiles, OfAnotherRunAreToldByTheirChecksum) {
+  for (const ChunkFormat format : {ChunkFormat::Glb, ChunkFormat::Ply}) {
+    summed = true;
+    write(format);
+    const std::filesystem::path file = folder / index.chunks[0].levels[0].file;
+    const std::string bytes = readBytes(file);
+    EXPECT_EQ(readChunk(readChunkIndex(name), 0, name).levels[0].positions,
+              chunks[0].levels[0].positions);
+    std::string other = bytes;
+    other[other.size() - 1] ^= 1;
+    writeBytes(file, other);
+    expectUnreadable("another checksum than chunks.json says");
+    writeBytes(file, bytes);
+    static_cast<void>(readChunk(readChunkIndex(name), 0, name));
+  }
 }
 
 TEST_F(ChunkFiles, IndexOfDeepJsonIsRefused) {

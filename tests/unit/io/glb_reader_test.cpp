@@ -91,5 +91,31 @@ TEST(GlbReader, TakesWholeNumbersOnlyForCounts) {
   expectUnreadable("m.glb", glbTriangle({.scene = "18446744073709551615"}), "damaged");
 }
 
+/// 20,000 parts of one accessor claimed 48 GB.
+TEST(GlbReader, BoundsWhatAFewBytesMayTake) {
+  std::string binary;
+  constexpr std::size_t kVertices = 10000;
+  for (std::size_t n = 0; n < 3 * kVertices; ++n) binary += test::bytesOf(static_cast<float>(n));
+  const std::string count = std::to_string(kVertices);
+  const auto document = [&](std::size_t parts, std::size_t nodes) {
+    std::string json = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0)";
+    for (std::size_t n = 1; n < nodes; ++n) json += "," + std::to_string(n);
+    json += R"(]}],"nodes":[{"mesh":0})";
+    for (std::size_t n = 1; n < nodes; ++n) json += R"(,{"mesh":0})";
+    json += R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}})";
+    for (std::size_t n = 1; n < parts; ++n) json += R"(,{"attributes":{"POSITION":0}})";
+    json += R"(]}],"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
+            R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(binary.size()) +
+            R"(}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)" +
+            count + "}]}";
+    return glbOf(json, binary);
+  };
+  for (const auto& [parts, nodes] : {std::pair{20000U, 1U}, {1U, 20000U}, {200U, 100U}}) {
+    test::expectError(ErrorCode::LimitExceeded, "100 times as many as the file has",
+                      [&] { (void)readText("m.glb", document(parts, nodes)); });
+  }
+  EXPECT_EQ(readText("m.glb", document(13, 2)).positions.size(), 26 * kVertices);
+}
+
 }  // namespace
 }  // namespace tufa

@@ -94,5 +94,23 @@ TEST(Voxelize, CanBeCancelled) {
   expectError(ErrorCode::Cancelled, "cancelled", [&] { (void)voxelize(makeCube(), options); });
 }
 
+/// One vertex far away took 2.3 GB.
+TEST(Voxelize, RefusesBandsOfTooManyVoxels) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles = {Triangle(0, 2, 1), Triangle(0, 1, 3), Triangle(1, 2, 3), Triangle(2, 0, 3)};
+  VoxelizeOptions options;
+  options.voxelSize = 0.1;
+  EXPECT_GT(voxelize(mesh, options)->activeVoxelCount(), 0U);
+  mesh.positions[3] = {0, 0, 1e6};
+  expectError(ErrorCode::LimitExceeded, "--band-voxels", [&] { (void)voxelize(mesh, options); });
+  mesh.positions[3] = {0, 0, 1};
+  options.halfWidth = 1000;
+  expectError(ErrorCode::LimitExceeded, "--band-voxels", [&] { (void)voxelize(mesh, options); });
+  options.halfWidth = 3;
+  options.bandVoxels = 100;
+  expectError(ErrorCode::LimitExceeded, "more than 100", [&] { (void)voxelize(mesh, options); });
+}
+
 }  // namespace
 }  // namespace tufa

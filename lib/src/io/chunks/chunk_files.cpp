@@ -9,6 +9,7 @@
 
 #include "base/known_enum.h"
 #include "base/single_precision.h"
+#include "io/checksum.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb.h"
 #include "io/mesh/mesh_format.h"
@@ -41,6 +42,26 @@ class Bytes {
   std::string bytes_;
 };
 
+/// A file and the checksum of what goes into it.
+class SummedFile {
+ public:
+  explicit SummedFile(const std::filesystem::path& path) : file_(path) {}
+
+  void write(std::string_view bytes) {
+    checksum_.add(bytes);
+    file_.write(bytes.data(), bytes.size());
+  }
+  /// Gives the file its name; its checksum.
+  [[nodiscard]] std::string commit() {
+    file_.commit();
+    return checksum_.text();
+  }
+
+ private:
+  io::OutputFile file_;
+  io::Checksum checksum_;
+};
+
 std::size_t triangleCount(const ChunkLevel& level) {
   std::size_t count = 0;
   for (std::size_t part = 0; part < kChunkParts; ++part) count += io::partOf(level, part).size();
@@ -68,10 +89,9 @@ class GlbBuilder {
     json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
   }
 
-  void write(io::OutputFile& file) const {
-    const std::string head = io::glb::head(json_, binary_.size());
-    file.write(head.data(), head.size());
-    file.write(binary_.text().data(), binary_.size());
+  void write(SummedFile& file) const {
+    file.write(io::glb::head(json_, binary_.size()));
+    file.write(binary_.text());
   }
 
  private:
@@ -167,7 +187,7 @@ std::string plyHeader(const ChunkLevel& level, bool precise) {
   return header + "property list uchar int vertex_indices\nproperty uchar part\nend_header\n";
 }
 
-void writePly(const ChunkLevel& level, io::OutputFile& file) {
+void writePly(const ChunkLevel& level, SummedFile& file) {
   const bool precise = !std::all_of(level.positions.begin(), level.positions.end(),
                                     [](const Position& p) { return p == base::toSingle(p); });
   Bytes bytes;
@@ -190,23 +210,22 @@ void writePly(const ChunkLevel& level, io::OutputFile& file) {
       bytes.add(static_cast<std::uint8_t>(part));
     }
   }
-  const std::string header = plyHeader(level, precise);
-  file.write(header.data(), header.size());
-  file.write(bytes.text().data(), bytes.size());
+  file.write(plyHeader(level, precise));
+  file.write(bytes.text());
 }
 
 }  // namespace
 
-std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
-                                    const std::string& folder, ChunkFormat format) {
+std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
+                                  const std::string& folder, ChunkFormat format) {
   base::requireKnown(format, ChunkFormat::Ply, "the format of chunks");
-  std::vector<std::string> names;
+  std::vector<ChunkFile> files;
   for (std::size_t number = 0; number < chunk.levels.size(); ++number) {
     const ChunkLevel& level = chunk.levels[number];
-    std::string& name = names.emplace_back();
+    ChunkFile& made = files.emplace_back();
     if (triangleCount(level) == 0) continue;
-    name = io::chunkName(chunk.index, number) + (format == ChunkFormat::Glb ? ".glb" : ".ply");
-    io::OutputFile file(std::filesystem::path(folder) / name);
+    made.name = io::chunkName(chunk.index, number) + (format == ChunkFormat::Glb ? ".glb" : ".ply");
+    SummedFile file(std::filesystem::path(folder) / made.name);
     if (format == ChunkFormat::Glb) {
       GlbBuilder builder(index, level);
       builder.build(chunk, number);
@@ -214,9 +233,9 @@ std::vector<std::string> writeChunk(const ChunkIndex& index, const Chunk& chunk,
     } else {
       writePly(level, file);
     }
-    file.commit();
+    made.checksum = file.commit();
   }
-  return names;
+  return files;
 }
 
 }  // namespace tufa

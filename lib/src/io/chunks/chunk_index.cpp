@@ -22,6 +22,7 @@ Json toJson(const Position& p) { return Json::array({p.x, p.y, p.z}); }
 
 Json toJson(const ChunkLevelEntry& level) {
   return {{"file", level.file},
+          {"checksum", level.checksum},
           {"vertices", level.vertices},
           {"triangles",
            {{"interior", level.interiorTriangles},
@@ -139,6 +140,7 @@ class IndexReader {
     require(entry.file.find('/') == std::string::npos && entry.file != "." && entry.file != ".." &&
                 entry.file.find('\0') == std::string::npos,
             "a file is not named by its name alone");
+    entry.checksum = json.value("checksum", "");
     entry.vertices = count(json.at("vertices"));
     entry.interiorTriangles = count(json.at("triangles").at("interior"));
     entry.regularTriangles = count(json["triangles"].at("regular"));

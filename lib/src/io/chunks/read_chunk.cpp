@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 
+#include "io/checksum.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb_file.h"
 #include "io/mesh/mesh_format.h"
@@ -79,6 +80,15 @@ void requireInside(const std::filesystem::path& path, const std::filesystem::pat
               "cannot read " + path.string() + ": it is a link out of the folder of chunks");
 }
 
+/// Throws Error(UnreadableFile) if the file is another one than chunks.json lists.
+void requireListed(const ChunkLevelEntry& entry, const io::InputBytes& input) {
+  if (entry.checksum.empty()) return;  // of a program that knows none
+  io::Checksum checksum;
+  checksum.add(input.view());
+  if (checksum.text() == entry.checksum) return;
+  input.fail("it has another checksum than chunks.json says: it is damaged, or of another run");
+}
+
 /// Whether the sizes of a mesh are those in chunks.json.
 bool matches(const ChunkLevel& level, const ChunkLevelEntry& entry) {
   const auto sizeOf = [](const auto& strips) {
@@ -107,6 +117,7 @@ ChunkLevel readLevel(const ChunkIndex& index, const ChunkLevelEntry& entry,
   const std::filesystem::path path = std::filesystem::path(folder) / entry.file;
   requireInside(path, folder);
   const io::InputBytes input(path);
+  requireListed(entry, input);
   if (path.extension() == ".ply") {
     readPly(input, level);
   } else {

@@ -1,5 +1,7 @@
 #include "io/gltf/glb_file.h"
 
+#include <tufa/error.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -41,6 +43,21 @@ File::File(const InputBytes& input) : input_(input) {
   if (!document_.is_object()) input_.fail("it has no JSON chunk");
 }
 
+void File::takeMemory(std::size_t count, std::size_t elementBytes) {
+  constexpr std::uint64_t kMostRatio = 100;
+  constexpr std::uint64_t kAlways = std::uint64_t{64} << 20;
+  const std::uint64_t most = std::max(kAlways, kMostRatio * input_.size());
+  // Not their product, which may overflow.
+  if (count <= (most - takenBytes_) / elementBytes) {
+    takenBytes_ += count * elementBytes;
+    return;
+  }
+  throw Error(ErrorCode::LimitExceeded,
+              "cannot read " + input_.name() + ": its meshes take more than " +
+                  std::to_string(most) + " bytes, " + std::to_string(kMostRatio) +
+                  " times as many as the file has: too many nodes or parts share them");
+}
+
 std::uint32_t File::word(std::size_t offset) const {
   if (offset + 4 > input_.size()) input_.failAtByte(offset, "the file ends too early: truncated");
   std::uint32_t value = 0;
@@ -75,6 +92,7 @@ Vec3 File::pointAt(const View& view, std::size_t n) const {
 std::vector<std::uint32_t> File::indicesOf(const nlohmann::json& accessorIndex,
                                            std::size_t positionCount) {
   const View view = viewOf(accessorIndex, "SCALAR", 1);
+  takeMemory(view.count, sizeof(std::uint32_t));
   std::vector<std::uint32_t> indices;
   indices.reserve(view.count);
   for (std::size_t n = 0; n < view.count; ++n) {
@@ -112,7 +130,10 @@ std::string_view File::bytesOf(std::size_t index) {
   if (!view.contains("extensions") || !view["extensions"].contains(name)) return partOfBinary(view);
   const nlohmann::json& packed = view["extensions"][name];
   const auto [found, isNew] = unpacked_.try_emplace(index);
-  if (isNew) found->second = unpackView(packed, partOfBinary(packed), input_);
+  if (isNew) {
+    found->second = unpackView(packed, partOfBinary(packed), input_);
+    takeMemory(found->second.size(), 1);
+  }
   return found->second;
 }
 

@@ -29,6 +29,11 @@ class File {
 
   [[nodiscard]] const nlohmann::json& document() const { return document_; }
 
+  /// To be called before memory is taken for what the file says. A few bytes can name one accessor
+  /// many times, or unpack to many: throws Error(LimitExceeded) where all that was taken is more
+  /// than 100 times the size of the file, and more than 64 MB.
+  void takeMemory(std::size_t count, std::size_t elementBytes);
+
   /// The elements of an accessor, all of them inside its buffer view.
   [[nodiscard]] View viewOf(const nlohmann::json& accessorIndex, const std::string& type,
                             std::size_t components);
@@ -50,6 +55,7 @@ class File {
   const InputBytes& input_;
   nlohmann::json document_;
   std::string_view binary_;
+  std::uint64_t takenBytes_ = 0;
   std::map<std::size_t, std::string> unpacked_;  ///< packed buffer views
 };
 

@@ -135,6 +135,7 @@ class GlbReader {
     if (mesh_.positions.size() >= 0xFFFFFFFFu) input_.fail("it has too many vertices");
 
     const std::vector<std::uint32_t> indices = indicesOf(primitive, positions.count);
+    file_.takeMemory(mode == kTriangles ? indices.size() / 3 : indices.size(), sizeof(Triangle));
     const bool mirrored = transform.isMirrored();
     const std::size_t step = mode == kTriangles ? 3 : 1;
     for (std::size_t n = 0; n + 2 < indices.size(); n += step) {
@@ -155,6 +156,7 @@ class GlbReader {
   /// again.
   std::vector<VertexIndex> addPositions(const glb::View& view, const glb::NodeTransform& transform,
                                         bool weld) {
+    file_.takeMemory(view.count, sizeof(Position) + sizeof(VertexIndex));
     std::vector<Position> own;
     std::vector<VertexIndex> places(view.count);
     base::VertexWelder welder(own);
