@@ -173,7 +173,7 @@ void SurfaceReduction::findComponents() {
   for (std::size_t i = 0; i < lowest.size(); ++i) {
     if (lowest[i] == i) {
       componentOf_[i] = static_cast<std::uint32_t>(components_.size());
-      components_.push_back({Vec3(0.0), 0, std::numeric_limits<double>::infinity()});
+      components_.push_back({Vec3(0.0), 0, std::numeric_limits<double>::infinity(), false});
       boxes.push_back(base::Box::empty());
       counts.push_back(0);
     }
@@ -202,13 +202,15 @@ std::vector<std::size_t> SurfaceReduction::trianglesOfComponents(
 }
 
 void SurfaceReduction::drop(const std::vector<std::uint8_t>& isDropped,
-                            const reduce::ReducedMesh& reduced, AdaptiveMesh& adaptive) const {
+                            const reduce::ReducedMesh& reduced, AdaptiveMesh& adaptive) {
   ExtractedMesh& extracted = adaptive.extracted;
   std::erase_if(extracted.mesh.triangles, [&](const Triangle& triangle) {
     return isDropped[componentAt(reduced, triangle.vertices[0])] != 0;
   });
   for (std::size_t i = 0; i < components_.size(); ++i) {
-    if (isDropped[i] != 0) adaptive.dropped.push_back({components_[i].centre, components_[i].size});
+    if (isDropped[i] == 0 || components_[i].isTold) continue;
+    adaptive.dropped.push_back({components_[i].centre, components_[i].size});
+    components_[i].isTold = true;
   }
   const std::size_t left = extracted.mesh.triangles.size();
   extracted.baseQuads.resize(left);

@@ -34,8 +34,9 @@ class SurfaceReduction {
  private:
   struct Component {
     Vec3 centre{0.0};
-    double size = 0;   ///< diagonal of the box of its uniform vertices, voxels
-    double scale = 0;  ///< the least of the rule at one of its uniform vertices
+    double size = 0;      ///< diagonal of the box of its uniform vertices, voxels
+    double scale = 0;     ///< the least of the rule at one of its uniform vertices
+    bool isTold = false;  ///< that it was left out
   };
 
   [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
@@ -45,7 +46,7 @@ class SurfaceReduction {
   [[nodiscard]] std::vector<std::size_t> trianglesOfComponents(
       const reduce::ReducedMesh& reduced) const;
   void drop(const std::vector<std::uint8_t>& isDropped, const reduce::ReducedMesh& reduced,
-            AdaptiveMesh& adaptive) const;
+            AdaptiveMesh& adaptive);
   [[nodiscard]] std::uint32_t componentAt(const reduce::ReducedMesh& reduced,
                                           std::size_t vertex) const {
     return componentOf_[faces_[reduced.faces[vertex]].vertices[0]];

@@ -26,12 +26,11 @@ openvdb::FloatGrid::Ptr ring() {
 struct Adapted {
   test::ModelOf model{ring()};
   std::optional<Repair> repair = model.model().repair(model.job());
-  Measured kept;
 
-  AdaptiveMesh cut(double tolerance, bool simplify, Goal goal = {}) {
+  AdaptiveMesh cut(double tolerance) {
     octree::CutRule rule = model.rule();
     rule.tolerance = tolerance;
-    return adapt(model.model(), rule, {&*repair, simplify, std::move(goal)}, model.job(), &kept);
+    return adapt(model.model(), rule, {&*repair}, model.job());
   }
 };
 
@@ -45,71 +44,35 @@ void expectRing(const Mesh& mesh) {
 TEST(Adapt, KeepsTheRuleAndTheTopology) {
   Adapted ring;
   for (const double tolerance : {0.05, 0.3}) {
-    for (const bool simplify : {false, true}) {
-      const AdaptiveMesh adaptive = ring.cut(tolerance, simplify);
-      EXPECT_LE(adaptive.largestError, tolerance);
-      EXPECT_GT(adaptive.largestError, 0);
-      EXPECT_LT(adaptive.meanError, adaptive.largestError);
-      expectRing(adaptive.extracted.mesh);
-    }
+    const AdaptiveMesh adaptive = ring.cut(tolerance);
+    EXPECT_LE(adaptive.largestError, tolerance);
+    EXPECT_GT(adaptive.largestError, 0);
+    EXPECT_LT(adaptive.meanError, adaptive.largestError);
+    expectRing(adaptive.extracted.mesh);
   }
 }
 
 TEST(Adapt, CutsARestrictedOctree) {
   Adapted ring;
-  const AdaptiveMesh adaptive = ring.cut(0.3, false);
+  const AdaptiveMesh adaptive = ring.cut(0.3);
   EXPECT_TRUE(isRestricted(adaptive.leaves));
   // A vertex for each leaf of one patch.
   EXPECT_GE(adaptive.extracted.mesh.positions.size(), adaptive.leaves.size());
   EXPECT_LT(adaptive.leaves.size(), ring.model.mesh().positions.size() / 4);
 }
 
-TEST(Adapt, HasFewerTrianglesWhereEdgesAreCollapsed) {
-  Adapted ring;
-  const std::size_t cut = ring.cut(0.3, false).extracted.mesh.triangleCount();
-  EXPECT_LT(ring.cut(0.3, true).extracted.mesh.triangleCount(), cut);
-}
-
 TEST(Adapt, SaysWhereVerticesAndPolygonsComeFrom) {
   Adapted ring;
   const Mesh& base = ring.model.mesh();
-  for (const bool simplify : {false, true}) {
-    const ExtractedMesh extracted = ring.cut(0.05, simplify).extracted;
-    ASSERT_EQ(extracted.baseVertices.size(), extracted.mesh.positions.size());
-    ASSERT_EQ(extracted.baseQuads.size(),
-              extracted.mesh.quads.size() + extracted.mesh.triangles.size());
-    for (std::size_t i = 0; i < extracted.baseVertices.size(); ++i) {
-      if (extracted.baseVertices[i] == octree::kNone) continue;
-      EXPECT_EQ(extracted.mesh.positions[i], base.positions[extracted.baseVertices[i]]);
-    }
-    for (const std::uint32_t quad : extracted.baseQuads) EXPECT_LT(quad, base.quads.size());
+  const ExtractedMesh extracted = ring.cut(0.05).extracted;
+  ASSERT_EQ(extracted.baseVertices.size(), extracted.mesh.positions.size());
+  ASSERT_EQ(extracted.baseQuads.size(),
+            extracted.mesh.quads.size() + extracted.mesh.triangles.size());
+  for (std::size_t i = 0; i < extracted.baseVertices.size(); ++i) {
+    if (extracted.baseVertices[i] == octree::kNone) continue;
+    EXPECT_EQ(extracted.mesh.positions[i], base.positions[extracted.baseVertices[i]]);
   }
-}
-
-TEST(Adapt, StopsAtANumberOfTriangles) {
-  Adapted ring;
-  Goal goal;
-  goal.triangles = 500;
-  const AdaptiveMesh adaptive = ring.cut(0.1, true, goal);
-  EXPECT_LE(adaptive.extracted.mesh.triangleCount(), 500U);
-  EXPECT_GT(adaptive.extracted.mesh.triangleCount(), 400U);
-  EXPECT_LE(adaptive.largestError, 1) << "voxels, of a tube six thick";
-  expectRing(adaptive.extracted.mesh);
-}
-
-TEST(Coarsen, GoesOnFromAFinerMesh) {
-  Adapted ring;
-  const std::size_t fine = ring.cut(0.05, true).extracted.mesh.triangleCount();
-  octree::CutRule rule = ring.model.rule();
-  for (const double tolerance : {0.2, 0.6}) {
-    rule.tolerance = tolerance;
-    const AdaptiveMesh coarse =
-        coarsen(ring.model.model(), rule, {&*ring.repair, true}, ring.model.job(), ring.kept);
-    EXPECT_LE(coarse.largestError, tolerance);
-    EXPECT_LT(coarse.extracted.mesh.triangleCount(), fine / 2);
-    EXPECT_TRUE(coarse.leaves.empty());
-    expectRing(coarse.extracted.mesh);
-  }
+  for (const std::uint32_t quad : extracted.baseQuads) EXPECT_LT(quad, base.quads.size());
 }
 
 TEST(CertificateOf, CountsLeavesByLevelAndMeasuresInTheWorld) {

@@ -1,0 +1,107 @@
+#include "refine/surface_reduction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/mesh_oracle.h"
+#include "support/model.h"
+
+namespace tufa::refine {
+namespace {
+
+constexpr double kVoxel = 0.5;
+
+openvdb::FloatGrid::Ptr ring() {
+  return test::levelSetOf(26, kVoxel, [](const Vec3& p) {
+    return std::hypot(std::hypot(p[0], p[1]) - 14.3, p[2]) - 6.2;
+  });
+}
+
+// A large ball around the origin and a small one beside it.
+openvdb::FloatGrid::Ptr twoBalls() {
+  return test::levelSetOf(24, kVoxel, [](const Vec3& p) {
+    return std::min(p.length() - 8.3, (p - Vec3(17, 0, 0)).length() - 1.7);
+  });
+}
+
+struct Reduced {
+  test::ModelOf model;
+  octree::CutRule rule = model.rule();
+  SurfaceReduction reduction{model.model(), rule, model.job()};
+
+  explicit Reduced(openvdb::FloatGrid::ConstPtr grid) : model(std::move(grid)) {}
+};
+
+void expectRing(const Mesh& mesh) {
+  const test::MeshTopology topology = test::inspect(mesh);
+  EXPECT_TRUE(topology.closed() && topology.manifold()) << topology;
+  EXPECT_EQ(topology.euler(), 0);
+  EXPECT_EQ(topology.components, 1U);
+}
+
+TEST(SurfaceReduction, KeepsTheToleranceAndTheTopologyFromLevelToLevel) {
+  Reduced made(ring());
+  std::size_t before = made.model.mesh().triangleCount();
+  for (const double tolerance : {0.05, 0.2, 0.6}) {
+    const AdaptiveMesh adaptive = made.reduction.toTolerance(tolerance, false);
+    EXPECT_LE(adaptive.largestError, tolerance);
+    EXPECT_GT(adaptive.largestError, 0.5 * tolerance);
+    EXPECT_LT(adaptive.meanError, adaptive.largestError);
+    EXPECT_LT(adaptive.extracted.mesh.triangleCount(), before / 2);
+    EXPECT_TRUE(adaptive.leaves.empty());
+    before = adaptive.extracted.mesh.triangleCount();
+    expectRing(adaptive.extracted.mesh);
+  }
+}
+
+TEST(SurfaceReduction, IsTheUniformMeshAtAToleranceOfZero) {
+  Reduced made(ring());
+  const AdaptiveMesh adaptive = made.reduction.toTolerance(0, false);
+  EXPECT_EQ(adaptive.largestError, 0);
+  EXPECT_EQ(adaptive.meanError, 0);
+  EXPECT_EQ(adaptive.extracted.mesh.positions, made.model.mesh().positions);
+  EXPECT_EQ(adaptive.extracted.mesh.triangles.size(), 2 * made.model.mesh().quads.size());
+}
+
+TEST(SurfaceReduction, StopsAtANumberOfTriangles) {
+  Reduced made(ring());
+  const AdaptiveMesh adaptive = made.reduction.toCount(500, false);
+  EXPECT_LE(adaptive.extracted.mesh.triangleCount(), 500U);
+  EXPECT_GT(adaptive.extracted.mesh.triangleCount(), 475U);
+  EXPECT_LE(adaptive.largestError, 1) << "voxels, of a tube six thick";
+  expectRing(adaptive.extracted.mesh);
+}
+
+TEST(SurfaceReduction, SaysWhereVerticesComeFrom) {
+  Reduced made(ring());
+  const ExtractedMesh extracted = made.reduction.toTolerance(0.05, false).extracted;
+  const Mesh& base = made.model.mesh();
+  ASSERT_EQ(extracted.baseVertices.size(), extracted.mesh.positions.size());
+  ASSERT_EQ(extracted.baseQuads.size(), extracted.mesh.triangles.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < extracted.baseVertices.size(); ++i) {
+    if (extracted.baseVertices[i] == octree::kNone) continue;
+    EXPECT_EQ(extracted.mesh.positions[i], base.positions[extracted.baseVertices[i]]);
+    ++kept;
+  }
+  EXPECT_GT(kept, 0U);
+}
+
+TEST(SurfaceReduction, DropsSmallComponentsAndTellsOfEachOnce) {
+  Reduced made(twoBalls());
+  AdaptiveMesh adaptive = made.reduction.toTolerance(0.2, true);
+  EXPECT_TRUE(adaptive.dropped.empty());
+  EXPECT_EQ(test::inspect(adaptive.extracted.mesh).components, 2U);
+  adaptive = made.reduction.toTolerance(6.5, true);
+  ASSERT_EQ(adaptive.dropped.size(), 1U);
+  const Vec3 centre(made.model.model().affine().toWorld(adaptive.dropped[0].centre));
+  EXPECT_LT((centre - Vec3(8.5, 0, 0)).length(), 0.25);
+  EXPECT_EQ(test::inspect(adaptive.extracted.mesh).components, 1U);
+  adaptive = made.reduction.toTolerance(7, true);
+  EXPECT_TRUE(adaptive.dropped.empty()) << "it was dropped before";
+  EXPECT_EQ(test::inspect(adaptive.extracted.mesh).components, 1U);
+}
+
+}  // namespace
+}  // namespace tufa::refine
