@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <mutex>
-#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -27,17 +27,27 @@ constexpr double kFold = -0.766;
 // of its ends. Cosine of slightly less.
 constexpr double kOffNormal = 0.36;
 // Vertices nearer to each other than this, in voxels, stand for the same point of a crease.
-constexpr double kSamePoint = 0.1;
-// Square voxels; a smaller face that is folded over, as beside vertices that stand close together on
-// a crease, is let be: to move them off the crease would change the surface more.
+constexpr double kSamePoint = 0.03;
+// Square voxels; a smaller face that is folded over, as beside vertices that stand close together
+// on a crease, is let be: to move them off the crease would change the surface more.
 constexpr double kLeastArea = 0.02;
+// Parts of the way to the next place, which are tried first.
+constexpr double kParts[] = {0.05, 0.1, 0.2, 0.4};
+// What a vertex has come to: it may take so many parts of the way to its plain point, and as many
+// from there to its mass point.
+constexpr std::uint8_t kMostParts = 6;
+constexpr std::uint8_t kAtPlain = kMostParts + 1, kAtMassPoint = 2 * kAtPlain;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
 
-// The vertices of a fold or of an intersecting pair.
+// A fold, an intersecting pair, or two vertices at one point.
 struct Conflict {
+  enum class Kind { SamePoint, Fold, Pair };
+  Kind kind = Kind::SamePoint;
   std::array<VertexIndex, 8> vertices;
   int count = 0;
+  std::array<std::uint32_t, 2> parts{};  // the faces of a fold, the quads of a pair
+  std::array<VertexIndex, 2> edge{};     // of a fold
   void add(VertexIndex vertex) {
     const auto* end = vertices.begin() + count;
     if (std::find(vertices.begin(), vertices.begin() + count, vertex) == end)
@@ -184,6 +194,9 @@ class PlacementGuard {
       const EdgeFace& b = edges[i + 1];
       if (a.low != b.low || a.high != b.high || !isFold(a, b)) continue;
       Conflict conflict;
+      conflict.kind = Conflict::Kind::Fold;
+      conflict.parts = {a.face, b.face};
+      conflict.edge = {a.low, a.high};
       for (const std::uint32_t face : {a.face, b.face}) {
         for (const VertexIndex vertex : cornersOf(face).vertices) conflict.add(vertex);
       }
@@ -243,6 +256,8 @@ class PlacementGuard {
     }
     for (const intersect::PolygonPair& pair : pairs) {
       Conflict conflict;
+      conflict.kind = Conflict::Kind::Pair;
+      conflict.parts = {pair.a, pair.b};
       for (const intersect::PolygonIndex quad : {pair.a, pair.b}) {
         for (const VertexIndex vertex : mesh_.quads[quad].vertices) conflict.add(vertex);
       }
@@ -250,8 +265,15 @@ class PlacementGuard {
     }
   }
 
-  // Moves the vertex of each conflict that is farthest from its next place there. Whether any could
-  // be moved.
+  // A place that a vertex may go to.
+  struct Move {
+    VertexIndex vertex;
+    Position to;
+    std::uint8_t step;  // places that it then has left
+    double distance2;
+  };
+
+  // Makes the smallest move that settles each conflict. Whether there was any.
   bool withdrawFrom(const std::vector<Conflict>& conflicts) {
     std::vector<VertexIndex> vertices;
     for (const Conflict& conflict : conflicts) {
@@ -262,53 +284,95 @@ class PlacementGuard {
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     const std::vector<Position> plain = fallbacks(Fallback::Plain, vertices);
     const std::vector<Position> mass = fallbacks(Fallback::MassPoint, vertices);
-    const auto slotOf = [&](VertexIndex vertex) {
-      return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
-                                      vertices.begin());
-    };
-    for (const std::size_t slot : chosenOf(conflicts, plain, mass, slotOf)) {
-      const VertexIndex vertex = vertices[slot];
-      if (steps_[vertex] == 0) ++result_.vertices;
-      const bool toPlain = steps_[vertex] == 0 && !(plain[slot] == mesh_.positions[vertex]);
-      mesh_.positions[vertex] = toPlain ? plain[slot] : mass[slot];
-      steps_[vertex] = toPlain ? 1 : 2;
-      surface_.sheets.withdraw(vertex);
-      moved_[vertex] = 1;
-    }
-    return std::find(moved_.begin(), moved_.end(), 1) != moved_.end();
-  }
-
-  template <class SlotOf>
-  std::vector<std::size_t> chosenOf(const std::vector<Conflict>& conflicts,
-                                    const std::vector<Position>& plain,
-                                    const std::vector<Position>& mass, const SlotOf& slotOf) {
-    std::vector<std::size_t> chosen;
+    std::vector<Move> chosen;
     for (const Conflict& conflict : conflicts) {
-      std::optional<std::size_t> best;
-      // Vertices at creases go first, those out of their cells before others.
-      std::pair<int, double> most{};
+      std::vector<Move> moves;
       for (int i = 0; i < conflict.count; ++i) {
-        const VertexIndex vertex = conflict.vertices[i];
-        if (steps_[vertex] == 2) continue;
-        const std::size_t slot = slotOf(vertex);
-        const Vec3 at = pointOf(vertex);
-        const bool placed = steps_[vertex] == 0 && !(plain[slot] == mesh_.positions[vertex]);
-        const Vec3 next(placed ? plain[slot] : mass[slot]);
-        const int rank = placed ? (surface_.sheets.isOutOfCell(vertex) ? 2 : 1) : 0;
-        const std::pair<int, double> key{rank, (next - at).squaredLength()};
-        if (best && key <= most) continue;
-        most = key;
-        best = slot;
+        const auto slot = static_cast<std::size_t>(
+            std::lower_bound(vertices.begin(), vertices.end(), conflict.vertices[i]) -
+            vertices.begin());
+        addMoves(conflict.vertices[i], plain[slot], mass[slot], moves);
       }
-      if (best) {
-        chosen.push_back(*best);
+      std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
+        return std::pair(a.distance2, a.vertex) < std::pair(b.distance2, b.vertex);
+      });
+      if (const Move* move = settling(conflict, moves)) {
+        chosen.push_back(*move);
       } else {
         ++result_.left;
       }
     }
-    std::sort(chosen.begin(), chosen.end());
-    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-    return chosen;
+    apply(chosen);
+    return !chosen.empty();
+  }
+
+  // Part of the way to the next place, that place, and the mass point.
+  void addMoves(VertexIndex vertex, const Position& plain, const Position& mass,
+                std::vector<Move>& moves) const {
+    if (steps_[vertex] == kAtMassPoint) return;
+    const Vec3 at = pointOf(vertex);
+    const auto add = [&](const Vec3& to, std::uint8_t step) {
+      const double distance2 = (to - at).squaredLength();
+      if (distance2 > 0) moves.push_back({vertex, {to[0], to[1], to[2]}, step, distance2});
+    };
+    const bool isPlaced = steps_[vertex] < kAtPlain && !(plain == mesh_.positions[vertex]);
+    const std::uint8_t step = isPlaced ? steps_[vertex] : std::max(steps_[vertex], kAtPlain);
+    if (step != kAtPlain - 1 && step != kAtMassPoint - 1) {
+      const Vec3 way = Vec3(isPlaced ? plain : mass) - at;
+      for (const double share : kParts) add(at + way * share, static_cast<std::uint8_t>(step + 1));
+    }
+    if (isPlaced) add(Vec3(plain), kAtPlain);
+    add(Vec3(mass), kAtMassPoint);
+  }
+
+  // The smallest move that settles a conflict, or else the smallest to a place of
+  // its own.
+  const Move* settling(const Conflict& conflict, const std::vector<Move>& moves) {
+    for (const Move& move : moves) {
+      const Position was = mesh_.positions[move.vertex];
+      mesh_.positions[move.vertex] = move.to;
+      const bool settles = !isConflict(conflict);
+      mesh_.positions[move.vertex] = was;
+      if (settles) return &move;
+    }
+    const auto first = std::find_if(moves.begin(), moves.end(), [](const Move& move) {
+      return move.step == kAtPlain || move.step == kAtMassPoint;
+    });
+    return first == moves.end() ? nullptr : &*first;
+  }
+
+  [[nodiscard]] bool isConflict(const Conflict& conflict) const {
+    switch (conflict.kind) {
+      case Conflict::Kind::SamePoint: {
+        const double least = std::pow(kSamePoint * surface_.affine().voxelSize(), 2);
+        return (pointOf(conflict.vertices[0]) - pointOf(conflict.vertices[1])).squaredLength() <
+               least;
+      }
+      case Conflict::Kind::Fold:
+        return isFold({conflict.edge[0], conflict.edge[1], conflict.parts[0]},
+                      {conflict.edge[0], conflict.edge[1], conflict.parts[1]});
+      case Conflict::Kind::Pair:
+        break;
+    }
+    const auto [a, b] = conflict.parts;
+    return intersect::intersectElsewhere(mesh_.positions, mesh_.quads[a].vertices,
+                                         mesh_.quads[b].vertices, a == b);
+  }
+
+  // Of several moves of a vertex the one that leaves it the fewest places.
+  void apply(std::vector<Move>& moves) {
+    std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
+      return std::tuple(a.vertex, b.step, b.distance2) < std::tuple(b.vertex, a.step, a.distance2);
+    });
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      const Move& move = moves[i];
+      if (i > 0 && moves[i - 1].vertex == move.vertex) continue;
+      if (steps_[move.vertex] == 0) ++result_.vertices;
+      mesh_.positions[move.vertex] = move.to;
+      steps_[move.vertex] = move.step;
+      if (move.step >= kAtPlain) surface_.sheets.withdraw(move.vertex);
+      moved_[move.vertex] = 1;
+    }
   }
 
   std::vector<Position> fallbacks(Fallback which, const std::vector<VertexIndex>& vertices) {

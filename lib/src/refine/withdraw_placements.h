@@ -13,7 +13,7 @@ namespace tufa::refine {
 struct Withdrawal {
   std::size_t pairsFound = 0;  ///< pairs of quads that intersected with all placements
   std::size_t foldsFound = 0;  ///< edges folded with all placements
-  std::size_t vertices = 0;    ///< vertices that went back to a fallback
+  std::size_t vertices = 0;    ///< vertices that were moved
   std::size_t left = 0;        ///< folds and pairs all of whose vertices are at their mass points
   /// The candidates of the mesh as it is now, see intersect::findCandidates(). Sorted.
   std::vector<std::uint32_t> candidates;
@@ -25,12 +25,13 @@ struct Withdrawal {
 /// Each vertex has three places: the one at a crease that was chosen for it alone, without a look
 /// at its neighbours; the point of its QEF in its cell; its mass point. All vertices begin at the
 /// first. A conflict is an edge folded by more than 140 degrees, unless two sheets known at both of
-/// its ends are as sharp, or a pair of quads that intersect. Of the vertices of a conflict the one
-/// that is farthest from its next place goes there; one that is at its mass point stays. Only what
-/// touches a moved vertex is looked at again.
+/// its ends are as sharp; a pair of quads that intersect; or two vertices of a quad at one point.
+/// Of all moves of its vertices towards their next places the smallest one that settles it is made,
+/// or else the smallest to such a place. Only what touches a moved vertex is looked at again.
 ///
-/// It ends, as a vertex moves twice at most. What is decided in a round depends on what is within
-/// two cells, and few places take more than three rounds. Pairs of vertices at their mass points
+/// It ends, as a vertex moves a bounded number of times. What is decided in a round depends on what
+/// is within two cells, and few places take more than three rounds. Pairs of vertices at their mass
+/// points
 /// are left for repair; few inputs but noise have any. `margin`: as for findCandidates(). Cost: one
 /// pass over the triangles, one over the quads, and a search for pairs among the candidates.
 [[nodiscard]] Withdrawal withdrawPlacements(uniform::UniformSurface& surface, double margin,
