@@ -53,6 +53,11 @@ void StagedFolder::commit(const std::string& last) {
                         [&](const std::filesystem::path& name) { return name != last; });
   for (const std::filesystem::path& name : names) {
     std::error_code error;
+    const auto before = std::filesystem::symlink_status(folder_ / name, error);
+    if (std::filesystem::is_regular_file(before)) {
+      std::filesystem::permissions(staging_ / name, before.permissions(), error);
+      if (error) fail("keep the permissions of " + (folder_ / name).string(), error);
+    }
     std::filesystem::rename(staging_ / name, folder_ / name, error);
     if (error) fail("replace " + (folder_ / name).string(), error);
   }

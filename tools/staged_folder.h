@@ -21,7 +21,8 @@ class StagedFolder {
   /// Where to write.
   [[nodiscard]] std::string path() const { return staging_.string(); }
 
-  /// Moves the files to their places, the one named `last` behind all others.
+  /// Moves the files to their places, the one named `last` behind all others. A file that is
+  /// replaced keeps its permissions; a link is replaced, not followed.
   void commit(const std::string& last);
 
  private:

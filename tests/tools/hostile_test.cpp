@@ -152,6 +152,21 @@ TEST_F(Hostile, ReplacedFilesStayAsClosedAsTheyWere) {
   }
 }
 
+TEST_F(Hostile, ReplacedChunksStayAsClosedAsTheyWere) {
+  makeSphere();
+  ASSERT_EQ(run("chunks s.vdb -o d --quiet --levels 2").exitCode, 0);
+  const auto closed = std::filesystem::perms{0600};
+  std::filesystem::permissions(folder / "d", std::filesystem::perms{0700});
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "d")) {
+    std::filesystem::permissions(entry.path(), closed);
+  }
+  ASSERT_EQ(run("chunks s.vdb -o d --quiet --levels 2 --tolerance 0.3").exitCode, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "d")) {
+    EXPECT_EQ(entry.status().permissions(), closed) << entry.path();
+  }
+  EXPECT_EQ(std::filesystem::status(folder / "d").permissions(), std::filesystem::perms{0700});
+}
+
 TEST_F(Hostile, LinksThatLeadNowhereAreNotReplaced) {
   makeSphere();
   std::filesystem::create_symlink("none.ply", folder / "link.ply");

@@ -23,7 +23,7 @@ enum class ErrorCode {
 class TUFA_API Error : public std::runtime_error {
  public:
   /// `message` is what what() gives, as one line: control characters, which names in files may
-  /// hold, become \xNN there.
+  /// hold, are escaped there.
   Error(ErrorCode code, const std::string& message);
 
   /// The kind of error, for callers that react to it.

@@ -72,9 +72,14 @@ struct Source {
   [[nodiscard]] const T* row(int first) const { return values + (first & mask); }
 };
 
+/// Keeps a finite value finite and on its side: the sides of samples were read before they are
+/// scaled, and those that are not finite are taken as outside. Beyond 10^30 only the side is left.
 template <class T>
 float scaled(T value, T isovalue, T factor) {
-  return static_cast<float>((value - isovalue) * factor);
+  constexpr T kMost = static_cast<T>(1e30);
+  const T size = (value - isovalue) * factor;
+  if (!std::isfinite(value)) return std::numeric_limits<float>::quiet_NaN();
+  return static_cast<float>(std::clamp(size, -kMost, kMost));
 }
 
 template <class TreeT>

@@ -1,6 +1,7 @@
 #include <tufa/error.h>
 #include <tufa/octree.h>
 
+#include <limits>
 #include <string>
 
 #include "base/coord_table.h"
@@ -22,6 +23,17 @@ struct LevelLeaves {
   }
 };
 
+/// Whether a step of at most one leads past the ends of 32-bit integers.
+bool leavesCoordinates(const Coord& cell, const Coord& step) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  bool leaves = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    leaves |= step[axis] > 0 && cell[axis] == Limits::max();
+    leaves |= step[axis] < 0 && cell[axis] == Limits::min();
+  }
+  return leaves;
+}
+
 }  // namespace
 
 bool isRestricted(const std::vector<LeafCell>& leaves) {
@@ -42,7 +54,9 @@ bool isRestricted(const std::vector<LeafCell>& leaves) {
   for (std::size_t level = 0; level < levels.size(); ++level) {
     for (const Coord& cell : levels[level].cells) {
       for (int i = 0; i < 27; ++i) {
-        const Coord near = cell.offsetBy(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+        const Coord step(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+        if (leavesCoordinates(cell, step)) continue;
+        const Coord near = cell.offsetBy(step[0], step[1], step[2]);
         for (std::size_t above = level + (near == cell ? 1 : 2); above < levels.size(); ++above) {
           if (levels[above].has(near >> static_cast<int>(above - level))) return false;
         }

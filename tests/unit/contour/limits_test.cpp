@@ -9,6 +9,7 @@
 #include <tufa/lod.h>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <sstream>
 
 #include "io/mesh/mesh_format.h"
@@ -162,6 +163,36 @@ TEST(Limits, ToleranceGridsAreFloatGrids) {
     expectError(ErrorCode::UnsupportedGrid, part,
                 [&] { (void)contour(*ballAround(Coord(0)), options); });
   }
+}
+
+/// Scaled to voxels they became infinite, and so samples of the other side: edges were collapsed
+/// that were none.
+template <class GridT>
+void expectClosedAtValues(typename GridT::ValueType most) {
+  using Value = typename GridT::ValueType;
+  std::mt19937 random(1);
+  const auto grid = GridT::create(Value(0));
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(0.2));
+  auto accessor = grid->getAccessor();
+  const openvdb::CoordBBox box(Coord(-4), Coord(4));
+  for (auto at = box.begin(); at; ++at) {
+    const int kind = static_cast<int>(random() % 3);
+    accessor.setValue(*at, kind == 0 ? most : kind == 1 ? most / 3 : Value(1e-9));
+  }
+  for (const bool uniform : {true, false}) {
+    ContourOptions options;
+    options.uniform = uniform;
+    options.isovalue = static_cast<double>(most) / 2;
+    const test::MeshTopology topology = test::inspect(test::triangulated(contour(*grid, options)));
+    EXPECT_TRUE(topology.manifold());
+    EXPECT_EQ(topology.boundaryEdges, 0u);
+  }
+}
+
+TEST(Limits, ValuesAtTheEndOfTheirTypeKeepTheirSides) {
+  expectClosedAtValues<FloatGrid>(std::numeric_limits<float>::max() / 1.5F);
+  expectClosedAtValues<openvdb::DoubleGrid>(1e300);
 }
 
 }  // namespace

@@ -63,6 +63,9 @@ TEST_F(Misuse, OfLevelsOfLeaves) {
     expectRefused(part, [&] { (void)isRestricted({{Coord(0), level}}); });
   }
   EXPECT_TRUE(isRestricted({{Coord(0), 31}}));
+  constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::max();
+  constexpr std::int32_t kFirst = std::numeric_limits<std::int32_t>::min();
+  EXPECT_TRUE(isRestricted({{Coord(kLast), 0}, {Coord(kFirst), 0}}));
 }
 
 TEST_F(Misuse, OfTheSink) {
