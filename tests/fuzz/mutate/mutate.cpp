@@ -112,8 +112,12 @@ class Mutator {
 
   [[nodiscard]] std::vector<Reader> readersOf(const std::string& ending) const {
     if (ending != "vdb") {
-      return {{{"check", "FILE", "--quiet"}},
-              {{"voxelize", "FILE", "--voxel", "0.3", "-o", at("v.vdb"), "--quiet"}, true}};
+      return {
+          {{"check", "FILE", "--quiet"}},
+          // Far vertices make bands of gigabytes, and OpenVDB ends the process where memory ends.
+          {{"voxelize", "FILE", "--voxel", "0.3", "--band-voxels", "1000000", "-o", at("v.vdb"),
+            "--quiet"},
+           true}};
     }
     return {{{"info", "FILE"}},
             {{"info", "FILE", "--json"}},
