@@ -198,7 +198,7 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
     const std::size_t most = i > 0 ? tooMany(target, chain.levels.back()) : 0;
     refine::AdaptiveMesh adaptive = maker.next(target);
     const std::size_t triangles = adaptive.extracted.mesh.triangleCount();
-    const bool coarser = i == 0 || triangles < most;
+    const bool coarser = i == 0 || triangles < most || !adaptive.dropped.empty();
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
       chain.stopped = stopOf(i, target, triangles, most, chain.levels);
       break;

@@ -53,7 +53,7 @@ struct PhaseLimits {
   float sliverShare = 0;     ///< of a part's triangles that may become slivers nevertheless
   float turnCosine = 0.5f;   ///< least cosine between a triangle's normal before and after
   bool flips = true;
-  bool isLoose = false;    ///< where edges may end, see Part::isBelow()
+  bool isLoose = false;    ///< edges need not end where their vertices are, see Part::edgeNear()
   bool allPlaces = false;  ///< tries the ends of an edge also where the best place is too far
   Index quota = kNone;     ///< most collapses of a part
   /// For tests: a guard that is not asked.

@@ -148,7 +148,7 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
   const Vec3f z = section.along;
   const float scale = 1 / squaredLength(z);
   const float close2 = std::min(kArrived * kArrived, 4 * squaredDistance_);
-  bool hasArrived = false;
+  bool hasArrived = false, isFar = false;
   Index last = face;
   const auto isNear = [&](Index crossed, Vec3f m, Vec3f right, Vec3f left) {
     last = crossed;
@@ -156,35 +156,29 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
     const float share = std::clamp(dot(m, z) * scale, 0.0f, 1.0f);
     const bool ok = squaredLength(m - z * share) <= squaredDistance_ ||
                     squaredDistanceOfSegments(right, left, {}, z) <= squaredDistance_;
+    isFar = !ok;
     hasArrived |= ok && squaredLength(m - z) <= close2;
     return ok;
   };
-  if (!reference_->follow(face, section, isNear) && !hasArrived) return false;
-  return (flags_[end] & kNarrow) == 0 || isBelow(last, end, section.axis);
+  if (!reference_->follow(face, section, isNear) && !hasArrived && (isFar || !limits_.isLoose)) {
+    return false;
+  }
+  return (flags_[end] & kNarrow) == 0 || limits_.isLoose || isBelow(last, end, section.axis);
 }
 
 // Whether a vertex is over the sheet of the reference that a face is on: a way along an edge may
 // end on another sheet that is as near. Then the surface between would be over no part of the
-// reference. Faces on one sheet have a common vertex or, if that is enough, look the same way and
-// are not farther apart than the vertex may be from the sheet.
+// reference. Faces on one sheet have a common vertex.
 bool Part::isBelow(Index face, Index vertex, Vec3f axis) const {
   const Index own = face_[vertex];
   if (own == kNone) return false;
   const Index found =
       reference_->locate(face, position_[vertex], hasAxis(vertex) ? axis_[vertex] : axis);
-  if (found != kNone) {
-    const auto& f = reference_->faces()[found].vertex;
-    const auto& g = reference_->faces()[own].vertex;
-    for (const Index v : f) {
-      if (v == g[0] || v == g[1] || v == g[2]) return true;
-    }
-  }
-  if (!limits_.isLoose) return false;
-  const auto p = reference_->cornersOf(found == kNone ? face : found);
-  const auto q = reference_->cornersOf(own);
-  const float apart = 2 + distance_;  // voxels
-  return squaredLength(p[0] - q[0]) <= apart * apart &&
-         dot(cross(p[1] - p[0], p[2] - p[0]), cross(q[1] - q[0], q[2] - q[0])) > 0;
+  if (found == kNone) return false;
+  const auto& f = reference_->faces()[found].vertex;
+  const auto& g = reference_->faces()[own].vertex;
+  return std::any_of(f.begin(), f.end(),
+                     [&](Index v) { return v == g[0] || v == g[1] || v == g[2]; });
 }
 
 // The mesh as it would be, for overlay_path.h. What collapse and flip change in the tables is few

@@ -31,6 +31,8 @@ constexpr float kMostStep = 1.6f;
 // voxels, it is the topology or the shape that is in the way.
 constexpr float kStuckStep = 2;
 constexpr int kMostStuck = 3;
+// Voxels; at larger tolerances the first attempt lets edges end anywhere near.
+constexpr float kLooseTolerance = 4;
 constexpr float kNarrowTolerance = 2;
 // What was beyond the tolerance is held within so many tolerances and voxels.
 constexpr float kHeldTolerances = 2;
@@ -73,19 +75,20 @@ void Reduction::toTolerance(float tolerance) {
   std::optional<Surface> before;
   if (!wasReference) before = surface_;
   trees_.clear();
-  for (int i = 0;; ++i) {
+  for (attempt_ = 0;; ++attempt_) {
     nextTree_ = 0;
     descendTo(tolerance);
     measure(tolerance_);
-    if (certificate_.beyond.empty() || i == options_.attempts) break;
+    if (certificate_.beyond.empty() || attempt_ == options_.attempts) break;
     reference_.hold(certificate_.beyond, kHeldTolerances * tolerance + kHeldVoxels,
-                    kHeldShares[std::min(i, 2)]);
+                    kHeldShares[std::min(attempt_, 2)]);
     if (before) {
       surface_ = *before;
     } else {
       surface_ = surfaceOf(reference_, options_, job_);
     }
   }
+  attempt_ = 0;
   reference_.releaseAll();
   reference_.setScales(scales);
 }
@@ -109,7 +112,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   limits.sliverShare = options_.sliverShare;
   limits.turnCosine = std::cos(options_.mostTurn * kRadians);
   limits.flips = options_.flips;
-  limits.isLoose = count > 0;  // its error is measured, and not held to a tolerance
+  limits.isLoose = tolerance > kLooseTolerance && attempt_ == 0;
   limits.switchedOff = options_.switchedOff;
   for (int i = 0, left = phases; left > 0 && triangleCount() > count; ++i, --left) {
     const bool isLast = left == 1 && phases == options_.phases;

@@ -126,6 +126,7 @@ class Reduction {
   bool isReference_;                                 ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance
   std::size_t nextTree_ = 0;
+  int attempt_ = 0;  ///< at the present tolerance
   int phaseNumber_ = 0;
   float tolerance_ = 0;
 };

@@ -132,6 +132,18 @@ test::FineMesh shell(unsigned seed, double thickness) {
   });
 }
 
+// A flat component of few triangles. Without the guard it is turned inside out within the
+// tolerance.
+TEST(Guards, KeepSmallComponentsOutsideOut) {
+  for (const float height : {0.05f, 0.1f, 0.2f}) {
+    test::FineMesh flat = test::bumpySphere(1, 1, 0, 1);
+    for (Vec3f& p : flat.positions) p.z *= height;
+    const Result kept = reduced(flat, 3);
+    EXPECT_LT(kept.mesh.triangles.size(), flat.triangles.size());
+    EXPECT_GT(test::volume(kept.mesh), 0) << height;
+  }
+}
+
 // What an audit of a mesh sees, without a look at how it was made.
 struct Audit {
   explicit Audit(const Result& result)
@@ -159,10 +171,10 @@ TEST(Guards, AreFoundMissingByAnAudit) {
       {Outcome::Apex, Harm::Distance, test::bumpySphere(4, 10, 1, 1), 0.2f},
       {Outcome::Crossing, Harm::Distance, test::bumpySphere(4, 10, 1, 1), 0.2f},
       {Outcome::Face, Harm::Distance, test::noiseSolid(12, 4, 1), 0.2f},
-      {Outcome::Flat, Harm::Distance, shell(2, 0.15), 0.3f},
-      {Outcome::Turn, Harm::Distance, shell(3, 0.4), 0.3f},
+      {Outcome::Flat, Harm::Distance, shell(2, 0.6), 0.3f},
+      {Outcome::Turn, Harm::Distance, shell(4, 0.6), 0.3f},
       {Outcome::Fold, Harm::Folds, wavingPlate(0.05f, 0.1f, 0), 0.3f},
-      {Outcome::Star, Harm::Pairs, wavingPlate(0.1f, 0.1f, 2), 1.0f},
+      {Outcome::Star, Harm::Pairs, shell(2, 0.15), 0.8f},
       {Outcome::Intersection, Harm::Pairs, wavingPlate(0.05f, 0.35f, 0), 0.3f},
       {Outcome::Round, Harm::Angles, test::noiseSolid(14, 6, 1), 0.05f},
   };
