@@ -26,7 +26,7 @@ constexpr double kFirstLevelEnd = 0.85;
 constexpr std::size_t kMostLevels = 100;
 // The triangles of an LOD must fall at least with this power of its tolerance, for tolerances up to
 // this many times that of the LOD before.
-constexpr double kLeastSlope = -0.3;
+constexpr double kLeastSlope = -0.25;
 constexpr double kMostRatio = 4;
 
 using Clock = std::chrono::steady_clock;
@@ -107,8 +107,8 @@ std::string stopOf(std::size_t level, const Target& target, std::size_t triangle
          std::to_string(level - 1);
 }
 
-// An LOD with so many triangles or more is not worth its error: at four times the tolerance a third
-// fewer are expected. Otherwise what is left is needed for the topology.
+// An LOD with so many triangles or more is not worth its error: at four times the tolerance three
+// in ten fewer are expected. Otherwise what is left is needed for the topology.
 std::size_t tooMany(const Target& target, const Lod& before) {
   const std::size_t most = before.mesh.triangleCount();
   if (target.triangles > 0 || !(before.tolerance > 0)) return most;

@@ -45,6 +45,9 @@ void sortUnique(std::vector<Index>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
+// A radius whose square is finite.
+constexpr float kEverywhere = 1e15f;
+
 using Corners = std::array<Vec3f, 3>;
 
 // A bound of the distance from the part of a triangle inside a sphere to the nearest of some
@@ -131,15 +134,36 @@ class Measure {
     }
   }
 
-  // The way back: for the part of a triangle about a face, which the map may not reach, to all
-  // faces nearby at reference vertices of the triangles around. `owned`: for each triangle the
-  // reference vertices that it owns.
-  void wayBack(const Gap& gap, const std::vector<std::vector<Index>>& owned,
+  // The way back: from the parts of a triangle about some faces, which the map may not reach, to
+  // all faces nearby at reference vertices of the triangles around. From the whole triangle, if
+  // there are many. `owned`: for each triangle the reference vertices that it owns.
+  void wayBack(std::span<const Gap> gaps, const std::vector<std::vector<Index>>& owned,
                Measured& measured) const {
-    const Corners face = reference_.cornersOf(gap.face);
-    Sphere about{(face[0] + face[1] + face[2]) * (1.0f / 3), 0};
-    for (const Vec3f& p : face) about.radius = std::max(about.radius, length(p - about.middle));
-    about.radius += 3 * expected_ + 1;
+    constexpr std::size_t kMany = 4;
+    if (gaps.size() > kMany) return wayBack(gaps.front(), {{}, kEverywhere}, owned, measured);
+    for (const Gap& gap : gaps) {
+      const Corners face = reference_.cornersOf(gap.face);
+      Sphere about{(face[0] + face[1] + face[2]) * (1.0f / 3), 0};
+      for (const Vec3f& p : face) about.radius = std::max(about.radius, length(p - about.middle));
+      about.radius += 3 * expected_ + 1;
+      wayBack(gap, about, owned, measured);
+    }
+  }
+
+  // As overlay_path.h sees a mesh.
+  Vec3f operator()(Index t, int i) const { return s_.corner(t, static_cast<std::size_t>(i)); }
+  [[nodiscard]] Index vertex(Index t, int i) const {
+    return s_.triangles[t].vertices[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] Index across(Index t, int i) const {
+    const Index c = opposite_[3 * t + static_cast<Index>(i)];
+    return c == kNone ? kNone : c / 3;
+  }
+
+ private:
+  // From what of a triangle is in a sphere.
+  void wayBack(const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned,
+               Measured& measured) const {
     const float reach = about.radius + 2 * expected_ + 1;
     std::vector<Index> candidates{gap.face};
     for (const Index t : trianglesAround({&gap.triangle, 1})) {
@@ -158,17 +182,6 @@ class Measure {
     measured.see(Halving(toFace, about, expected_).bound(p, candidates), gap.face, expected_);
   }
 
-  // As overlay_path.h sees a mesh.
-  Vec3f operator()(Index t, int i) const { return s_.corner(t, static_cast<std::size_t>(i)); }
-  [[nodiscard]] Index vertex(Index t, int i) const {
-    return s_.triangles[t].vertices[static_cast<std::size_t>(i)];
-  }
-  [[nodiscard]] Index across(Index t, int i) const {
-    const Index c = opposite_[3 * t + static_cast<Index>(i)];
-    return c == kNone ? kNone : c / 3;
-  }
-
- private:
   // The way from a face to the triangles around its owners. Notes where the map may jump.
   float halve(Index f, const OwnedFace& face, Measured& measured) const {
     ++measured.halved;
@@ -177,7 +190,7 @@ class Measure {
       if (isBetween(t, face.owners)) measured.gaps.push_back({t, f});
     }
     const auto toTriangle = [&](Vec3f q, Index t) { return distance(q, t); };
-    return Halving(toTriangle, Sphere{{}, 1e30f}, expected_).bound(face.corners, around);
+    return Halving(toTriangle, Sphere{{}, kEverywhere}, expected_).bound(face.corners, around);
   }
 
   [[nodiscard]] float distance(Vec3f p, Index t) const {
@@ -243,9 +256,21 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     for (Index r = 0; r < vertices; ++r) {
       if (s.owner[r] != kNone) owned[s.owner[r]].push_back(r);
     }
-    parts.resize(a + b + gaps.size());
-    job.forRanges(gaps.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) measure.wayBack(gaps[i], owned, parts[a + b + i]);
+    // Those of a triangle together.
+    std::stable_sort(gaps.begin(), gaps.end(),
+                     [](const Gap& x, const Gap& y) { return x.triangle < y.triangle; });
+    std::vector<std::size_t> first;
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+      if (i == 0 || gaps[i].triangle != gaps[i - 1].triangle) first.push_back(i);
+    }
+    const std::size_t groups = first.size();
+    first.push_back(gaps.size());
+    parts.resize(a + b + groups);
+    job.forRanges(groups, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        measure.wayBack({gaps.data() + first[i], gaps.data() + first[i + 1]}, owned,
+                        parts[a + b + i]);
+      }
     });
   }
   Certificate all;

@@ -70,18 +70,22 @@ class PlacementGuard {
   Withdrawal run() {
     steps_.assign(mesh_.positions.size(), 0);
     moved_.assign(mesh_.positions.size(), 0);
-    if (withdrawFrom(findCoincident())) uniform::splitAgain(surface_.view(), moved_, mesh_, job_);
+    if (withdrawFrom(findCoincident())) splitAgain();
     for (int round = 0; round < kMostRounds; ++round) {
       const std::vector<Conflict> conflicts = findConflicts(round == 0);
       std::fill(moved_.begin(), moved_.end(), 0);
       if (!withdrawFrom(conflicts)) break;
-      uniform::splitAgain(surface_.view(), moved_, mesh_, job_);
+      splitAgain();
       findTouched();
     }
     return std::move(result_);
   }
 
  private:
+  // Without normals diagonals are not chosen by the sheets, and stay.
+  void splitAgain() {
+    if (!mesh_.normals.empty()) uniform::splitAgain(surface_.view(), moved_, mesh_, job_);
+  }
   [[nodiscard]] Triangle cornersOf(std::uint32_t face) const {
     const auto& v = mesh_.quads[face / 2].vertices;
     return face % 2 == 0 ? Triangle{v[0], v[1], v[2]} : Triangle{v[0], v[2], v[3]};
