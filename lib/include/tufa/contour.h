@@ -69,8 +69,8 @@ struct ContourOptions {
   int minCell = 1;
   /// Size in voxels, a power of two, of the largest cells.
   int maxCell = 1 << 20;
-  /// End an adaptive mesh with a pass that collapses edges as far as the tolerance allows: fewer
-  /// triangles at the same certified error, but fewer quads.
+  /// Collapse edges as far as the tolerance allows: few triangles, and no quads. Otherwise, and
+  /// with bounds on cells or angles, an adaptive mesh is a cut of the octree.
   bool simplify = true;
   /// Keep the leaves of the octree in the certificate.
   bool keepLeaves = false;
@@ -96,12 +96,12 @@ struct StageTime {
 
 /// What was measured of an adaptive mesh: its distance to the uniform mesh, and counts.
 struct Certificate {
-  double maxErrorVoxels = 0;             ///< largest distance found, both ways, to the uniform mesh
-  double meanErrorVoxels = 0;            ///< mean over the vertices and quads of the uniform mesh
-  double maxErrorWorld = 0;              ///< maxErrorVoxels in world units
+  double maxErrorVoxels = 0;   ///< to the uniform mesh, both ways: a bound, of a cut at samples
+  double meanErrorVoxels = 0;  ///< mean over the vertices and quads of the uniform mesh
+  double maxErrorWorld = 0;    ///< maxErrorVoxels in world units
   std::int64_t eulerCharacteristic = 0;  ///< vertices - edges + faces
-  /// Number of leaf cells of each octree level that the surface passes; a cell of level l has 2^l
-  /// voxels along its edge.
+  /// Of a cut: number of leaf cells of each octree level that the surface passes; a cell of level l
+  /// has 2^l voxels along its edge.
   std::vector<std::size_t> leafLevels;
   std::vector<LeafCell> leaves;  ///< if ContourOptions::keepLeaves, in the order of their levels
   int rounds = 0;                ///< meshes made and measured until the tolerance held
