@@ -59,7 +59,8 @@ std::string describeCertificate(const Certificate& certificate) {
   std::string text = "within " + shortNumber(certificate.maxErrorVoxels) + " voxels (" +
                      shortNumber(certificate.maxErrorWorld) +
                      " world units) of the uniform mesh, " +
-                     shortNumber(certificate.meanErrorVoxels) + " on average; leaves of";
+                     shortNumber(certificate.meanErrorVoxels) + " on average";
+  if (!certificate.leafLevels.empty()) text += "; leaves of";
   for (std::size_t level = 0; level < certificate.leafLevels.size(); ++level) {
     text += (level == 0 ? " " : ", ") + std::to_string(std::size_t{1} << level) + ": " +
             formatCount(certificate.leafLevels[level]);

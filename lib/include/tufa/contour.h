@@ -130,9 +130,9 @@ struct ContourReport {
 /// Meshes the surface of `grid` at the isovalue: dual contouring with one vertex for each surface
 /// component of a cell and one quad for each crossed lattice edge.
 ///
-/// Unless `uniform`, cells are merged into the leaves of a restricted octree where the surface is
-/// flat: each leaf has one vertex for each disk of surface in it, and the mesh keeps the topology
-/// of the uniform one.
+/// Unless `uniform`, that mesh is reduced to the tolerance, edge by edge, or with `simplify` off
+/// its cells are merged into the leaves of a restricted octree where the surface is flat, each with
+/// one vertex for each disk of surface in it. The mesh keeps the topology of the uniform one.
 ///
 /// The mesh is a closed, consistently oriented 2-manifold whenever the surface does not reach the
 /// end of the data, in world space, outward by the right-hand rule under any affine transform. A
