@@ -37,8 +37,6 @@ constexpr float kNarrowTolerance = 2;
 // What was beyond the tolerance is held within so many tolerances and voxels.
 constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 2;
-// What is left of the tolerance there in the first, the second and further attempts.
-constexpr float kHeldShares[] = {1, 0.5f, 0};
 
 Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::Job& job) {
   std::vector<Triangle> triangles(reference.faces().size());
@@ -66,8 +64,8 @@ Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> 
 
 Reduction::~Reduction() = default;
 
-// Where the certificate is beyond the tolerance, the mesh is reduced again, with a smaller
-// tolerance around there and at last with none.
+// Where the certificate is beyond the tolerance, the mesh is reduced again, and left as it was
+// around there. Smaller tolerances there instead take more attempts, and hardly fewer triangles.
 void Reduction::toTolerance(float tolerance) {
   if (tolerance < kLeastTolerance) return;
   const std::vector<float> scales = reference_.scales();
@@ -80,8 +78,7 @@ void Reduction::toTolerance(float tolerance) {
     descendTo(tolerance);
     measure(tolerance_);
     if (certificate_.beyond.empty() || attempt_ == options_.attempts) break;
-    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance + kHeldVoxels,
-                    kHeldShares[std::min(attempt_, 2)]);
+    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance + kHeldVoxels);
     if (before) {
       surface_ = *before;
     } else {

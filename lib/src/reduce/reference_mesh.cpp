@@ -57,7 +57,7 @@ void ReferenceMesh::markRough(base::Job& job) {
   });
 }
 
-void ReferenceMesh::hold(std::span<const Index> faces, float radius, float factor) {
+void ReferenceMesh::hold(std::span<const Index> faces, float radius) {
   std::vector<Index> seenFrom(positions_.size(), kNone), reached;
   std::vector<std::uint8_t> isNew(positions_.size(), 0);
   for (const Index face : faces) {
@@ -79,11 +79,11 @@ void ReferenceMesh::hold(std::span<const Index> faces, float radius, float facto
       if (squaredLength(positions_[v] - middle) <= radius * radius) allAround(v, reach);
     }
   }
-  if (factor != 1 && scales_.empty()) scales_.assign(positions_.size(), 1);
+  if (!isScaled()) scales_.assign(positions_.size(), 1);
   for (std::size_t v = 0; v < isNew.size(); ++v) {
     if (isNew[v] == 0) continue;
     rough_[v] |= kHeld;
-    if (factor != 1) scales_[v] *= factor;
+    scales_[v] = 0;
   }
 }
 

@@ -36,8 +36,8 @@ class ReferenceMesh {
   [[nodiscard]] const std::vector<float>& scales() const { return scales_; }
   void setScales(std::vector<float> scales) { scales_ = std::move(scales); }
   /// Holds faces near others: within `radius` voxels of them, over connected faces, all vertices
-  /// count as rough, and scales are multiplied with `factor`.
-  void hold(std::span<const Index> faces, float radius, float factor);
+  /// count as rough and have a scale of 0.
+  void hold(std::span<const Index> faces, float radius);
   void releaseAll();
   /// Whether a vertex of a face is held.
   [[nodiscard]] bool isHeld(Index face) const {
