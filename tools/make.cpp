@@ -4,6 +4,7 @@
 #include <tufa/shapes.h>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -37,16 +38,9 @@ int runMake(const MakeArguments& arguments) {
   });
   WrittenGrid written;
   written.output = arguments.output;
-  written.grid = grid->getName();
-  written.activeVoxels = grid->activeVoxelCount();
   written.voxelSize = arguments.options.voxelSize;
   written.makeSeconds = seconds;
-  written.writeSeconds = timed([&] { writeGrids({grid}, arguments.output); });
-  if (arguments.json) {
-    print(toJson(written));
-  } else if (!arguments.quiet) {
-    print(describe(written));
-  }
+  writeAndTell(grid, std::move(written), {arguments.json, arguments.quiet});
   return kDone;
 }
 

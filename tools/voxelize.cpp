@@ -6,6 +6,7 @@
 #include <tufa/io.h>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "commands.h"
 #include "console.h"
@@ -45,16 +46,9 @@ int runVoxelize(const VoxelizeArguments& arguments) {
   written.input = arguments.input;
   written.triangles = mesh.triangleCount();
   written.output = arguments.output;
-  written.grid = grid->getName();
-  written.activeVoxels = grid->activeVoxelCount();
   written.voxelSize = arguments.options.voxelSize;
   written.makeSeconds = seconds;
-  written.writeSeconds = timed([&] { writeGrids({grid}, arguments.output); });
-  if (arguments.json) {
-    print(toJson(written));
-  } else if (!arguments.quiet) {
-    print(describe(written));
-  }
+  writeAndTell(grid, std::move(written), {arguments.json, arguments.quiet});
   return kDone;
 }
 

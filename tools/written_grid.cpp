@@ -1,11 +1,15 @@
 #include "written_grid.h"
 
+#include <tufa/io.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "console.h"
 #include "paths.h"
+#include "volume.h"
 
 namespace tufa::tools {
+namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -28,6 +32,19 @@ std::string describe(const WrittenGrid& written) {
   if (!written.input.empty()) text += " from " + formatCount(written.triangles) + " triangles";
   return text + " in " + shortNumber(written.makeSeconds) + " s\n" +
          describeWritten({written.output}, written.writeSeconds);
+}
+
+}  // namespace
+
+void writeAndTell(const openvdb::FloatGrid::Ptr& grid, WrittenGrid written, Telling telling) {
+  written.grid = grid->getName();
+  written.activeVoxels = grid->activeVoxelCount();
+  written.writeSeconds = timed([&] { writeGrids({grid}, written.output); });
+  if (telling.json) {
+    print(toJson(written));
+  } else if (!telling.quiet) {
+    print(describe(written));
+  }
 }
 
 }  // namespace tufa::tools

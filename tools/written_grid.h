@@ -1,5 +1,7 @@
 #pragma once
 
+#include <openvdb/openvdb.h>
+
 #include <cstddef>
 #include <string>
 
@@ -17,10 +19,14 @@ struct WrittenGrid {
   double writeSeconds = 0;
 };
 
-/// For programs: a JSON object.
-[[nodiscard]] std::string toJson(const WrittenGrid& written);
+/// How it is told.
+struct Telling {
+  bool json = false;   ///< for programs: a JSON object
+  bool quiet = false;  ///< not at all, unless as JSON
+};
 
-/// For people: a line on what was made, and one on what was written.
-[[nodiscard]] std::string describe(const WrittenGrid& written);
+/// Writes a grid to `written.output` and tells of it, for people with a line on what was made and
+/// one on what was written. Fills in what the grid and the writing give.
+void writeAndTell(const openvdb::FloatGrid::Ptr& grid, WrittenGrid written, Telling telling);
 
 }  // namespace tufa::tools

@@ -31,9 +31,9 @@ constexpr float kMostStep = 1.6f;
 // voxels, it is the topology or the shape that is in the way.
 constexpr float kStuckStep = 2;
 constexpr int kMostStuck = 3;
+constexpr float kStuckTolerance = 2;
 // Voxels; at larger tolerances the first attempt lets edges end anywhere near.
 constexpr float kLooseTolerance = 4;
-constexpr float kNarrowTolerance = 2;
 // What was beyond the tolerance is held within so many tolerances and voxels.
 constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 2;
@@ -151,7 +151,7 @@ float Reduction::toCount(Index count, float mostTolerance) {
     reduce(tolerance, count, options_.phases);
     stuck = triangleCount() == before ? stuck + 1 : 0;
     if (triangleCount() <= count + 1 || tolerance >= mostTolerance) break;
-    if (stuck == kMostStuck && tolerance > kNarrowTolerance) break;
+    if (stuck == kMostStuck && tolerance > kStuckTolerance) break;
     const float ratio =
         static_cast<float>(triangleCount()) / static_cast<float>(std::max<Index>(count, 1));
     tolerance *= stuck > 0 ? kStuckStep : std::clamp(std::pow(ratio, 0.4f), kLeastStep, kMostStep);

@@ -164,7 +164,6 @@ class PlacementGuard {
   std::vector<Conflict> findConflicts(bool first) {
     std::vector<Conflict> conflicts;
     if (!mesh_.normals.empty()) findFolds(first, conflicts);
-    if (first) result_.foldsFound = conflicts.size();
     const std::size_t folds = conflicts.size();
     findPairs(first, conflicts);
     if (first) result_.pairsFound = conflicts.size() - folds;

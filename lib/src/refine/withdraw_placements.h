@@ -12,7 +12,6 @@ namespace tufa::refine {
 /// What withdrawPlacements() found and did.
 struct Withdrawal {
   std::size_t pairsFound = 0;  ///< pairs of quads that intersected with all placements
-  std::size_t foldsFound = 0;  ///< edges folded with all placements
   std::size_t vertices = 0;    ///< vertices that were moved
   std::size_t left = 0;        ///< folds and pairs all of whose vertices are at their mass points
   /// The candidates of the mesh as it is now, see intersect::findCandidates(). Sorted.
@@ -31,9 +30,9 @@ struct Withdrawal {
 ///
 /// It ends, as a vertex moves a bounded number of times. What is decided in a round depends on what
 /// is within two cells, and few places take more than three rounds. Pairs of vertices at their mass
-/// points
-/// are left for repair; few inputs but noise have any. `margin`: as for findCandidates(). Cost: one
-/// pass over the triangles, one over the quads, and a search for pairs among the candidates.
+/// points are left for repair; few inputs but noise have any. `margin`: as for findCandidates().
+/// Cost: one pass over the triangles, one over the quads, and a search for pairs among the
+/// candidates.
 [[nodiscard]] Withdrawal withdrawPlacements(uniform::UniformSurface& surface, double margin,
                                             base::Job& job);
 

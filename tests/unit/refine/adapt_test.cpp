@@ -10,18 +10,14 @@
 #include "refine/split_cells.h"
 #include "support/mesh_oracle.h"
 #include "support/model.h"
+#include "unit/refine/ring.h"
 
 namespace tufa::refine {
 namespace {
 
-constexpr double kVoxel = 0.5;
-
-// A ring that needs cells of several sizes.
-openvdb::FloatGrid::Ptr ring() {
-  return test::levelSetOf(26, kVoxel, [](const Vec3& p) {
-    return std::hypot(std::hypot(p[0], p[1]) - 14.3, p[2]) - 6.2;
-  });
-}
+using test_ring::expectRing;
+using test_ring::kVoxel;
+using test_ring::ring;
 
 struct Adapted {
   test::ModelOf model{ring()};
@@ -33,13 +29,6 @@ struct Adapted {
     return adapt(model.model(), rule, {&*repair}, model.job());
   }
 };
-
-void expectRing(const Mesh& mesh) {
-  const test::MeshTopology topology = test::inspect(test::triangulated(mesh));
-  EXPECT_TRUE(topology.closed() && topology.manifold()) << topology;
-  EXPECT_EQ(topology.euler(), 0);
-  EXPECT_EQ(topology.components, 1U);
-}
 
 TEST(Adapt, KeepsTheRuleAndTheTopology) {
   Adapted ring;

@@ -6,17 +6,14 @@
 
 #include "support/mesh_oracle.h"
 #include "support/model.h"
+#include "unit/refine/ring.h"
 
 namespace tufa::refine {
 namespace {
 
-constexpr double kVoxel = 0.5;
-
-openvdb::FloatGrid::Ptr ring() {
-  return test::levelSetOf(26, kVoxel, [](const Vec3& p) {
-    return std::hypot(std::hypot(p[0], p[1]) - 14.3, p[2]) - 6.2;
-  });
-}
+using test_ring::expectRing;
+using test_ring::kVoxel;
+using test_ring::ring;
 
 // A large ball around the origin and a small one beside it.
 openvdb::FloatGrid::Ptr twoBalls() {
@@ -32,13 +29,6 @@ struct Reduced {
 
   explicit Reduced(openvdb::FloatGrid::ConstPtr grid) : model(std::move(grid)) {}
 };
-
-void expectRing(const Mesh& mesh) {
-  const test::MeshTopology topology = test::inspect(mesh);
-  EXPECT_TRUE(topology.closed() && topology.manifold()) << topology;
-  EXPECT_EQ(topology.euler(), 0);
-  EXPECT_EQ(topology.components, 1U);
-}
 
 TEST(SurfaceReduction, KeepsTheToleranceAndTheTopologyFromLevelToLevel) {
   Reduced made(ring());
