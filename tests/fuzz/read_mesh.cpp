@@ -2,17 +2,17 @@
 // vertices, or Error(UnreadableFile).
 
 #include <tufa/error.h>
+#include <tufa/memory.h>
 #include <cmath>
 
 #include "fuzz.h"
 #include "io/mesh/mesh_readers.h"
-#include "memory_file.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using tufa::fuzz::require;
-  const tufa::fuzz::MemoryFile file(data, size);
+  const tufa::FileBytes file{tufa::fuzz::viewOf(data, size)};
   try {
-    const tufa::Mesh mesh = tufa::io::TUFA_FUZZ_READER(tufa::io::InputBytes(file.path()));
+    const tufa::Mesh mesh = tufa::io::TUFA_FUZZ_READER(tufa::io::InputBytes(file));
     for (const tufa::Position& p : mesh.positions) {
       require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "finite positions");
     }

@@ -2,12 +2,11 @@
 
 #include <tufa/contour.h>
 #include <tufa/error.h>
-#include <tufa/io.h>
+#include <tufa/memory.h>
 #include <new>
 
 #include "fuzz.h"
 #include "grid/openvdb_templates.h"
-#include "memory_file.h"
 
 namespace {
 
@@ -20,10 +19,10 @@ bool small(const tufa::GridInfo& info) {
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const tufa::fuzz::MemoryFile file(data, size);
+  const tufa::FileBytes file{tufa::fuzz::viewOf(data, size)};
   try {
-    (void)tufa::describeGrids(file.path());
-    const openvdb::GridBase::Ptr grid = tufa::readGrid(file.path());
+    (void)tufa::describeGrids(file);
+    const openvdb::GridBase::Ptr grid = tufa::readGrid(file);
     if (!small(tufa::describeGrid(*grid))) return 0;
     tufa::ContourOptions options;
     options.nonFinite = tufa::NonFinite::Outside;

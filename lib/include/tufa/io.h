@@ -8,11 +8,28 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tufa {
+
+/// The formats of meshes that Tufa reads and writes.
+enum class MeshFormat {
+  Ply,  ///< .ply: binary when written
+  Obj,  ///< .obj
+  Stl,  ///< .stl: binary when written
+  Off,  ///< .off
+  Glb,  ///< .glb: binary glTF 2.0
+};
+
+/// The names of the formats in the order of MeshFormat: "ply", "obj", and so on.
+[[nodiscard]] TUFA_API std::span<const std::string_view> meshFormatNames();
+
+/// The format that a file name's ending says, in either case of letters. Throws
+/// Error(InvalidArgument) if it says none.
+[[nodiscard]] TUFA_API MeshFormat meshFormatOf(const std::filesystem::path& path);
 
 /// Options of write().
 struct WriteOptions {

@@ -6,6 +6,7 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
+#include <tufa/memory.h>
 #include <tufa/mesh.h>
 #include <tufa/octree.h>
 #include <tufa/progress.h>

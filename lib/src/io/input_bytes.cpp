@@ -53,20 +53,25 @@ InputBytes::InputBytes(const std::filesystem::path& path) : path_(path) {
   if (::fstat(file.number, &status) != 0) fail(std::strerror(errno));
   if (S_ISDIR(status.st_mode)) fail("it is a folder");
   if (!S_ISREG(status.st_mode)) fail("it is not a regular file");
-  size_ = static_cast<std::size_t>(status.st_size);
-  if (size_ == 0) fail("the file is empty");
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) fail("the file is empty");
   // A sparse file may claim any size, and the system may promise any.
   const auto memory = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                       static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  if (size_ < memory) bytes_.reset(new (std::nothrow) char[size_]);
-  if (!bytes_) fail("its " + std::to_string(size_) + " bytes do not fit into memory");
-  for (std::size_t done = 0; done < size_;) {
-    const ssize_t count = ::read(file.number, bytes_.get() + done, size_ - done);
+  if (size < memory) bytes_.reset(new (std::nothrow) char[size]);
+  if (!bytes_) fail("its " + std::to_string(size) + " bytes do not fit into memory");
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t count = ::read(file.number, bytes_.get() + done, size - done);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(std::strerror(errno));
     if (count == 0) fail("the file became shorter while it was read");
     done += static_cast<std::size_t>(count);
   }
+  view_ = {bytes_.get(), size};
+}
+
+InputBytes::InputBytes(const FileBytes& file) : path_(file.name), view_(file.bytes) {
+  if (view_.empty()) fail("the file is empty");
 }
 
 void InputBytes::fail(const std::string& cause) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tufa/memory.h>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,9 +16,11 @@ class InputBytes {
  public:
   /// Throws Error(UnreadableFile) for all but regular files that can be read.
   explicit InputBytes(const std::filesystem::path& path);
+  /// Of bytes that outlive it. Throws Error(UnreadableFile) if there are none.
+  explicit InputBytes(const FileBytes& file);
 
-  [[nodiscard]] std::string_view view() const { return {bytes_.get(), size_}; }
-  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::string_view view() const { return view_; }
+  [[nodiscard]] std::size_t size() const { return view_.size(); }
 
   /// The file's name.
   [[nodiscard]] std::string name() const { return path_.string(); }
@@ -29,8 +32,8 @@ class InputBytes {
 
  private:
   std::filesystem::path path_;
-  std::unique_ptr<char[]> bytes_;
-  std::size_t size_ = 0;
+  std::unique_ptr<char[]> bytes_;  ///< of a file
+  std::string_view view_;
 };
 
 /// Reads text line by line and word by word, and knows the number of the line.

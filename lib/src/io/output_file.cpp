@@ -74,6 +74,11 @@ OutputFile::OutputFile(const std::filesystem::path& path) : target_(path) {
   }
 }
 
+OutputFile::OutputFile(std::ostream& stream)
+    : target_("the stream"), stream_(&stream), direct_(true) {
+  buffer_.reserve(kBufferBytes);
+}
+
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
@@ -119,6 +124,11 @@ void OutputFile::fail(const std::string& what, int errorNumber) const {
 }
 
 void OutputFile::writeAll(const char* data, std::size_t size) {
+  if (stream_ != nullptr) {
+    if (!stream_->write(data, static_cast<std::streamsize>(size))) fail("writing failed", 0);
+    flushed_ += size;
+    return;
+  }
   while (size > 0) {
     const ssize_t written = ::write(descriptor_, data, size);
     if (written < 0 && errno == EINTR) continue;
@@ -154,6 +164,10 @@ void OutputFile::seek(std::uint64_t offset) {
 
 void OutputFile::commit() {
   flush();
+  if (stream_ != nullptr) {
+    if (!stream_->flush()) fail("writing failed", 0);
+    return;
+  }
   const int descriptor = descriptor_;
   descriptor_ = -1;
   // Some file systems report a full disk only here.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <ostream>
 #include <streambuf>
 #include <string>
 #include <vector>
@@ -10,11 +11,13 @@
 namespace tufa::io {
 
 /// A file that appears complete or not at all: bytes go to a temporary file in the target's folder,
-/// which commit() renames and the destructor removes otherwise. A pipe or a device is written to
-/// directly. All members throw Error(UnwritableFile).
+/// which commit() renames and the destructor removes otherwise. A pipe, a device or a stream is
+/// written to directly. All members throw Error(UnwritableFile).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
+  /// Writes to a stream that outlives it. What the stream throws passes through.
+  explicit OutputFile(std::ostream& stream);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -42,7 +45,8 @@ class OutputFile {
   std::vector<char> buffer_;
   std::uint64_t flushed_ = 0;
   int descriptor_ = -1;
-  bool direct_ = false;  ///< the target is a pipe or a device
+  std::ostream* stream_ = nullptr;  ///< in place of a descriptor
+  bool direct_ = false;             ///< the target is a pipe, a device or a stream
 };
 
 /// Throws Error(UnwritableFile) if it is certain already that OutputFile could not write there.

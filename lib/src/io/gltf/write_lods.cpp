@@ -1,6 +1,7 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
+#include <tufa/memory.h>
 #include <cmath>
 
 #include "base/job.h"
@@ -198,14 +199,13 @@ class LodWriter {
   void writeOne(const std::filesystem::path& path) {
     requireGlb(path);
     OutputFile file(path);
-    job_.run([&] {
-      LodDocument document(chain_, options_);
-      for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
-        addLevel(document, level);
-      }
-      finish(document, file, path, 1);
-    });
-    job_.finish();
+    writeAll(file);
+    report_.files.push_back(path);
+  }
+
+  void writeOne(std::ostream& stream) {
+    OutputFile file(stream);
+    writeAll(file);
   }
 
   void writeMany(const std::filesystem::path& path) {
@@ -219,7 +219,7 @@ class LodWriter {
 
  private:
   static void requireGlb(const std::filesystem::path& path) {
-    if (formatOf(path) == MeshFormat::Glb) return;
+    if (meshFormatOf(path) == MeshFormat::Glb) return;
     throw Error(ErrorCode::InvalidArgument,
                 path.string() +
                     ": only .glb holds several levels; write {} in the file name for one file a "
@@ -237,6 +237,17 @@ class LodWriter {
     return done / all;
   }
 
+  void writeAll(OutputFile& file) {
+    job_.run([&] {
+      LodDocument document(chain_, options_);
+      for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
+        addLevel(document, level);
+      }
+      finish(document, file, 1);
+    });
+    job_.finish();
+  }
+
   void addLevel(LodDocument& document, std::size_t level) {
     const Mesh& mesh = chain_.levels[level].mesh;
     job_.beginStage("encoding", shareUpTo(level + 1));
@@ -251,21 +262,20 @@ class LodWriter {
     document.addLevel(level, std::move(streams));
   }
 
-  void finish(LodDocument& document, OutputFile& file, const std::filesystem::path& path,
-              double end) {
+  void finish(LodDocument& document, OutputFile& file, double end) {
     job_.beginStage("writing", end);
     document.write(file);
     file.commit();
-    report_.files.push_back(path);
   }
 
   void writeLevel(const std::filesystem::path& path, std::size_t level) {
     const double end = shareUpTo(level + 1);
-    if (formatOf(path) == MeshFormat::Glb) {
+    if (meshFormatOf(path) == MeshFormat::Glb) {
       OutputFile file(path);
       LodDocument document(chain_, options_);
       addLevel(document, level);
-      finish(document, file, path, end);
+      finish(document, file, end);
+      report_.files.push_back(path);
       return;
     }
     job_.beginStage("writing", end);
@@ -286,6 +296,18 @@ class LodWriter {
   base::Job job_;
 };
 
+template <class Work>
+void runWriter(const LodChain& chain, const LodWriteOptions& options, LodWriteReport* report,
+               Work&& work) {
+  requireInRange(options);
+  LodWriteReport found;
+  base::runIsolated([&] {
+    LodWriter writer(chain, options, found);
+    work(writer);
+  });
+  if (report != nullptr) *report = std::move(found);
+}
+
 }  // namespace
 }  // namespace io
 
@@ -299,17 +321,18 @@ std::filesystem::path lodFile(const std::filesystem::path& path, std::size_t lev
 
 void writeLods(const LodChain& chain, const std::filesystem::path& path,
                const LodWriteOptions& options, LodWriteReport* report) {
-  io::requireInRange(options);
-  LodWriteReport found;
-  base::runIsolated([&] {
-    io::LodWriter writer(chain, options, found);
+  io::runWriter(chain, options, report, [&](io::LodWriter& writer) {
     if (io::namesMany(path)) {
       writer.writeMany(path);
     } else {
       writer.writeOne(path);
     }
   });
-  if (report != nullptr) *report = std::move(found);
+}
+
+void writeLods(const LodChain& chain, std::ostream& stream, const LodWriteOptions& options,
+               LodWriteReport* report) {
+  io::runWriter(chain, options, report, [&](io::LodWriter& writer) { writer.writeOne(stream); });
 }
 
 }  // namespace tufa

@@ -2,6 +2,7 @@
 
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <tufa/memory.h>
 #include <algorithm>
 #include <cmath>
 
@@ -105,6 +106,16 @@ GridInfo describe(const openvdb::GridBase& grid) {
   return info;
 }
 
+std::vector<GridInfo> describeIn(io::VdbReader& reader) {
+  std::vector<GridInfo> infos;
+  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
+    // OpenVDB frees the nodes of a tree in parallel too.
+    base::runIsolated([&] { infos.push_back(describe(*reader.readGrid(n))); });
+    infos.back().name = reader.gridName(n);  // tells grids of one name apart
+  }
+  return infos;
+}
+
 }  // namespace
 
 GridInfo describeGrid(const openvdb::GridBase& grid) {
@@ -136,13 +147,12 @@ std::string io::whyOutOfRange(const openvdb::GridBase& grid) {
 
 std::vector<GridInfo> describeGrids(const std::filesystem::path& path) {
   io::VdbReader reader(path);
-  std::vector<GridInfo> infos;
-  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
-    // OpenVDB frees the nodes of a tree in parallel too.
-    base::runIsolated([&] { infos.push_back(describe(*reader.readGrid(n))); });
-    infos.back().name = reader.gridName(n);  // tells grids of one name apart
-  }
-  return infos;
+  return describeIn(reader);
+}
+
+std::vector<GridInfo> describeGrids(const FileBytes& file) {
+  io::VdbReader reader(file);
+  return describeIn(reader);
 }
 
 }  // namespace tufa

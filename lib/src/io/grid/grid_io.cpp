@@ -2,6 +2,7 @@
 
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <tufa/memory.h>
 #include <algorithm>
 #include <ostream>
 
@@ -30,16 +31,15 @@ std::string listNames(const io::VdbReader& reader) {
   return names;
 }
 
-std::size_t findNamed(const io::VdbReader& reader, const std::string& name,
-                      const std::filesystem::path& path) {
+std::size_t findNamed(const io::VdbReader& reader, const std::string& name) {
   for (std::size_t n = 0; n < reader.gridCount(); ++n) {
     if (reader.isNamed(n, name)) return n;
   }
   throw Error(ErrorCode::UnknownGrid,
-              "no grid \"" + name + "\" in " + path.string() + "; it holds " + listNames(reader));
+              "no grid \"" + name + "\" in " + reader.name() + "; it holds " + listNames(reader));
 }
 
-std::size_t findMeshable(io::VdbReader& reader, const std::filesystem::path& path) {
+std::size_t findMeshable(io::VdbReader& reader) {
   std::optional<std::size_t> found;
   std::string reasons;
   for (std::size_t n = 0; n < reader.gridCount(); ++n) {
@@ -54,13 +54,10 @@ std::size_t findMeshable(io::VdbReader& reader, const std::filesystem::path& pat
   }
   if (found) return *found;
   throw Error(ErrorCode::UnsupportedGrid,
-              "no grid in " + path.string() + " can be meshed (" + reasons + ")");
+              "no grid in " + reader.name() + " can be meshed (" + reasons + ")");
 }
 
-}  // namespace
-
-std::vector<GridName> listGrids(const std::filesystem::path& path) {
-  io::VdbReader reader(path);
+std::vector<GridName> listIn(io::VdbReader& reader) {
   std::vector<GridName> grids;
   for (std::size_t n = 0; n < reader.gridCount(); ++n) {
     grids.push_back({reader.gridName(n), io::whyNotMeshable(*reader.readOutline(n)).empty()});
@@ -68,40 +65,78 @@ std::vector<GridName> listGrids(const std::filesystem::path& path) {
   return grids;
 }
 
-openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
-                                const std::optional<std::string>& name) {
-  io::VdbReader reader(path);
+openvdb::GridBase::Ptr readFrom(io::VdbReader& reader, const std::optional<std::string>& name) {
   if (reader.gridCount() == 0) {
-    throw Error(ErrorCode::UnreadableFile, "cannot read " + path.string() + ": it holds no grid");
+    throw Error(ErrorCode::UnreadableFile, "cannot read " + reader.name() + ": it holds no grid");
   }
-  if (!name) return reader.readGrid(findMeshable(reader, path));
-  const std::size_t index = findNamed(reader, *name, path);
+  if (!name) return reader.readGrid(findMeshable(reader));
+  const std::size_t index = findNamed(reader, *name);
   // Of no use for anything: OpenVDB's own functions throw on such transforms.
   if (const std::string why = io::whyOutOfRange(*reader.readOutline(index)); !why.empty()) {
     throw Error(ErrorCode::UnsupportedGrid,
-                "grid \"" + *name + "\" in " + path.string() + " cannot be meshed: " + why);
+                "grid \"" + *name + "\" in " + reader.name() + " cannot be meshed: " + why);
   }
   return reader.readGrid(index);
 }
 
-void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
-                const std::filesystem::path& path) {
+void writeTo(io::OutputFile& file, const std::vector<openvdb::GridBase::ConstPtr>& grids) {
   openvdb::initialize();
-  io::OutputFile file(path);
   io::OutputFileBuffer buffer(file);
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
-  try {
-    // OpenVDB counts voxels in parallel for the metadata.
-    base::runIsolated([&] { VdbWriter().writeTo(stream, grids, file.seekable()); });
-  } catch (const Error&) {
-    throw;
-  } catch (const openvdb::Exception& error) {
-    throw Error(ErrorCode::UnwritableFile, "cannot write " + path.string() + ": " + error.what());
-  } catch (const std::ios_base::failure& error) {
-    throw Error(ErrorCode::UnwritableFile, "cannot write " + path.string() + ": " + error.what());
-  }
+  // OpenVDB counts voxels in parallel for the metadata.
+  base::runIsolated([&] { VdbWriter().writeTo(stream, grids, file.seekable()); });
   file.commit();
+}
+
+/// Calls write(), and gives what OpenVDB and streams throw the name of what was written to.
+template <class Write>
+void namingErrors(const std::string& target, Write&& write) {
+  try {
+    write();
+  } catch (const openvdb::Exception& error) {
+    throw Error(ErrorCode::UnwritableFile, "cannot write " + target + ": " + error.what());
+  } catch (const std::ios_base::failure& error) {
+    throw Error(ErrorCode::UnwritableFile, "cannot write " + target + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<GridName> listGrids(const std::filesystem::path& path) {
+  io::VdbReader reader(path);
+  return listIn(reader);
+}
+
+std::vector<GridName> listGrids(const FileBytes& file) {
+  io::VdbReader reader(file);
+  return listIn(reader);
+}
+
+openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
+                                const std::optional<std::string>& name) {
+  io::VdbReader reader(path);
+  return readFrom(reader, name);
+}
+
+openvdb::GridBase::Ptr readGrid(const FileBytes& file, const std::optional<std::string>& name) {
+  io::VdbReader reader(file);
+  return readFrom(reader, name);
+}
+
+void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
+                const std::filesystem::path& path) {
+  namingErrors(path.string(), [&] {
+    io::OutputFile file(path);
+    writeTo(file, grids);
+  });
+}
+
+void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids, std::ostream& stream) {
+  namingErrors("the stream", [&] {
+    io::OutputFile file(stream);
+    writeTo(file, grids);
+  });
 }
 
 void requireWritable(const std::filesystem::path& path) { io::requireWritablePath(path); }

@@ -5,10 +5,13 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <new>
+#include <utility>
 
 #include "io/grid/head_checks.h"
 #include "io/grid/tree_walker.h"
+#include "io/memory_buffer.h"
 
 namespace tufa::io {
 
@@ -25,14 +28,22 @@ GridBase::Ptr createGrid(const GridDescriptor& descriptor) {
 
 }  // namespace
 
-VdbReader::VdbReader(const std::filesystem::path& path) : path_(path) {
+VdbReader::VdbReader(const std::filesystem::path& path) : name_(path.string()) { openFile(path); }
+
+VdbReader::VdbReader(const FileBytes& file) : name_(file.name), fileBytes_(file.bytes.size()) {
+  begin(std::make_unique<MemoryBuffer>(file.bytes));
+}
+
+void VdbReader::begin(std::unique_ptr<std::streambuf> buffer) {
+  buffer_ = std::move(buffer);
+  stream_.rdbuf(buffer_.get());
   openvdb::initialize();
   requireVdb();
   guarded("the header", [this] { readHead(); });
 }
 
 void VdbReader::fail(const std::string& cause) const {
-  throw Error(ErrorCode::UnreadableFile, "cannot read " + path_.string() + ": " + cause);
+  throw Error(ErrorCode::UnreadableFile, "cannot read " + name_ + ": " + cause);
 }
 
 void VdbReader::guarded(const std::string& what, const std::function<void()>& work) const {
@@ -55,17 +66,22 @@ void VdbReader::guarded(const std::string& what, const std::function<void()>& wo
   }
 }
 
-void VdbReader::requireVdb() {
+void VdbReader::openFile(const std::filesystem::path& path) {
   std::error_code error;
-  const auto status = std::filesystem::status(path_, error);
+  const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) fail(std::strerror(ENOENT));
   if (error) fail(error.message());
   if (std::filesystem::is_directory(status)) fail("it is a folder");
   if (!std::filesystem::is_regular_file(status)) fail("it is not a regular file");
-  stream_.open(path_, std::ios_base::binary);
-  if (!stream_) fail(std::strerror(errno));
-  fileBytes_ = std::filesystem::file_size(path_, error);
+  auto file = std::make_unique<std::filebuf>();
+  if (file->open(path, std::ios_base::in | std::ios_base::binary) == nullptr) {
+    fail(std::strerror(errno));
+  }
+  fileBytes_ = std::filesystem::file_size(path, error);
+  begin(std::move(file));
+}
 
+void VdbReader::requireVdb() {
   constexpr std::size_t kMagicBytes = 8;
   const std::array<char, kMagicBytes> vdb{' ', 'B', 'D', 'V', 0, 0, 0, 0};
   std::array<char, kMagicBytes> magic{};

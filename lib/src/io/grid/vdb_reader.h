@@ -5,9 +5,12 @@
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
 
+#include <tufa/memory.h>
 #include <filesystem>
-#include <fstream>
 #include <functional>
+#include <istream>
+#include <memory>
+#include <streambuf>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,11 @@ namespace tufa::io {
 class VdbReader : private openvdb::io::Archive {
  public:
   explicit VdbReader(const std::filesystem::path& path);
+  /// Of bytes that outlive it.
+  explicit VdbReader(const FileBytes& file);
+
+  /// Of the file, for messages.
+  [[nodiscard]] const std::string& name() const { return name_; }
 
   [[nodiscard]] std::size_t gridCount() const { return entries_.size(); }
 
@@ -38,6 +46,8 @@ class VdbReader : private openvdb::io::Archive {
     openvdb::GridBase::Ptr whole;  ///< set for files without offsets, which are read in one go
   };
 
+  void openFile(const std::filesystem::path& path);
+  void begin(std::unique_ptr<std::streambuf> buffer);
   void requireVdb();
   void readHead();
   void readSequentially(std::size_t index);
@@ -62,9 +72,10 @@ class VdbReader : private openvdb::io::Archive {
   void guarded(const std::string& what, const std::function<void()>& work) const;
   [[noreturn]] void fail(const std::string& cause) const;
 
-  std::filesystem::path path_;
+  std::string name_;
   openvdb::SharedPtr<openvdb::io::StreamMetadata> streamMetadata_;  ///< stream_ keeps its address
-  std::ifstream stream_;
+  std::unique_ptr<std::streambuf> buffer_;
+  std::istream stream_{nullptr};
   std::uint64_t fileBytes_ = 0;
   std::vector<Entry> entries_;
 };

@@ -12,13 +12,6 @@
 
 namespace tufa::io {
 
-/// The mesh formats that Tufa reads and writes.
-enum class MeshFormat { Ply, Obj, Stl, Off, Glb };
-
-/// The format that a file name's ending says, in either case of letters. Throws
-/// Error(InvalidArgument).
-[[nodiscard]] MeshFormat formatOf(const std::filesystem::path& path);
-
 /// The corners of the box around all positions; both zero for an empty mesh.
 struct Bounds {
   Position least{0, 0, 0};

@@ -1,22 +1,22 @@
 #include <tufa/io.h>
+#include <tufa/memory.h>
 
-#include "io/mesh/mesh_format.h"
 #include "io/mesh/mesh_readers.h"
 
 namespace tufa {
 namespace {
 
-Mesh readAs(io::MeshFormat format, const io::InputBytes& input) {
+Mesh readAs(MeshFormat format, const io::InputBytes& input) {
   switch (format) {
-    case io::MeshFormat::Ply:
+    case MeshFormat::Ply:
       return io::readPly(input);
-    case io::MeshFormat::Obj:
+    case MeshFormat::Obj:
       return io::readObj(input);
-    case io::MeshFormat::Stl:
+    case MeshFormat::Stl:
       return io::readStl(input);
-    case io::MeshFormat::Off:
+    case MeshFormat::Off:
       return io::readOff(input);
-    case io::MeshFormat::Glb:
+    case MeshFormat::Glb:
       return io::readGlb(input);
   }
   return {};
@@ -25,8 +25,12 @@ Mesh readAs(io::MeshFormat format, const io::InputBytes& input) {
 }  // namespace
 
 Mesh readMesh(const std::filesystem::path& path) {
-  const io::MeshFormat format = io::formatOf(path);
+  const MeshFormat format = meshFormatOf(path);
   return readAs(format, io::InputBytes(path));
+}
+
+Mesh readMesh(const FileBytes& file, MeshFormat format) {
+  return readAs(format, io::InputBytes(file));
 }
 
 }  // namespace tufa

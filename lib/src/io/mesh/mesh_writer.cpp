@@ -1,23 +1,20 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <tufa/memory.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "base/job.h"
+#include "base/known_enum.h"
 #include "base/single_precision.h"
+#include "io/input_bytes.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
 namespace io {
 namespace {
-
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
 
 /// Devices such as /dev/null have no ending; they get the format with the least to say.
 bool isBareDevice(const std::filesystem::path& path) {
@@ -28,17 +25,6 @@ bool isBareDevice(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-MeshFormat formatOf(const std::filesystem::path& path) {
-  const std::string ending = lowerCase(path.extension().string());
-  if (ending == ".ply") return MeshFormat::Ply;
-  if (ending == ".obj") return MeshFormat::Obj;
-  if (ending == ".stl") return MeshFormat::Stl;
-  if (ending == ".off") return MeshFormat::Off;
-  if (ending == ".glb") return MeshFormat::Glb;
-  throw Error(ErrorCode::InvalidArgument, "cannot tell the mesh format of " + path.string() +
-                                              ": its ending is none of .ply .obj .stl .off .glb");
-}
 
 Bounds boundsOf(const Mesh& mesh) {
   Bounds bounds;
@@ -117,8 +103,10 @@ bool hasNormalsAtCorners(MeshFormat format) {
   return format == MeshFormat::Obj || format == MeshFormat::Glb;
 }
 
-void writeParts(std::span<MeshPart> parts, MeshFormat format, const std::filesystem::path& path,
-                const WriteOptions& options) {
+/// `open()` opens what is written to, once the options are known to be sound.
+template <class Open>
+void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions& options,
+                Open&& open) {
   if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
     throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
   }
@@ -129,7 +117,7 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const std::filesys
     total +=
         mesh.positions.size() + mesh.normals.size() + mesh.quads.size() + mesh.triangles.size();
   }
-  OutputFile file(path);
+  OutputFile file(open());
   const double begin = hasNormalsAtCorners(format) ? splitNormals(parts, options) : 0;
   MeshSink sink(file, total, begin, options.progress);
   switch (format) {
@@ -152,29 +140,67 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const std::filesys
   file.commit();
 }
 
+/// Throws Error(InvalidArgument) if the format does not hold several meshes.
+std::vector<MeshPart> partsOf(const std::vector<NamedMesh>& meshes, MeshFormat format,
+                              const std::string& target) {
+  if (!hasNormalsAtCorners(format)) {
+    throw Error(ErrorCode::InvalidArgument,
+                target + ": of the formats only .glb and .obj hold several meshes");
+  }
+  std::vector<MeshPart> parts;
+  for (const NamedMesh& named : meshes) parts.push_back({&named.mesh, named.name, {}});
+  return parts;
+}
+
 }  // namespace
 }  // namespace io
 
+std::span<const std::string_view> meshFormatNames() {
+  static constexpr std::array<std::string_view, 5> names = {"ply", "obj", "stl", "off", "glb"};
+  return names;
+}
+
+MeshFormat meshFormatOf(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  const auto names = meshFormatNames();
+  std::string all;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    all.append(" .").append(names[i]);
+    if (ending.empty()) continue;
+    if (io::sameWord(std::string_view(ending).substr(1), names[i])) {
+      return static_cast<MeshFormat>(i);
+    }
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              "cannot tell the mesh format of " + path.string() + ": its ending is none of" + all);
+}
+
 void requireMeshEnding(const std::filesystem::path& path) {
-  if (!io::isBareDevice(path)) static_cast<void>(io::formatOf(path));
+  if (!io::isBareDevice(path)) static_cast<void>(meshFormatOf(path));
 }
 
 void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
-  const auto format = io::isBareDevice(path) ? io::MeshFormat::Ply : io::formatOf(path);
+  const auto format = io::isBareDevice(path) ? MeshFormat::Ply : meshFormatOf(path);
   io::MeshPart part{&mesh, options.name, {}};
-  io::writeParts({&part, 1}, format, path, options);
+  io::writeParts({&part, 1}, format, options, [&] { return io::OutputFile(path); });
+}
+
+void write(const Mesh& mesh, std::ostream& stream, MeshFormat format, const WriteOptions& options) {
+  base::requireKnown(format, MeshFormat::Glb, "the format");
+  io::MeshPart part{&mesh, options.name, {}};
+  io::writeParts({&part, 1}, format, options, [&] { return io::OutputFile(stream); });
 }
 
 void writeMeshes(const std::vector<NamedMesh>& meshes, const std::filesystem::path& path,
                  const WriteOptions& options) {
-  const auto format = io::formatOf(path);
-  if (!io::hasNormalsAtCorners(format)) {
-    throw Error(ErrorCode::InvalidArgument,
-                path.string() + ": of the formats only .glb and .obj hold several meshes");
-  }
-  std::vector<io::MeshPart> parts;
-  for (const NamedMesh& named : meshes) parts.push_back({&named.mesh, named.name, {}});
-  io::writeParts(parts, format, path, options);
+  std::vector<io::MeshPart> parts = io::partsOf(meshes, meshFormatOf(path), path.string());
+  io::writeParts(parts, meshFormatOf(path), options, [&] { return io::OutputFile(path); });
+}
+
+void writeMeshes(const std::vector<NamedMesh>& meshes, std::ostream& stream, MeshFormat format,
+                 const WriteOptions& options) {
+  std::vector<io::MeshPart> parts = io::partsOf(meshes, format, "the stream");
+  io::writeParts(parts, format, options, [&] { return io::OutputFile(stream); });
 }
 
 }  // namespace tufa

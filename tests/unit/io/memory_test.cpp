@@ -1,0 +1,103 @@
+// Meshes, LODs and grids through memory and streams in place of files.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <tufa/contour.h>
+#include <tufa/memory.h>
+#include <tufa/shapes.h>
+#include <sstream>
+
+#include "support/expect_error.h"
+#include "support/scratch_folder.h"
+
+namespace tufa {
+namespace {
+
+using test::expectError;
+using test::readBytes;
+using test::ScratchFolder;
+
+openvdb::FloatGrid::Ptr makeGrid(Shape shape) {
+  ShapeOptions options;
+  options.voxelSize = 0.1;
+  return makeShape(shape, options);
+}
+
+TEST(Memory, MeshesHaveTheBytesOfFiles) {
+  const ScratchFolder folder;
+  const Mesh mesh = contour(*makeGrid(Shape::Box));
+  for (const std::string_view name : meshFormatNames()) {
+    const auto path = folder / ("box." + std::string(name));
+    write(mesh, path);
+    std::ostringstream stream;
+    write(mesh, stream, meshFormatOf(path));
+    EXPECT_EQ(stream.str(), readBytes(path)) << name;
+    const std::string bytes = stream.str();
+    EXPECT_EQ(readMesh({bytes}, meshFormatOf(path)).positions, readMesh(path).positions) << name;
+  }
+}
+
+TEST(Memory, SeveralMeshesAndLodsHaveTheBytesOfFiles) {
+  const ScratchFolder folder;
+  const auto grid = makeGrid(Shape::Torus);
+  const Mesh mesh = contour(*grid);
+  std::ostringstream meshes, lods;
+  writeMeshes({{"a", mesh}, {"b", mesh}}, folder / "m.obj");
+  writeMeshes({{"a", mesh}, {"b", mesh}}, meshes, MeshFormat::Obj);
+  EXPECT_EQ(meshes.str(), readBytes(folder / "m.obj"));
+  expectError(ErrorCode::InvalidArgument, "several meshes", [&] {
+    writeMeshes({{"a", mesh}}, meshes, MeshFormat::Ply);
+  });
+
+  LodOptions options;
+  options.levels = 2;
+  const LodChain chain = buildLods(*grid, options);
+  LodWriteReport report;
+  writeLods(chain, folder / "l.glb");
+  writeLods(chain, lods, {}, &report);
+  EXPECT_EQ(lods.str(), readBytes(folder / "l.glb"));
+  EXPECT_TRUE(report.files.empty());
+  EXPECT_EQ(report.vertices.size(), 2u);
+}
+
+TEST(Memory, GridsComeBackFromStreamsAndFiles) {
+  const ScratchFolder folder;
+  const auto sphere = makeGrid(Shape::Sphere), box = makeGrid(Shape::Box);
+  writeGrids({sphere, box}, folder / "two.vdb");
+  std::ostringstream stream;
+  writeGrids({sphere, box}, stream);
+  for (const std::string& bytes : {readBytes(folder / "two.vdb"), stream.str()}) {
+    ASSERT_EQ(listGrids(FileBytes{bytes}).size(), 2u);
+    EXPECT_EQ(describeGrids(FileBytes{bytes})[1].activeVoxels, box->activeVoxelCount());
+    const auto grid = readGrid(FileBytes{bytes}, "box");
+    EXPECT_EQ(contour(*grid).positions, contour(*box).positions);
+    EXPECT_EQ(readGrid(FileBytes{bytes})->getName(), "sphere");
+  }
+}
+
+TEST(Memory, DamageIsAnErrorWithTheGivenName) {
+  std::ostringstream stream;
+  writeGrids({makeGrid(Shape::Sphere)}, stream);
+  const std::string bytes = stream.str();
+  for (const std::size_t size : {std::size_t{0}, std::size_t{4}, bytes.size() / 2}) {
+    expectError(ErrorCode::UnreadableFile, "cannot read the pipe: ", [&] {
+      static_cast<void>(readGrid(FileBytes{std::string_view(bytes).substr(0, size), "the pipe"}));
+    });
+  }
+  expectError(ErrorCode::UnreadableFile, "cannot read memory: ", [] {
+    static_cast<void>(readMesh(FileBytes{"solid nothing"}, MeshFormat::Ply));
+  });
+}
+
+TEST(Memory, AStreamThatFailsIsAnError) {
+  const Mesh mesh = contour(*makeGrid(Shape::Sphere));
+  std::ostringstream stream;
+  stream.setstate(std::ios_base::badbit);
+  expectError(ErrorCode::UnwritableFile, "stream", [&] { write(mesh, stream, MeshFormat::Ply); });
+  expectError(ErrorCode::UnwritableFile, "stream",
+              [&] { writeGrids({makeGrid(Shape::Sphere)}, stream); });
+}
+
+}  // namespace
+}  // namespace tufa
