@@ -1,17 +1,23 @@
 #include <CLI/CLI.hpp>
 
 #include <tufa/check.h>
+#include <tufa/error.h>
 #include <tufa/io.h>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "checker.h"
 #include "commands.h"
 #include "console.h"
+#include "file_list.h"
 #include "progress_bar.h"
 #include "report.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -20,7 +26,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CheckArguments {
-  std::string input;
+  std::vector<std::string> inputs;
+  std::optional<std::string> format;  ///< of standard input
   std::optional<std::string> against;
   std::optional<std::string> grid;
   std::optional<std::string> isovalue;
@@ -46,33 +53,56 @@ DistanceReport measureDistance(const Mesh& mesh, const openvdb::GridBase& grid,
   return checkAgainst(mesh, grid, options);
 }
 
-int runCheck(const CheckArguments& arguments) {
-  requireChecker();
-  // Both files are read before the work begins: a wrong name should not show minutes later.
-  const Mesh mesh = readMesh(arguments.input);
+/// What meshes are measured against.
+struct Truth {
   std::shared_ptr<openvdb::GridBase> grid;
   std::optional<double> isovalue;
-  if (arguments.against) {
-    grid = readVolume(*arguments.against, arguments.grid);
-    isovalue = readIsovalue(arguments.isovalue, *grid, *arguments.against);
-  }
+};
 
+int checkFile(const std::string& file, const Truth& truth, const CheckArguments& arguments,
+              FileList& files) {
+  const Mesh mesh = readMeshInput(file, isStandard(file) ? arguments.format : std::nullopt);
   // Distances are measured at many places of both surfaces, about as long as all else takes.
-  ProgressBar bar(arguments.quiet, grid ? std::vector{1.0, 1.0} : std::vector{1.0});
+  ProgressBar bar(arguments.quiet, truth.grid ? std::vector{1.0, 1.0} : std::vector{1.0});
   const CheckReport report = checkMesh(mesh, arguments, bar);
   std::optional<DistanceReport> distance;
-  if (grid) distance = measureDistance(mesh, *grid, isovalue, arguments, bar);
+  if (truth.grid) distance = measureDistance(mesh, *truth.grid, truth.isovalue, arguments, bar);
 
   if (arguments.json) {
     Json json;
-    json["file"] = arguments.input;
+    json["file"] = file;
     json.update(toJson(report));
     if (distance) json["distance"] = toJson(*distance);
-    print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    files.add(std::move(json));
   } else if (!arguments.quiet) {
-    print(arguments.input + "\n" + (distance ? describe(*distance) : "") + describe(report));
+    print(shownInput(file) + "\n" + (distance ? describe(*distance) : "") + describe(report));
   }
   return report.watertight() ? kDone : kPromiseBroken;
+}
+
+void requireFeasible(const CheckArguments& arguments) {
+  requireChecker();
+  const auto standard =
+      std::count(arguments.inputs.begin(), arguments.inputs.end(), std::string("-"));
+  if (standard + (arguments.against == "-" ? 1 : 0) > 1) {
+    throw Error(ErrorCode::InvalidArgument, "standard input, -, can be read once only");
+  }
+  if (standard == 1) static_cast<void>(meshFormat("-", arguments.format));
+  if (standard == 0 && arguments.format) {
+    throw Error(ErrorCode::InvalidArgument, "--format is for standard input, -");
+  }
+}
+
+int runCheck(const CheckArguments& arguments) {
+  requireFeasible(arguments);
+  Truth truth;
+  if (arguments.against) {
+    truth.grid = readVolume(*arguments.against, arguments.grid);
+    truth.isovalue = readIsovalue(arguments.isovalue, *truth.grid, *arguments.against);
+  }
+  FileList files(arguments.inputs, arguments.json);
+  files.forEach([&](const std::string& file) { return checkFile(file, truth, arguments, files); });
+  return files.finish();
 }
 
 }  // namespace
@@ -81,7 +111,11 @@ void addCheckCommand(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* const check = app.add_subcommand(
       "check", checkerHelp("Say whether a mesh is watertight; exit code 1 if it is not"));
-  check->add_option("MESH", arguments->input, "a .ply, .obj, .stl, .off or .glb file")->required();
+  check
+      ->add_option("MESH", arguments->inputs,
+                   "a .ply, .obj, .stl, .off or .glb file, or several; - for standard input")
+      ->required();
+  addFormatOption(*check, arguments->format, "of the mesh in standard input");
   CLI::Option* const against =
       check->add_option("--against", arguments->against,
                         "measure the distance to the isosurface of a grid of this .vdb file");

@@ -19,6 +19,8 @@ namespace {
 // A signal handler may touch little else.
 volatile std::sig_atomic_t stopRequested = 0;
 
+bool printsToStandardError = false;
+
 void requestStop(int signal) {
   stopRequested = 1;
   // A second Ctrl-C ends the program at once, should the first not be heard.
@@ -37,11 +39,15 @@ void installSignalHandlers() {
 bool interrupted() { return stopRequested != 0; }
 
 void print(const std::string& text) {
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (written && std::fflush(stdout) == 0) return;
-  throw Error(ErrorCode::UnwritableFile,
-              std::string("cannot write standard output: ") + std::strerror(errno));
+  auto* const target = printsToStandardError ? stderr : stdout;
+  const bool written = std::fwrite(text.data(), 1, text.size(), target) == text.size();
+  if (written && std::fflush(target) == 0) return;
+  throw Error(ErrorCode::UnwritableFile, std::string("cannot write standard ") +
+                                             (printsToStandardError ? "error: " : "output: ") +
+                                             std::strerror(errno));
 }
+
+void printToStandardError() { printsToStandardError = true; }
 
 void printNote(const std::string& text) {
   std::fprintf(stderr, "tufa: %s\n", base::printable(text).c_str());

@@ -16,6 +16,9 @@ void installSignalHandlers();
 /// Writes to standard output. Throws Error(UnwritableFile) if it is full or closed.
 void print(const std::string& text);
 
+/// From now on print() writes to standard error: standard output is for data.
+void printToStandardError();
+
 /// One line on standard error, prefixed by the command's name.
 void printNote(const std::string& text);
 

@@ -8,6 +8,8 @@
 
 #include "commands.h"
 #include "console.h"
+#include "file_list.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -16,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
-  std::string input;
+  std::vector<std::string> inputs;
   bool json = false;
 };
 
@@ -71,21 +73,33 @@ std::string describe(const GridInfo& info) {
   return text;
 }
 
-int runInfo(const InfoArguments& arguments) {
-  const std::vector<GridInfo> grids = describeVolumes(arguments.input);
-  if (arguments.json) {
-    Json json;
-    json["file"] = arguments.input;
-    json["grids"] = Json::array();
-    for (const GridInfo& grid : grids) json["grids"].push_back(toJson(grid));
-    print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-    return kDone;
-  }
-  std::string text = arguments.input + ": " + std::to_string(grids.size()) +
+Json toJson(const std::string& file, const std::vector<GridInfo>& grids) {
+  Json json;
+  json["file"] = file;
+  json["grids"] = Json::array();
+  for (const GridInfo& grid : grids) json["grids"].push_back(toJson(grid));
+  return json;
+}
+
+std::string describe(const std::string& file, const std::vector<GridInfo>& grids) {
+  std::string text = shownInput(file) + ": " + std::to_string(grids.size()) +
                      (grids.size() == 1 ? " grid\n" : " grids\n");
   for (const GridInfo& grid : grids) text += describe(grid);
-  print(text);
-  return kDone;
+  return text;
+}
+
+int runInfo(const InfoArguments& arguments) {
+  FileList files(arguments.inputs, arguments.json);
+  files.forEach([&](const std::string& file) {
+    const std::vector<GridInfo> grids = describeVolumes(file);
+    if (arguments.json) {
+      files.add(toJson(file, grids));
+    } else {
+      print(describe(file, grids));
+    }
+    return kDone;
+  });
+  return files.finish();
 }
 
 }  // namespace
@@ -93,7 +107,8 @@ int runInfo(const InfoArguments& arguments) {
 void addInfoCommand(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<InfoArguments>();
   CLI::App* const info = app.add_subcommand("info", "Say what a .vdb file holds");
-  info->add_option("FILE", arguments->input, "a .vdb file")->required();
+  info->add_option("FILE", arguments->inputs, "a .vdb file, or several; - for standard input")
+      ->required();
   info->add_flag("--json", arguments->json, "one JSON object on standard output");
   info->callback([arguments, &chosen] { chosen = [arguments] { return runInfo(*arguments); }; });
 }

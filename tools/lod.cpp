@@ -15,6 +15,7 @@
 #include "lod_run.h"
 #include "paths.h"
 #include "report.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -46,8 +47,9 @@ std::filesystem::path withBraces(const std::filesystem::path& path) {
 }
 
 /// The name of the asset: that of the file, without the place of the LOD.
-std::string assetName(const std::filesystem::path& path) {
-  std::string name = path.stem().string();
+std::string assetName(const std::string& output) {
+  if (isStandard(output)) return "mesh";
+  std::string name = std::filesystem::path(output).stem().string();
   for (const char* part : {"_LOD{}", "{}"}) {
     const std::size_t at = name.find(part);
     if (at != std::string::npos) name.erase(at, std::string(part).size());
@@ -78,11 +80,16 @@ void requireDistinctLevels(const LodArguments& arguments) {
 
 /// Reads options that depend on each other. Throws Error(InvalidArgument).
 void settle(LodArguments& arguments, const CLI::App& command) {
+  keepApart(arguments.output);
+  if (arguments.separate && isStandard(arguments.output)) {
+    throw Error(ErrorCode::InvalidArgument, "standard output cannot hold a file for each level");
+  }
   if (arguments.separate) arguments.output = withBraces(arguments.output).string();
-  requireMeshEnding(arguments.output);
-  const std::string ending = endingOf(arguments.output);
-  if (ending != ".glb") {
-    if (ending != ".obj" && command.count("--crease") > 0) {
+  const std::string first = lodFile(arguments.output, 0).string();
+  requireMeshOutput(first, arguments.format);
+  const MeshFormat format = meshFormat(first, arguments.format);
+  if (format != MeshFormat::Glb) {
+    if (format != MeshFormat::Obj && command.count("--crease") > 0) {
       throw Error(ErrorCode::InvalidArgument, "--crease is for .glb and .obj only");
     }
     for (const char* option : {"--lod-scenes", "--up", "--scale", "--quantize", "--compress"}) {
@@ -97,7 +104,6 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   }
   if (arguments.check || arguments.report) requireChecker();
   requireDistinctLevels(arguments);
-  requireWritable(lodFile(arguments.output, 0));
   if (arguments.report) requireWritable(*arguments.report);
   arguments.writing.name = assetName(arguments.output);
   arguments.writing.allLevelsScene = arguments.scenes == "many";
@@ -173,11 +179,12 @@ void addGlbOptions(CLI::App& app, LodArguments& arguments) {
 void addLodCommand(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<LodArguments>();
   CLI::App* const lod = app.add_subcommand("lod", "Make levels of detail of a volume's surface");
-  lod->add_option("FILE", arguments->input, "a .vdb file")->required();
+  lod->add_option("FILE", arguments->input, "a .vdb file, or - for standard input")->required();
   lod->add_option("-o,--output", arguments->output,
                   "a .glb with all levels, or OUT_LOD{}.ply, .obj, .stl, .off or .glb for one "
-                  "file a level")
+                  "file a level, or - for standard output")
       ->required();
+  addFormatOption(*lod, arguments->format, "of standard output: glb");
   lod->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);

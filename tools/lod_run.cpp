@@ -12,6 +12,7 @@
 #include "lod_page.h"
 #include "progress_bar.h"
 #include "report.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -91,7 +92,14 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   LodWriteOptions writing = arguments.writing;
   writing.threads = options.contour.threads;
   writing.progress = bar.callback();
-  run.writeSeconds = timed([&] { writeLods(run.chain, arguments.output, writing, &run.written); });
+  run.writeSeconds = timed([&] {
+    if (isStandard(arguments.output)) {
+      writeLods(run.chain, standardOutput(), writing, &run.written);
+      run.written.files.emplace_back(arguments.output);
+    } else {
+      writeLods(run.chain, arguments.output, writing, &run.written);
+    }
+  });
   return run;
 }
 
@@ -108,7 +116,8 @@ std::vector<double> callShares(const LodArguments& arguments) {
 void writeReport(const LodRun& run, const LodArguments& arguments, ProgressBar& bar) {
   LodPage page;
   page.title = arguments.writing.name + ": levels of detail";
-  page.summary = arguments.input + (run.gridName.empty() ? "" : ", grid " + run.gridName) + ", " +
+  page.summary = shownInput(arguments.input) +
+                 (run.gridName.empty() ? "" : ", grid " + run.gridName) + ", " +
                  formatCount(run.contour.activeVoxels) + " active voxels of " +
                  formatNumber(run.chain.voxelSize) +
                  " world units. Errors are distances to the uniform mesh of the grid.";

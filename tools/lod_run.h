@@ -14,6 +14,7 @@ namespace tufa::tools {
 struct LodArguments {
   std::string input;
   std::string output;
+  std::optional<std::string> format;  ///< of standard output
   std::optional<std::string> grid;
   LodOptions lod;
   std::optional<std::string> isovalue;

@@ -11,55 +11,22 @@
 
 #include "commands.h"
 #include "console.h"
+#include "failure.h"
 #include "usage.h"
 
 namespace {
 
 using namespace tufa::tools;
 
-int exitCodeOf(const tufa::Error& error) {
-  switch (error.code()) {
-    case tufa::ErrorCode::InvalidArgument:
-      return kWrongUsage;
-    case tufa::ErrorCode::Cancelled:
-      return kCancelled;
-    default:
-      return kUnusableFile;
-  }
-}
-
-/// The name of an error in JSON.
-std::string nameOf(tufa::ErrorCode code) {
-  switch (code) {
-    case tufa::ErrorCode::InvalidArgument:
-      return "invalid_argument";
-    case tufa::ErrorCode::UnsupportedGrid:
-      return "unsupported_grid";
-    case tufa::ErrorCode::NonFiniteValues:
-      return "non_finite_values";
-    case tufa::ErrorCode::UnknownGrid:
-      return "unknown_grid";
-    case tufa::ErrorCode::UnreadableFile:
-      return "unreadable_file";
-    case tufa::ErrorCode::UnwritableFile:
-      return "unwritable_file";
-    case tufa::ErrorCode::LimitExceeded:
-      return "limit_exceeded";
-    case tufa::ErrorCode::Cancelled:
-      return "interrupted";
-  }
-  return "unknown";
-}
-
-/// Where a failure is told: a line on standard error, and with `--json` an object on standard
-/// output.
+/// Where a failure is told: a line on standard error, and with `--json` an object where the summary
+/// would be.
 struct Failures {
   bool json = false;
 
   void tell(const std::string& code, const std::string& message) const {
     printNote(message);
     if (!json) return;
-    const nlohmann::ordered_json object = {{"error", {{"code", code}, {"message", message}}}};
+    const nlohmann::ordered_json object = {{"error", errorToJson(code, message)}};
     try {
       print(object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     } catch (const tufa::Error&) {

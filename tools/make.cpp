@@ -11,6 +11,7 @@
 #include "console.h"
 #include "paths.h"
 #include "progress_bar.h"
+#include "standard_streams.h"
 #include "volume.h"
 #include "written_grid.h"
 
@@ -26,9 +27,9 @@ struct MakeArguments {
 };
 
 int runMake(const MakeArguments& arguments) {
+  keepApart(arguments.output);
   requireVoxelSize("--voxel", arguments.options.voxelSize);
-  requireVolumeEnding(arguments.output);
-  requireWritable(arguments.output);
+  requireVolumeOutput(arguments.output);
   openvdb::FloatGrid::Ptr grid;
   const double seconds = timed([&] {
     ProgressBar bar(arguments.quiet);
@@ -53,7 +54,9 @@ void addMakeCommand(CLI::App& app, Command& chosen) {
   make->add_option("SHAPE", arguments->shape, "what to make")
       ->required()
       ->check(CLI::IsMember(std::vector<std::string>(shapeNames().begin(), shapeNames().end())));
-  make->add_option("-o,--output", arguments->output, "the .vdb file to write")->required();
+  make->add_option("-o,--output", arguments->output,
+                   "the .vdb file to write, or - for standard output")
+      ->required();
   make->add_option("--voxel", options.voxelSize, "voxel size; a shape is about 2 units in size")
       ->capture_default_str();
   make->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")

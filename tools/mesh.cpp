@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "console.h"
 #include "mesh_run.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -29,6 +30,7 @@ int judge(const MeshRun& run) {
 }
 
 int runMesh(const MeshArguments& arguments) {
+  keepApart(arguments.output);
   requireFeasible(arguments);
   const MeshRun run = meshFile(arguments);
   const int exitCode = judge(run);
@@ -63,10 +65,12 @@ void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
 void addMeshCommand(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<MeshArguments>();
   CLI::App* const mesh = app.add_subcommand("mesh", "Mesh the surface of a volume");
-  mesh->add_option("FILE", arguments->input, "a .vdb file")->required();
+  mesh->add_option("FILE", arguments->input, "a .vdb file, or - for standard input")->required();
   mesh->add_option("-o,--output", arguments->output,
-                   "the mesh to write: .ply (binary), .obj, .stl, .off or .glb")
+                   "the mesh to write: .ply (binary), .obj, .stl, .off or .glb, or - for standard "
+                   "output")
       ->required();
+  addFormatOption(*mesh, arguments->format, "of the mesh in standard output");
   mesh->add_option(
           "--grid", arguments->grids,
           "names of grids, or patterns with * and ?: .glb and .obj hold several meshes, and "

@@ -10,6 +10,7 @@
 #include "console.h"
 #include "paths.h"
 #include "progress_bar.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -82,22 +83,35 @@ WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, Pr
 
 /// One file for all grids, or one for each where the name has braces.
 void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
+  const bool standard = isStandard(arguments.output);
   if (run.grids.size() == 1 || hasBraces(arguments.output)) {
     for (const GridRun& grid : run.grids) {
-      write(grid.mesh, grid.output, writeOptions(arguments, grid, bar));
+      const WriteOptions options = writeOptions(arguments, grid, bar);
+      if (standard) {
+        write(grid.mesh, standardOutput(), meshFormat("-", arguments.format), options);
+      } else {
+        write(grid.mesh, grid.output, options);
+      }
     }
     return;
   }
   std::vector<NamedMesh> meshes;
   for (GridRun& grid : run.grids) meshes.push_back({grid.grid, std::move(grid.mesh)});
-  writeMeshes(meshes, arguments.output, writeOptions(arguments, run.grids.front(), bar));
+  const WriteOptions options = writeOptions(arguments, run.grids.front(), bar);
+  if (standard) {
+    writeMeshes(meshes, standardOutput(), meshFormat("-", arguments.format), options);
+  } else {
+    writeMeshes(meshes, arguments.output, options);
+  }
   for (std::size_t i = 0; i < meshes.size(); ++i) run.grids[i].mesh = std::move(meshes[i].mesh);
 }
 
 /// One file holds several meshes in some formats only.
-void requireRoomForAll(const std::vector<std::string>& grids, const std::string& output) {
-  const std::string ending = endingOf(output);
-  if (grids.size() < 2 || hasBraces(output) || ending == ".glb" || ending == ".obj") return;
+void requireRoomForAll(const std::vector<std::string>& grids, const MeshArguments& arguments) {
+  const std::string& output = arguments.output;
+  if (grids.size() < 2 || hasBraces(output)) return;
+  const MeshFormat format = meshFormat(output, arguments.format);
+  if (format == MeshFormat::Glb || format == MeshFormat::Obj) return;
   throw Error(ErrorCode::InvalidArgument,
               output + " would hold " + std::to_string(grids.size()) +
                   " meshes, as only .glb and .obj can; write {} in the file name for one file a "
@@ -117,9 +131,8 @@ std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids
 
 void requireFeasible(const MeshArguments& arguments) {
   if (arguments.check) requireChecker();
-  requireMeshEnding(arguments.output);
   requireDistinct(arguments.output, {arguments.input});
-  requireWritable(arguments.output);
+  requireMeshOutput(arguments.output, arguments.format);
 }
 
 MeshRun meshFile(const MeshArguments& arguments) {
@@ -127,7 +140,7 @@ MeshRun meshFile(const MeshArguments& arguments) {
   std::vector<std::string> names;
   if (!arguments.grids.empty()) {
     names = chooseGrids(arguments.input, arguments.grids);
-    requireRoomForAll(names, arguments.output);
+    requireRoomForAll(names, arguments);
   }
   ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, names.size())));
   if (names.empty()) {

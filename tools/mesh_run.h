@@ -15,7 +15,8 @@ namespace tufa::tools {
 struct MeshArguments {
   std::string input;
   std::string output;
-  std::vector<std::string> grids;  ///< names and patterns; none: the library chooses one
+  std::optional<std::string> format;  ///< of standard output
+  std::vector<std::string> grids;     ///< names and patterns; none: the library chooses one
   ContourOptions contour;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";

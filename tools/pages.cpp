@@ -109,7 +109,8 @@ void writePage(std::ostream& out, const CLI::App& command) {
   writeHead(out, "tufa-" + command.get_name(), command.get_description());
   out << "\\fBtufa " << command.get_name() << "\\fR [\\fIOPTION\\fR...]";
   for (const CLI::Option* option : optionsOf(command, true)) {
-    out << " \\fI" << option->get_name(true) << "\\fR";
+    out << " \\fI" << option->get_name(true) << "\\fR"
+        << (option->get_items_expected_max() > 1 ? "..." : "");
   }
   out << '\n';
   writeOptions(out, command);

@@ -1,11 +1,13 @@
 #include "paths.h"
 
 #include <tufa/error.h>
+#include <tufa/io.h>
 #include <algorithm>
 #include <cstdint>
 #include <system_error>
 
 #include "console.h"
+#include "standard_streams.h"
 
 namespace tufa::tools {
 namespace {
@@ -20,7 +22,7 @@ bool isPipeOrDevice(const std::filesystem::path& path) {
 
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   // Nothing is lost in a pipe or a device that is read from and written to.
-  if (isPipeOrDevice(a)) return false;
+  if (isStandard(a) || isPipeOrDevice(a)) return false;
   std::error_code error;
   if (std::filesystem::equivalent(a, b, error) && !error) return true;
   return std::filesystem::weakly_canonical(std::filesystem::absolute(a), error) ==
@@ -37,10 +39,22 @@ void requireDistinct(const std::filesystem::path& output,
   }
 }
 
-void requireVolumeEnding(const std::filesystem::path& path) {
-  if (endingOf(path) == ".vdb" || isPipeOrDevice(path)) return;
-  throw Error(ErrorCode::InvalidArgument,
-              "a volume is written as .vdb, which " + path.string() + " does not end in");
+void requireVolumeOutput(const std::string& output) {
+  if (isStandard(output)) return;
+  if (endingOf(output) != ".vdb" && !isPipeOrDevice(output)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "a volume is written as .vdb, which " + output + " does not end in");
+  }
+  requireWritable(output);
+}
+
+void requireMeshOutput(const std::string& output, const std::optional<std::string>& format) {
+  if (isStandard(output) || format) {
+    static_cast<void>(meshFormat(output, format));
+    return;
+  }
+  requireMeshEnding(output);
+  requireWritable(output);
 }
 
 void requirePageEnding(const std::filesystem::path& path) {
@@ -66,7 +80,9 @@ std::string describeWritten(const std::vector<std::filesystem::path>& files, dou
     if (!error) bytes += size;
   }
   std::string text = "wrote ";
-  if (files.size() == 1) text += files.front().string();
+  if (files.size() == 1) {
+    text += isStandard(files.front()) ? "standard output" : files.front().string();
+  }
   if (files.size() > 1) {
     text += formatCount(files.size()) + " files, " + files.front().string() + " to " +
             files.back().string();

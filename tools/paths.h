@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,8 @@ namespace tufa::tools {
 
 // What is refused of the names of files before anything is read.
 
-/// Whether two names lead to one file, be it there or not. Pipes and devices can be shared.
+/// Whether two names lead to one file, be it there or not. Pipes and devices can be shared,
+/// standard input and output too.
 [[nodiscard]] bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// Throws Error(InvalidArgument) if the output is one of the inputs, be it through links or another
@@ -16,9 +18,13 @@ namespace tufa::tools {
 void requireDistinct(const std::filesystem::path& output,
                      const std::vector<std::filesystem::path>& inputs);
 
-/// Throws Error(InvalidArgument) unless the name of a volume to write ends in .vdb, or is that of a
-/// pipe or a device.
-void requireVolumeEnding(const std::filesystem::path& path);
+/// Throws Error(InvalidArgument) unless the name of a volume to write ends in .vdb, or is that of
+/// standard output, a pipe or a device; UnwritableFile if nothing can be written there.
+void requireVolumeOutput(const std::string& output);
+
+/// Throws Error(InvalidArgument) if a mesh cannot be written in the format that a name and
+/// `--format` say; UnwritableFile if nothing can be written there.
+void requireMeshOutput(const std::string& output, const std::optional<std::string>& format);
 
 /// Throws Error(InvalidArgument) unless the name of a page to write ends in .html or .htm.
 void requirePageEnding(const std::filesystem::path& path);

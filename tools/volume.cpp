@@ -7,11 +7,13 @@
 #include <tufa/io.h>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 
 #include "console.h"
 #include "crash_guard.h"
 #include "number.h"
+#include "standard_streams.h"
 
 namespace tufa::tools {
 namespace {
@@ -49,9 +51,20 @@ std::string suggestIsovalue(const GridInfo& info) {
   return greatest > 0 ? "--iso " + shortNumber(0.1 * greatest) : "a value between these";
 }
 
+/// Calls read() with a file, or with the bytes of standard input, under a CrashGuard.
+template <class Read>
+auto guarded(const std::string& file, Read&& read) {
+  if (!isStandard(file)) {
+    const CrashGuard guard(file);
+    return read(std::filesystem::path(file));
+  }
+  const FileBytes bytes = standardInput();
+  const CrashGuard guard(bytes.name);
+  return read(bytes);
+}
+
 std::vector<GridName> listVolume(const std::string& file) {
-  const CrashGuard guard(file);
-  return listGrids(file);
+  return guarded(file, [](const auto& source) { return listGrids(source); });
 }
 
 }  // namespace
@@ -66,8 +79,8 @@ std::optional<double> readIsovalue(const std::optional<std::string>& text,
   if (grid.getGridClass() != openvdb::GRID_FOG_VOLUME) return std::nullopt;
   const GridInfo info = describeGrid(grid);
   throw Error(ErrorCode::InvalidArgument,
-              "a fog volume needs --iso: grid \"" + grid.getName() + "\" in " + file + " " +
-                  describeValues(info) + "; try " + suggestIsovalue(info) +
+              "a fog volume needs --iso: grid \"" + grid.getName() + "\" in " + shownInput(file) +
+                  " " + describeValues(info) + "; try " + suggestIsovalue(info) +
                   ", or --iso auto for half way between the least and the greatest value, which "
                   "differs from frame to frame");
 }
@@ -101,7 +114,7 @@ std::vector<std::string> chooseGrids(const std::string& file,
     for (const GridName& grid : grids) names += (names.empty() ? "\"" : ", \"") + grid.name + "\"";
     throw Error(ErrorCode::UnknownGrid,
                 std::string(exact ? "no grid \"" : "no grid that can be meshed is named like \"") +
-                    pattern + "\" in " + file + "; it holds " + names);
+                    pattern + "\" in " + shownInput(file) + "; it holds " + names);
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < grids.size(); ++i) {
@@ -135,21 +148,19 @@ void requireVoxelSize(const std::string& option, double size) {
 
 std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
                                               const std::optional<std::string>& name) {
-  const CrashGuard guard(file);
-  return readGrid(file, name);
+  return guarded(file, [&](const auto& source) { return readGrid(source, name); });
 }
 
 std::vector<GridInfo> describeVolumes(const std::string& file) {
-  const CrashGuard guard(file);
-  return describeGrids(file);
+  return guarded(file, [](const auto& source) { return describeGrids(source); });
 }
 
 std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
                                                            const std::string& name) {
   const openvdb::GridBase::Ptr grid = readVolume(file, name);
   if (grid->isType<openvdb::FloatGrid>()) return grid;
-  throw Error(ErrorCode::UnsupportedGrid, "the tolerance grid \"" + name + "\" in " + file +
-                                              " holds " + grid->valueType() +
+  throw Error(ErrorCode::UnsupportedGrid, "the tolerance grid \"" + name + "\" in " +
+                                              shownInput(file) + " holds " + grid->valueType() +
                                               " values; it must be a float grid");
 }
 
@@ -158,15 +169,15 @@ std::string nameOf(const openvdb::GridBase& grid) { return grid.getName(); }
 void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
   if (!grid.empty()) return;
   throw Error(ErrorCode::UnsupportedGrid,
-              "grid \"" + grid.getName() + "\" in " + file + " has no active voxels");
+              "grid \"" + grid.getName() + "\" in " + shownInput(file) + " has no active voxels");
 }
 
 void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
                     const std::string& file) {
   if (mesh.triangleCount() > 0) return;
-  throw Error(ErrorCode::UnsupportedGrid, "no surface at isovalue " + formatNumber(isovalue) +
-                                              ": grid \"" + grid.getName() + "\" in " + file + " " +
-                                              describeValues(describeGrid(grid)));
+  throw Error(ErrorCode::UnsupportedGrid,
+              "no surface at isovalue " + formatNumber(isovalue) + ": grid \"" + grid.getName() +
+                  "\" in " + shownInput(file) + " " + describeValues(describeGrid(grid)));
 }
 
 double readTolerance(const std::string& option, const std::string& text,

@@ -5,6 +5,7 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "console.h"
 #include "paths.h"
 #include "progress_bar.h"
+#include "standard_streams.h"
 #include "volume.h"
 #include "written_grid.h"
 
@@ -21,19 +23,20 @@ namespace {
 struct VoxelizeArguments {
   std::string input;
   std::string output;
+  std::optional<std::string> format;
   VoxelizeOptions options;
   bool json = false;
   bool quiet = false;
 };
 
 int runVoxelize(const VoxelizeArguments& arguments) {
+  keepApart(arguments.output);
   requireVoxelSize("--voxel", arguments.options.voxelSize);
-  requireVolumeEnding(arguments.output);
+  requireVolumeOutput(arguments.output);
   requireDistinct(arguments.output, {arguments.input});
-  requireWritable(arguments.output);
-  const Mesh mesh = readMesh(arguments.input);
+  const Mesh mesh = readMeshInput(arguments.input, arguments.format);
   if (mesh.triangleCount() == 0) {
-    throw Error(ErrorCode::UnreadableFile, arguments.input + " holds no faces");
+    throw Error(ErrorCode::UnreadableFile, shownInput(arguments.input) + " holds no faces");
   }
   openvdb::FloatGrid::Ptr grid;
   const double seconds = timed([&] {
@@ -58,9 +61,15 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<VoxelizeArguments>();
   CLI::App* const voxelize = app.add_subcommand("voxelize", "Convert a mesh to a level set");
   VoxelizeOptions& options = arguments->options;
-  voxelize->add_option("MESH", arguments->input, "an .obj, .ply, .stl, .off or .glb file")
+  voxelize
+      ->add_option("MESH", arguments->input,
+                   "an .obj, .ply, .stl, .off or .glb file, or - for standard input")
       ->required();
-  voxelize->add_option("-o,--output", arguments->output, "the .vdb file to write")->required();
+  voxelize
+      ->add_option("-o,--output", arguments->output,
+                   "the .vdb file to write, or - for standard output")
+      ->required();
+  addFormatOption(*voxelize, arguments->format, "of the mesh in standard input");
   voxelize->add_option("--voxel", options.voxelSize, "voxel size in the mesh's units")->required();
   voxelize
       ->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")

@@ -6,6 +6,7 @@
 
 #include "console.h"
 #include "paths.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -39,7 +40,13 @@ std::string describe(const WrittenGrid& written) {
 void writeAndTell(const openvdb::FloatGrid::Ptr& grid, WrittenGrid written, Telling telling) {
   written.grid = grid->getName();
   written.activeVoxels = grid->activeVoxelCount();
-  written.writeSeconds = timed([&] { writeGrids({grid}, written.output); });
+  written.writeSeconds = timed([&] {
+    if (isStandard(written.output)) {
+      writeGrids({grid}, standardOutput());
+    } else {
+      writeGrids({grid}, written.output);
+    }
+  });
   if (telling.json) {
     print(toJson(written));
   } else if (!telling.quiet) {

@@ -1,0 +1,136 @@
+// The tufa command in a pipe: standard input and output in the place of files.
+
+#include <gtest/gtest.h>
+
+#include <tufa/io.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/command_fixture.h"
+
+namespace tufa {
+namespace {
+
+using test::CommandTest;
+using test::Outcome;
+using test::readBytes;
+using test::writeBytes;
+using Json = nlohmann::json;
+
+class Pipes : public CommandTest {
+ protected:
+  /// `tufa ARGUMENTS < FILE`, by a pipe.
+  Outcome runOn(const std::string& file, const std::string& arguments) {
+    return run(arguments, "", "cat " + file + " | ");
+  }
+};
+
+TEST_F(Pipes, MeshGivesTheBytesOfAFile) {
+  makeSphere();
+  for (const std::string format : {"ply", "obj", "stl", "off", "glb"}) {
+    ASSERT_EQ(run("mesh s.vdb -o m." + format + " --quiet").exitCode, 0);
+    const Outcome outcome = runOn("s.vdb", "mesh - -o - --format " + format);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, readBytes(folder / ("m." + format))) << format;
+    EXPECT_NE(outcome.err.find("wrote standard output, in "), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(Pipes, SummariesGoToStandardErrorBesideData) {
+  makeSphere();
+  const Outcome outcome = run("mesh s.vdb -o - --format ply --json");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(outcome.err).at("output"), "-");
+  EXPECT_EQ(outcome.out.rfind("ply\n", 0), 0u);
+  EXPECT_EQ(run("mesh s.vdb -o - --format ply --quiet").err, "");
+  // A failure leaves standard output empty.
+  const Outcome failure = run("mesh s.vdb -o - --format ply --grid none --json");
+  EXPECT_EQ(failure.exitCode, 3);
+  EXPECT_EQ(failure.out, "");
+  EXPECT_NE(failure.err.find("\"unknown_grid\""), std::string::npos) << failure.err;
+}
+
+TEST_F(Pipes, ChainOfAllSubcommands) {
+  const Outcome outcome =
+      run("make sphere --voxel 0.1 -o - --quiet | '" TUFA_COMMAND
+          "' mesh - -o - --format off --quiet | '" TUFA_COMMAND
+          "' voxelize - --format off --voxel 0.1 -o - --quiet | '" TUFA_COMMAND
+          "' lod - -o - --format glb --levels 2 --quiet | '" TUFA_COMMAND "' check - --format glb");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.rfind("standard input\n", 0), 0u) << outcome.out;
+  EXPECT_EQ(folder.fileCount(), 0);
+}
+
+TEST_F(Pipes, LodGivesTheBytesOfAFile) {
+  makeSphere();
+  ASSERT_EQ(run("lod s.vdb -o mesh.glb --levels 2 --quiet").exitCode, 0);
+  const Outcome outcome = run("lod s.vdb -o - --format glb --levels 2");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_EQ(outcome.out, readBytes(folder / "mesh.glb"));
+  EXPECT_NE(outcome.err.find("wrote standard output"), std::string::npos) << outcome.err;
+  expectFailure("lod s.vdb -o - --format ply", 2, "only .glb");
+  expectFailure("lod s.vdb -o - --format glb --separate", 2, "a file for each");
+}
+
+TEST_F(Pipes, ReadVolumesAsFilesAre) {
+  makeSphere();
+  const Outcome fromPipe = runOn("s.vdb", "info - --json");
+  const Outcome fromFile = run("info s.vdb --json");
+  EXPECT_EQ(Json::parse(fromPipe.out).at("grids"), Json::parse(fromFile.out).at("grids"));
+  ASSERT_EQ(run("mesh s.vdb -o s.ply --quiet").exitCode, 0);
+  EXPECT_EQ(runOn("s.vdb", "check s.ply --against - --quiet").exitCode, 0);
+  EXPECT_EQ(runOn("s.vdb", "chunks - -o d --quiet --levels 1").exitCode, 0);
+}
+
+TEST_F(Pipes, SayWhatIsWrong) {
+  makeSphere();
+  expectFailure("mesh s.vdb -o -", 2, "--format");
+  expectFailure("mesh s.vdb -o m.ply --format ply", 2, "m.ply");
+  expectFailure("mesh s.vdb -o - --format vdb", 2, "--format");
+  expectFailure("check -", 2, "--format");
+  expectFailure("check none.ply --format ply", 2, "standard input");
+  expectFailure("check - --format ply --against -", 2, "once only");
+  expectFailure("info - < /dev/null", 3, "cannot read standard input: the file is empty");
+  writeBytes(folder / "cut.vdb", readBytes(folder / "s.vdb").substr(0, 5000));
+  expectFailure("mesh - -o m.ply < cut.vdb", 3, "cannot read standard input");
+  expectFailure("check - --format ply < cut.vdb", 3, "cannot read standard input");
+}
+
+TEST_F(Pipes, AFullOrClosedOutputIsAnError) {
+  makeSphere();
+  const Outcome full = run("mesh s.vdb -o - --format ply --quiet", ">/dev/full");
+  EXPECT_EQ(full.exitCode, 3);
+  EXPECT_EQ(full.err, "tufa: cannot write standard output: No space left on device\n");
+  const Outcome closed = run("make sphere -o - --voxel 0.1 --quiet", ">&-");
+  EXPECT_EQ(closed.exitCode, 3);
+  EXPECT_NE(closed.err.find("cannot write standard output"), std::string::npos) << closed.err;
+}
+
+TEST_F(Pipes, InfoAndCheckTakeSeveralFiles) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o a.ply --quiet").exitCode, 0);
+  ASSERT_EQ(run("mesh s.vdb -o b.off --quiet").exitCode, 0);
+  const Outcome info = run("info s.vdb s.vdb --json");
+  EXPECT_EQ(info.exitCode, 0);
+  ASSERT_EQ(Json::parse(info.out).at("files").size(), 2u);
+  EXPECT_EQ(Json::parse(info.out)["files"][1]["grids"][0]["name"], "sphere");
+
+  const Outcome check = run("check a.ply b.off --against s.vdb");
+  EXPECT_EQ(check.exitCode, 0) << check.err;
+  EXPECT_NE(check.out.find("a.ply\n"), std::string::npos);
+  EXPECT_NE(check.out.find("b.off\n"), std::string::npos);
+
+  // One that cannot be read does not keep the others from being looked at.
+  writeBytes(folder / "bad.ply", "ply\nformat");
+  const Outcome mixed = run("check bad.ply a.ply --json");
+  EXPECT_EQ(mixed.exitCode, 3);
+  const Json files = Json::parse(mixed.out).at("files");
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0]["error"]["code"], "unreadable_file");
+  EXPECT_EQ(files[1]["watertight"], true);
+
+  writeBytes(folder / "open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(run("check open.off a.ply --quiet").exitCode, 1);
+}
+
+}  // namespace
+}  // namespace tufa
