@@ -6,7 +6,7 @@ get_filename_component(LIBRARY ${LIBRARY} ABSOLUTE)
 set(sources ${LIBRARY}/src)
 
 # The stages of the pipeline: each sees itself and those before it. What lies in no folder sees all.
-set(stages base grid uniform octree distance intersect topology reduce refine lod chunks)
+set(stages base grid uniform octree distance intersect topology reduce refine extract lod chunks)
 set(before "")
 foreach(stage IN LISTS stages)
   list(APPEND before ${stage})
@@ -17,6 +17,10 @@ list(REMOVE_ITEM sees_intersect distance)
 list(REMOVE_ITEM sees_topology distance)
 # Plain arrays come in and go out here: it knows of no grid.
 set(sees_reduce base reduce)
+# Methods beside dual contouring: they share its cells, and the rounding of finished meshes.
+set(sees_extract base grid uniform refine extract)
+list(REMOVE_ITEM sees_lod extract)
+list(REMOVE_ITEM sees_chunks extract)
 # Folders beside the pipeline, and all that each of them sees.
 set(sees_shapes base shapes)
 set(sees_voxelize base voxelize)

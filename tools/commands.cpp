@@ -89,8 +89,10 @@ void addContourOptions(CLI::App& app, ContourOptions& options,
                        {{"separate", Ambiguity::Separate},
                         {"join", Ambiguity::Join},
                         {"asymptotic", Ambiguity::Asymptotic},
-                        {"chord", Ambiguity::Chord}},
-                       "rule for ambiguous cell faces (default separate)");
+                        {"chord", Ambiguity::Chord},
+                        {"original", Ambiguity::Original}},
+                       "rule for ambiguous cell faces (default separate); original, which may "
+                       "leave holes, is for --method mc alone");
   addChoice<Normals>(
       app, "--normals", options.normals,
       {{"gradient", Normals::Gradient}, {"faces", Normals::Faces}, {"none", Normals::None}},

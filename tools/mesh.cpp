@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
 
+#include <tufa/error.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "checker.h"
 #include "commands.h"
@@ -60,6 +62,27 @@ void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
   app.add_flag("--uniform", options.uniform, "do not merge cells");
 }
 
+void addMethodOption(CLI::App& app, MeshArguments& arguments) {
+  const std::vector<std::string> names(methodNames().begin(), methodNames().end());
+  app.add_option_function<std::string>(
+         "--method",
+         [&arguments](const std::string& name) { arguments.method = *methodByName(name); },
+         "how the surface is extracted (default dual); all others make a triangle mesh or, "
+         "surface-nets, quads, of the finest cells: they are not adaptive")
+      ->check(CLI::IsMember(names));
+}
+
+/// Throws Error for options that mean nothing to the method.
+void requireMeaning(const CLI::App& app, Method method) {
+  if (method == Method::Dual) return;
+  for (const char* name : {"--tolerance", "--max-angle", "--min-cell", "--max-cell",
+                           "--tolerance-grid", "--simplify", "--no-repair"}) {
+    if (app.get_option(name)->count() == 0) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(name) + " is for --method dual alone; leave it out");
+  }
+}
+
 }  // namespace
 
 void addMeshCommand(CLI::App& app, Command& chosen) {
@@ -76,6 +99,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
           "names of grids, or patterns with * and ?: .glb and .obj hold several meshes, and "
           "{} in the output's name makes a file for each; default: the first level set")
       ->allow_extra_args(false);
+  addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);
   addContourOptions(*mesh, arguments->contour, arguments->isovalue);
   mesh->add_option("--crease", arguments->creaseAngle,
@@ -88,7 +112,12 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
                  checkerHelp("check the mesh; exit 1 if it is not watertight"));
   mesh->add_flag("--json", arguments->json, "one JSON object on standard output");
   mesh->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
-  mesh->callback([arguments, &chosen] { chosen = [arguments] { return runMesh(*arguments); }; });
+  mesh->callback([mesh, arguments, &chosen] {
+    chosen = [mesh, arguments] {
+      requireMeaning(*mesh, arguments->method);
+      return runMesh(*arguments);
+    };
+  });
 }
 
 }  // namespace tufa::tools

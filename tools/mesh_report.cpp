@@ -98,6 +98,7 @@ std::vector<std::filesystem::path> filesOf(const MeshRun& run) {
 Json toJson(const MeshRun& run, const MeshArguments& arguments) {
   Json json;
   json["file"] = arguments.input;
+  json["method"] = methodNames().at(static_cast<std::size_t>(arguments.method));
   const bool list = run.grids.size() > 1;
   if (list) {
     json["grids"] = Json::array();

@@ -2,6 +2,7 @@
 
 #include <tufa/check.h>
 #include <tufa/contour.h>
+#include <tufa/extract.h>
 #include <tufa/io.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -17,6 +18,7 @@ struct MeshArguments {
   std::string output;
   std::optional<std::string> format;  ///< of standard output
   std::vector<std::string> grids;     ///< names and patterns; none: the library chooses one
+  Method method = Method::Dual;
   ContourOptions contour;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";

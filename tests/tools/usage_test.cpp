@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <tufa/extract.h>
 #include <tufa/io.h>
 #include <tufa/shapes.h>
 #include <nlohmann/json.hpp>
@@ -238,6 +239,21 @@ TEST_F(Usage, MakeAndVoxelizeAreQuietOrSpeakJson) {
     EXPECT_EQ(outcome.exitCode, 0);
     EXPECT_EQ(outcome.out + outcome.err, "") << arguments;
   }
+}
+
+TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
+  makeSphere();
+  for (const std::string_view method : methodNames()) {
+    const Outcome outcome =
+        run("mesh s.vdb -o m.ply --check --json --method " + std::string(method));
+    EXPECT_EQ(outcome.exitCode, 0) << method << outcome.err;
+    EXPECT_EQ(Json::parse(outcome.out)["method"], method);
+    std::filesystem::remove(folder / "m.ply");
+  }
+  expectFailure("mesh s.vdb -o m.ply --method cubes", 2, "cubes");
+  expectFailure("mesh s.vdb -o m.ply --method mc --tolerance 1", 2, "--tolerance");
+  expectFailure("mesh s.vdb -o m.ply --ambiguity original", 2, "original");
+  EXPECT_EQ(run("mesh s.vdb -o m.ply --method mc --ambiguity original --quiet").exitCode, 0);
 }
 
 }  // namespace

@@ -22,12 +22,16 @@ enum class Inside {
 };
 
 /// How a cell face whose corners alternate inside, outside, inside, outside is joined. Every rule
-/// gives a closed 2-manifold; they differ in which thin links they keep.
+/// but Original gives a closed 2-manifold; they differ in which thin links they keep.
 enum class Ambiguity {
   Separate,    ///< inside corners are kept apart
   Join,        ///< inside corners are joined
   Asymptotic,  ///< by the bilinear interpolant's saddle value (Nielson and Hamann 1991)
   Chord,       ///< by the value where the chords between opposite crossings cross
+  /// As the marching cubes of 1987 do, by the corners of the cell on either side: the inside ones
+  /// are kept apart unless the cell has more than four. Cells disagree, which leaves holes:
+  /// extract() takes it for marching cubes, to show them; other calls refuse it.
+  Original,
 };
 
 /// Where the normals of the vertices come from.

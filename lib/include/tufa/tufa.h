@@ -4,6 +4,7 @@
 #include <tufa/chunks.h>
 #include <tufa/contour.h>
 #include <tufa/error.h>
+#include <tufa/extract.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>

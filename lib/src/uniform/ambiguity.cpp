@@ -34,6 +34,7 @@ bool chordsMeetInside(const std::array<double, 4>& v) {
 bool joinsInside(Ambiguity rule, const std::array<double, 4>& values) {
   switch (rule) {
     case Ambiguity::Separate:
+    case Ambiguity::Original:  // which asks the corners of a cell, and no face
       return false;
     case Ambiguity::Join:
       return true;

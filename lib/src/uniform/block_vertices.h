@@ -35,6 +35,8 @@ class BlockVertices {
   [[nodiscard]] const std::vector<Vector>& points() const { return points_; }
   /// The mean of the crossings of a vertex, in voxels from the block's first lattice point.
   [[nodiscard]] Vector massPoint(std::size_t vertex) const { return qefs_[vertex + 1].massPoint(); }
+  /// The sum of the normals at the crossings of a vertex, in index space.
+  [[nodiscard]] Vector normalSum(std::size_t vertex) const { return qefs_[vertex + 1].normals; }
   /// The point that a vertex's QEF alone gives, in voxels from the middle of its cell.
   [[nodiscard]] Vector plainPoint(std::size_t vertex) const;
   /// The sum of the normals gathered at each vertex, in index space.

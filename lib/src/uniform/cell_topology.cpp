@@ -129,6 +129,13 @@ class CellTopologyBuilder {
   CellTopologyBuilder(const grid::Blocks& blocks, const grid::FieldScale& scale, base::Job& job)
       : blocks_(blocks), scale_(scale), job_(job) {}
 
+  CellTopology findCells(bool cap) {
+    findSurfaceBlocks();
+    chooseSpecialBlocks(scale_.narrowBand && !cap, blocks_.isPart());
+    number();
+    return std::move(topology_);
+  }
+
   CellTopology build(Ambiguity rule, bool cap) {
     findSurfaceBlocks();
     chooseSpecialBlocks(scale_.narrowBand && !cap, blocks_.isPart());
@@ -463,6 +470,11 @@ class CellTopologyBuilder {
 CellTopology buildCellTopology(const grid::Blocks& blocks, const grid::FieldScale& scale,
                                Ambiguity rule, bool cap, base::Job& job) {
   return CellTopologyBuilder(blocks, scale, job).build(rule, cap);
+}
+
+CellTopology findSurfaceCells(const grid::Blocks& blocks, const grid::FieldScale& scale, bool cap,
+                              base::Job& job) {
+  return CellTopologyBuilder(blocks, scale, job).findCells(cap);
 }
 
 }  // namespace tufa::uniform

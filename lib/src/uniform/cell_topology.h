@@ -101,4 +101,10 @@ struct CellTopology {
                                              const grid::FieldScale& scale, Ambiguity rule,
                                              bool cap, base::Job& job);
 
+/// The first part of that: the surface blocks with their cells, open edges and numbers of the
+/// crossed edges, which are those of the quads. Each cell is counted as one vertex.
+[[nodiscard]] CellTopology findSurfaceCells(const grid::Blocks& blocks,
+                                            const grid::FieldScale& scale, bool cap,
+                                            base::Job& job);
+
 }  // namespace tufa::uniform

@@ -17,15 +17,18 @@ CellTopology checkedTopology(const grid::Volume& volume, const ContourOptions& o
                              base::Job& job) {
   CellTopology topology =
       buildCellTopology(volume.blocks, volume.scale, options.ambiguity, options.cap, job);
-  if (topology.vertexCount > std::numeric_limits<VertexIndex>::max()) {
-    throw Error(ErrorCode::LimitExceeded,
-                "the mesh would have " + std::to_string(topology.vertexCount) +
-                    " vertices, more than 32-bit indices can name; use a coarser grid");
-  }
+  requireIndexable(topology.vertexCount);
   return topology;
 }
 
 }  // namespace
+
+void requireIndexable(std::uint64_t vertices) {
+  if (vertices <= std::numeric_limits<VertexIndex>::max()) return;
+  throw Error(ErrorCode::LimitExceeded,
+              "the mesh would have " + std::to_string(vertices) +
+                  " vertices, more than 32-bit indices can name; use a coarser grid");
+}
 
 UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,
                                   const StageEnds& ends, base::Job& job) {
@@ -47,18 +50,23 @@ UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& opt
   return surface;
 }
 
-ContourReport reportOf(const UniformSurface& surface) {
-  const grid::Blocks& blocks = surface.volume.blocks;
+ContourReport reportOf(const grid::Volume& volume, const CellTopology& topology) {
+  const grid::Blocks& blocks = volume.blocks;
   ContourReport report;
   report.isovalue = blocks.iso().isovalue;
   report.insideIsBelow = blocks.iso().insideIsBelow;
-  report.distanceField = surface.volume.scale.distance;
+  report.distanceField = volume.scale.distance;
   report.activeVoxels = blocks.activeVoxels();
   report.nonFiniteValues = blocks.nonFiniteValues();
-  report.surfaceCells = surface.topology.cellCount;
+  report.surfaceCells = topology.cellCount;
+  report.faceFlips = topology.faceFlips;
+  report.openEdges = topology.openEdges;
+  return report;
+}
+
+ContourReport reportOf(const UniformSurface& surface) {
+  ContourReport report = reportOf(surface.volume, surface.topology);
   report.creaseCells = surface.sheets.sharpCount();
-  report.faceFlips = surface.topology.faceFlips;
-  report.openEdges = surface.topology.openEdges;
   return report;
 }
 

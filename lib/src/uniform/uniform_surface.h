@@ -2,6 +2,8 @@
 
 #include <tufa/contour.h>
 
+#include <cstdint>
+
 #include "base/job.h"
 #include "grid/volume.h"
 #include "uniform/cell_topology.h"
@@ -34,6 +36,12 @@ struct UniformSurface {
 /// than 32-bit indices can name.
 [[nodiscard]] UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,
                                                 const StageEnds& ends, base::Job& job);
+
+/// Throws Error(LimitExceeded) for more vertices than 32-bit indices can name.
+void requireIndexable(std::uint64_t vertices);
+
+/// What a report says of the cells of a surface.
+[[nodiscard]] ContourReport reportOf(const grid::Volume& volume, const CellTopology& topology);
 
 /// What a report says of a surface before anything is changed.
 [[nodiscard]] ContourReport reportOf(const UniformSurface& surface);

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <tufa/contour.h>
+#include <tufa/export.h>
+#include <tufa/mesh.h>
+#include <tufa/openvdb_fwd.h>
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace tufa {
+
+/// Ways to extract the surface of a field. docs/methods.md compares them.
+enum class Method {
+  Dual,  ///< dual contouring, adaptive or uniform: contour()
+  /// Marching cubes (Lorensen and Cline 1987): a vertex on each crossed lattice edge, and triangles
+  /// by a table of cases.
+  MarchingCubes,
+  /// Surface nets (Gibson 1998): like uniform dual contouring, but each vertex is the mean of the
+  /// crossings around it.
+  SurfaceNets,
+};
+
+/// The method of that name ("dual", "mc", ...), if there is one.
+[[nodiscard]] TUFA_API std::optional<Method> methodByName(std::string_view name);
+
+/// Names of all methods, in the order of the enum.
+[[nodiscard]] TUFA_API const std::array<std::string_view, 3>& methodNames();
+
+/// Options of extract().
+struct ExtractOptions {
+  /// What surface is meant, and how: `isovalue`, `inside`, `ambiguity`, `normals`, `nonFinite`,
+  /// `cap`, `tileFaces`, `threads` and `progress`. Method::Dual takes the others too.
+  ContourOptions contour;
+};
+
+/// Meshes the surface of `grid` at the isovalue by the method asked for. Grids, transforms, what is
+/// inside, the edge of the data, progress and errors are those of contour(); so are the bytes: the
+/// same for any number of threads.
+///
+/// Marching cubes gives triangles, surface nets quads. Both meshes are closed, consistently
+/// oriented 2-manifolds wherever the surface does not reach the end of the data, but for
+/// Ambiguity::Original. They are neither adaptive nor searched for self-intersections. A cell whose
+/// sign changes are partly the end of the data gives no triangles. Of the report, what concerns
+/// neither certificates nor repair is filled.
+///
+/// Throws Error as contour() does; InvalidArgument also for Ambiguity::Original with a method other
+/// than marching cubes.
+[[nodiscard]] TUFA_API Mesh extract(const openvdb::GridBase& grid, Method method,
+                                    const ExtractOptions& options = {},
+                                    ContourReport* report = nullptr);
+
+}  // namespace tufa

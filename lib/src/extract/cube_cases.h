@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+#include "extract/derive_cube.h"
+
+namespace tufa::extraction {
+
+/// Names a case: the corner mask in the lower eight bits, above them one for each of its ambiguous
+/// faces, in the order of the faces, whether it is joined.
+using CaseCode = std::uint16_t;
+
+/// The code of a cell. Bits of faces that are not ambiguous mean nothing.
+[[nodiscard]] CaseCode codeOf(CornerMask mask, FaceBits joined);
+
+/// The triangles of a case, from a table made at compile time.
+[[nodiscard]] const CubeCase& caseOf(CaseCode code);
+
+}  // namespace tufa::extraction

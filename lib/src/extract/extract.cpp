@@ -1,0 +1,69 @@
+#include <tufa/extract.h>
+
+#include "base/job.h"
+#include "base/known_enum.h"
+#include "base/run_call.h"
+#include "base/single_precision.h"
+#include "extract/marching_cubes.h"
+#include "extract/surface_nets.h"
+#include "grid/volume.h"
+#include "refine/rounding.h"
+#include "uniform/place_vertices.h"
+
+namespace tufa {
+namespace {
+
+constexpr double kBlocksEnd = 0.1;
+
+Mesh meshOf(const grid::Volume& volume, Method method, const ContourOptions& options,
+            ContourReport& report, base::Job& job) {
+  if (method == Method::SurfaceNets) {
+    return extraction::meshSurfaceNets(volume, options, report, job);
+  }
+  return extraction::meshCubes(volume, extraction::marchingCubesRule(options.ambiguity), options,
+                               report, job);
+}
+
+// To world space and, where that is harmless, to single precision, as contour() does.
+void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& job) {
+  job.forRanges(mesh.positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);
+  });
+  base::roundToSingle(mesh, refine::kMostRounding * affine.leastHeight(), job);
+  if (normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
+  if (normals == Normals::None) mesh.normals = {};
+}
+
+}  // namespace
+
+const std::array<std::string_view, 3>& methodNames() {
+  static constexpr std::array<std::string_view, 3> kNames = {"dual", "mc", "surface-nets"};
+  return kNames;
+}
+
+std::optional<Method> methodByName(std::string_view name) {
+  for (std::size_t n = 0; n < methodNames().size(); ++n) {
+    if (methodNames()[n] == name) return static_cast<Method>(n);
+  }
+  return std::nullopt;
+}
+
+Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions& options,
+             ContourReport* report) {
+  base::requireKnown(method, Method::SurfaceNets, "the method");
+  if (method == Method::Dual) return contour(grid, options.contour, report);
+  grid::requireMeshable(grid);
+  const auto work = [&](ContourReport& out, base::Job& job) {
+    job.beginStage("blocks", kBlocksEnd);
+    const grid::Volume volume = grid::openVolume(grid, options.contour, job);
+    Mesh mesh = meshOf(volume, method, options.contour, out, job);
+    job.beginStage("finish", 1.0);
+    finish(volume.affine, options.contour.normals, mesh, job);
+    return mesh;
+  };
+  const bool mayLeaveHoles = method == Method::MarchingCubes;
+  return base::runCall(options.contour, report, work,
+                       mayLeaveHoles ? base::Rules::All : base::Rules::Closed);
+}
+
+}  // namespace tufa
