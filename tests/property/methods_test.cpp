@@ -36,6 +36,11 @@ class Methods : public ::testing::TestWithParam<Method> {
     options.ambiguity = rule;
     return options;
   }
+  /// The rules for ambiguous faces that make a difference.
+  static std::vector<Ambiguity> rules() {
+    if (GetParam() >= Method::MarchingTetrahedra5) return {Ambiguity::Separate};
+    return {Ambiguity::Separate, Ambiguity::Join, Ambiguity::Asymptotic, Ambiguity::Chord};
+  }
 };
 
 std::vector<Method> allButDual() {
@@ -60,14 +65,14 @@ void expectManifold(const Mesh& mesh, const std::string& what) {
 TEST_P(Methods, GiveClosedManifoldsOfNoiseAndTheSameBytesForAnyThreads) {
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     const auto grid = test::noise<FloatGrid>({.size = 64, .seed = seed});
-    for (const Ambiguity rule :
-         {Ambiguity::Separate, Ambiguity::Join, Ambiguity::Asymptotic, Ambiguity::Chord}) {
+    for (const Ambiguity rule : rules()) {
       ContourOptions options = atZero(rule);
       options.threads = 1;
       const Mesh mesh = meshOf(*grid, options);
       EXPECT_GT(mesh.triangleCount(), 100000U);
       expectManifold(mesh, "noise " + std::to_string(seed));
       EXPECT_GT(test::volume(mesh), 0);
+      if (seed != 1) continue;
       options.threads = 2;
       EXPECT_TRUE(test::sameBytes(mesh, meshOf(*grid, options))) << seed;
     }

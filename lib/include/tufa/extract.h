@@ -19,13 +19,17 @@ enum class Method {
   /// Surface nets (Gibson 1998): like uniform dual contouring, but each vertex is the mean of the
   /// crossings around it.
   SurfaceNets,
+  MarchingTetrahedra5,   ///< five tetrahedra a cell, mirrored from cell to cell
+  MarchingTetrahedra6,   ///< six tetrahedra a cell, around its main diagonal
+  MarchingTetrahedra24,  ///< 24 tetrahedra a cell, through the centres of cells and faces
+  BodyCentred,           ///< tetrahedra of the body-centred cubic lattice
 };
 
 /// The method of that name ("dual", "mc", ...), if there is one.
 [[nodiscard]] TUFA_API std::optional<Method> methodByName(std::string_view name);
 
 /// Names of all methods, in the order of the enum.
-[[nodiscard]] TUFA_API const std::array<std::string_view, 3>& methodNames();
+[[nodiscard]] TUFA_API const std::array<std::string_view, 7>& methodNames();
 
 /// Options of extract().
 struct ExtractOptions {
@@ -38,7 +42,7 @@ struct ExtractOptions {
 /// inside, the edge of the data, progress and errors are those of contour(); so are the bytes: the
 /// same for any number of threads.
 ///
-/// Marching cubes gives triangles, surface nets quads. Both meshes are closed, consistently
+/// Surface nets gives quads, the others triangles. All meshes are closed, consistently
 /// oriented 2-manifolds wherever the surface does not reach the end of the data, but for
 /// Ambiguity::Original. They are neither adaptive nor searched for self-intersections. A cell whose
 /// sign changes are partly the end of the data gives no triangles. Of the report, what concerns

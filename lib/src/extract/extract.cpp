@@ -6,6 +6,7 @@
 #include "base/single_precision.h"
 #include "extract/marching_cubes.h"
 #include "extract/surface_nets.h"
+#include "extract/tetrahedra.h"
 #include "grid/volume.h"
 #include "refine/rounding.h"
 #include "uniform/place_vertices.h"
@@ -17,11 +18,15 @@ constexpr double kBlocksEnd = 0.1;
 
 Mesh meshOf(const grid::Volume& volume, Method method, const ContourOptions& options,
             ContourReport& report, base::Job& job) {
-  if (method == Method::SurfaceNets) {
-    return extraction::meshSurfaceNets(volume, options, report, job);
+  switch (method) {
+    case Method::MarchingCubes:
+      return extraction::meshCubes(volume, extraction::marchingCubesRule(options.ambiguity),
+                                   options, report, job);
+    case Method::SurfaceNets:
+      return extraction::meshSurfaceNets(volume, options, report, job);
+    default:
+      return extraction::meshTetrahedra(volume, method, options, report, job);
   }
-  return extraction::meshCubes(volume, extraction::marchingCubesRule(options.ambiguity), options,
-                               report, job);
 }
 
 // To world space and, where that is harmless, to single precision, as contour() does.
@@ -36,8 +41,9 @@ void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& 
 
 }  // namespace
 
-const std::array<std::string_view, 3>& methodNames() {
-  static constexpr std::array<std::string_view, 3> kNames = {"dual", "mc", "surface-nets"};
+const std::array<std::string_view, 7>& methodNames() {
+  static constexpr std::array<std::string_view, 7> kNames = {"dual", "mc",   "surface-nets", "mt5",
+                                                             "mt6",  "mt24", "bcc"};
   return kNames;
 }
 
@@ -50,7 +56,7 @@ std::optional<Method> methodByName(std::string_view name) {
 
 Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions& options,
              ContourReport* report) {
-  base::requireKnown(method, Method::SurfaceNets, "the method");
+  base::requireKnown(method, Method::BodyCentred, "the method");
   if (method == Method::Dual) return contour(grid, options.contour, report);
   grid::requireMeshable(grid);
   const auto work = [&](ContourReport& out, base::Job& job) {

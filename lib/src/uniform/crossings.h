@@ -99,6 +99,20 @@ class CrossingFinder {
     return value > scale_.bandInside && value < scale_.bandOutside;
   }
 
+  /// Where a linear function from a to b, on different sides of zero, is zero; half way if both are
+  /// zero. Without a branch, which would keep the loop over a batch from being vectorized.
+  static float linearRoot(float a, float b) {
+    const float across = a - b;
+    const auto flat = static_cast<float>(across == 0);
+    return (a + 0.5F * flat) / (across + flat);
+  }
+
+  /// Moved away from the ends of its edge, see kEndMargin.
+  static float keptOffEnds(float along) {
+    const float kept = along < kEndMargin ? kEndMargin : along;
+    return kept > 1 - kEndMargin ? 1 - kEndMargin : kept;
+  }
+
  private:
   // A squared gradient length off 1 by more than this is a kink (two normals 16 degrees apart,
   // blended half and half) or a sample beyond the band. Central differences on a sphere of radius 3
@@ -184,19 +198,6 @@ class CrossingFinder {
       limits.slope[i] = kSlopeTolerance * static_cast<float>(scale.axisLength[i]);
     }
     return limits;
-  }
-
-  // Where a linear function from a to b, on different sides of zero, is zero; half way if both are
-  // zero. Without a branch, which would keep the loop over a batch from being vectorized.
-  static float linearRoot(float a, float b) {
-    const float across = a - b;
-    const auto flat = static_cast<float>(across == 0);
-    return (a + 0.5F * flat) / (across + flat);
-  }
-
-  static float keptOffEnds(float along) {
-    const float kept = along < kEndMargin ? kEndMargin : along;
-    return kept > 1 - kEndMargin ? 1 - kEndMargin : kept;
   }
 
   [[nodiscard]] Vector centralDifference(int at) const {
