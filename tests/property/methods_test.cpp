@@ -38,7 +38,8 @@ class Methods : public ::testing::TestWithParam<Method> {
   }
   /// The rules for ambiguous faces that make a difference.
   static std::vector<Ambiguity> rules() {
-    if (GetParam() >= Method::MarchingTetrahedra5) return {Ambiguity::Separate};
+    const bool asks = GetParam() == Method::MarchingCubes || GetParam() == Method::SurfaceNets;
+    if (!asks) return {Ambiguity::Separate};
     return {Ambiguity::Separate, Ambiguity::Join, Ambiguity::Asymptotic, Ambiguity::Chord};
   }
 };
@@ -218,6 +219,22 @@ TEST(MethodNames, AreThoseOfTheEnum) {
     options.ambiguity = Ambiguity::Original;
     (void)contour(*ball, options);
   });
+}
+
+TEST(MethodsOfCubes, PutTheSameVerticesOnLatticeEdges) {
+  const auto grid = test::noise<FloatGrid>({.size = 32});
+  ExtractOptions options;
+  options.contour.isovalue = 0;
+  options.contour.inside = Inside::Below;
+  const Mesh plain = extract(*grid, Method::MarchingCubes, options);
+  for (const Method method : {Method::MarchingCubes33}) {
+    const Mesh mesh = extract(*grid, method, options);
+    ASSERT_GE(mesh.positions.size(), plain.positions.size());
+    for (std::size_t i = 0; i < plain.positions.size(); ++i) {
+      ASSERT_EQ(mesh.positions[i], plain.positions[i]);
+      ASSERT_EQ(mesh.normals[i], plain.normals[i]);
+    }
+  }
 }
 
 TEST(MethodDual, IsContour) {

@@ -16,6 +16,9 @@ enum class Method {
   /// Marching cubes (Lorensen and Cline 1987): a vertex on each crossed lattice edge, and triangles
   /// by a table of cases.
   MarchingCubes,
+  /// Marching cubes with the topology of the trilinear interpolant (Chernyaev 1995): faces are
+  /// joined by their saddles, whatever the rule for ambiguous ones, and there are tunnels.
+  MarchingCubes33,
   /// Surface nets (Gibson 1998): like uniform dual contouring, but each vertex is the mean of the
   /// crossings around it.
   SurfaceNets,
@@ -29,7 +32,7 @@ enum class Method {
 [[nodiscard]] TUFA_API std::optional<Method> methodByName(std::string_view name);
 
 /// Names of all methods, in the order of the enum.
-[[nodiscard]] TUFA_API const std::array<std::string_view, 7>& methodNames();
+[[nodiscard]] TUFA_API const std::array<std::string_view, 8>& methodNames();
 
 /// Options of extract().
 struct ExtractOptions {

@@ -49,30 +49,40 @@ constexpr auto kPacked = [] {
   return table;
 }();
 
-// A constant for each mask, so that each stays below the default limits of compilers on constant
-// evaluation.
-template <int kMask>
+// A constant for each mask and tunnel, so that each stays below the default limits of compilers on
+// constant evaluation.
+template <int kMask, int kTunnel>
 constexpr auto kCasesOf = [] {
   constexpr auto mask = static_cast<CornerMask>(kMask);
   constexpr FaceBits faces = facesOf(mask);
   std::array<CubeCase, 1 << countFaces(faces)> cases{};
   for (int bits = 0; bits < 1 << countFaces(faces); ++bits) {
-    cases[bits] = diskCase(mask, spread(faces, bits));
+    const Loops loops = loopsOf(mask, spread(faces, bits));
+    if (kTunnel == 0 || mayHave(loops, kTunnel)) cases[bits] = caseFor(loops, kTunnel);
   }
   return cases;
 }();
 
+template <int kTunnel>
 constexpr auto kCases = []<int... kMasks>(std::integer_sequence<int, kMasks...>) {
-  return std::array<const CubeCase*, 256>{kCasesOf<kMasks>.data()...};
+  return std::array<const CubeCase*, 256>{kCasesOf<kMasks, kTunnel>.data()...};
 }
 (std::make_integer_sequence<int, 256>());
 
+constexpr auto kCasesByTunnel = []<int... kTunnel>(std::integer_sequence<int, kTunnel...>) {
+  return std::array<const std::array<const CubeCase*, 256>*, 1 + kTunnels>{&kCases<kTunnel>...};
+}
+(std::make_integer_sequence<int, 1 + kTunnels>());
+
 }  // namespace
 
-CaseCode codeOf(CornerMask mask, FaceBits joined) {
-  return static_cast<CaseCode>(mask | kPacked[uniform::ambiguousFaces(mask)][joined & 63] << 8);
+CaseCode codeOf(CornerMask mask, FaceBits joined, int tunnel) {
+  const int bits = kPacked[uniform::ambiguousFaces(mask)][joined & 63];
+  return static_cast<CaseCode>(mask | bits << 8 | tunnel << 14);
 }
 
-const CubeCase& caseOf(CaseCode code) { return kCases[code & 0xff][code >> 8]; }
+const CubeCase& caseOf(CaseCode code) {
+  return (*kCasesByTunnel[code >> 14])[code & 0xff][(code >> 8) & 0x3f];
+}
 
 }  // namespace tufa::extraction

@@ -134,7 +134,7 @@ class CubeMesher {
         }
         const CubeCase& chosen = caseOf(*code++);
         cells.triangles += chosen.count;
-        cells.centres += chosen.aroundCentre != 0 ? 1 : 0;
+        cells.centres += chosen.centreCount;
       });
     }
   }
@@ -173,24 +173,25 @@ class CubeMesher {
         const CubeCase& chosen = caseOf(*code++);
         const int place = Table::placeOf(x, bit >> 3, bit & 7);
         const auto vertexOf = [&](std::uint8_t corner) {
-          return corner == kCentre ? centre : table[place + kOffsets[corner]];
+          return corner < kEdges ? table[place + kOffsets[corner]] : centre + (corner - kCentre);
         };
         for (int i = 0; i < chosen.count; ++i) {
           const auto& t = chosen.triangles[i];
           *triangle++ = {vertexOf(t[0]), vertexOf(t[second]), vertexOf(t[3 - second])};
         }
-        if (chosen.aroundCentre == 0) return;
-        placeCentre(chosen, place, table, centre++, mesh);
+        for (int i = 0; i < chosen.centreCount; ++i) {
+          placeCentre(chosen.aroundCentre[i], place, table, centre++, mesh);
+        }
       });
     }
   }
 
   // The mean of the crossings around it.
-  static void placeCentre(const CubeCase& chosen, int place, const Table& table, VertexIndex centre,
+  static void placeCentre(std::uint16_t around, int place, const Table& table, VertexIndex centre,
                           Mesh& mesh) {
     Vec3 sum(0), normal(0);
     int count = 0;
-    base::forEachBit(chosen.aroundCentre, [&](int edge) {
+    base::forEachBit(around, [&](int edge) {
       const VertexIndex vertex = table[place + kOffsets[edge]];
       const Position& p = mesh.positions[vertex];
       sum += Vec3(p.x, p.y, p.z);

@@ -16,8 +16,9 @@ using uniform::kCorners;
 using uniform::kEdges;
 using uniform::kFaces;
 
-/// In place of an edge: the vertex inside the cell.
+/// In place of an edge: the first vertex inside the cell. Others follow it.
 inline constexpr std::uint8_t kCentre = kEdges;
+inline constexpr int kMostCentres = 4;
 
 /// Crossings that the surface joins through the faces of a cell, in order: counter-clockwise seen
 /// from outside of the solid.
@@ -32,13 +33,16 @@ struct Loops {
   int count = 0;
 };
 
-/// The triangles of a cell. Corners are edges, whose crossings are meant, or kCentre.
+/// The triangles of a cell. Corners are edges, whose crossings are meant, or kCentre and above.
 struct CubeCase {
-  static constexpr int kMost = 12;
+  static constexpr int kMost = 18;
   std::array<std::array<std::uint8_t, 3>, kMost> triangles{};
   std::uint8_t count = 0;
-  /// Bits of the edges whose crossings are around the vertex inside the cell; 0: there is none.
-  std::uint16_t aroundCentre = 0;
+  std::uint8_t centreCount = 0;  ///< vertices inside the cell
+  /// For each of them bits of edges: it is the mean of their crossings.
+  std::array<std::uint16_t, kMostCentres> aroundCentre{};
+  std::uint8_t loopCount = 0;
+  std::array<std::uint8_t, kEdges> loopOf{};  ///< of each crossed edge
 };
 
 /// The middle of an edge, in half voxels.
@@ -117,14 +121,19 @@ inline constexpr Loops loopsOf(CornerMask mask, FaceBits joined) {
 /// half voxels, and far more if it would lie in a face: there the cell beyond may have the same
 /// chord, and the edge four triangles.
 inline constexpr int kInFace = 1000;
-inline constexpr int chordCost(int a, int b) {
-  int cost = shareFace(a, b) ? kInFace : 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int d = kMiddles[a][axis] - kMiddles[b][axis];
-    cost += d * d;
+inline constexpr auto kChordCosts = [] {
+  std::array<std::array<int, kEdges>, kEdges> costs{};
+  for (int a = 0; a < kEdges; ++a) {
+    for (int b = 0; b < kEdges; ++b) {
+      costs[a][b] = shareFace(a, b) ? kInFace : 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int d = kMiddles[a][axis] - kMiddles[b][axis];
+        costs[a][b] += d * d;
+      }
+    }
   }
-  return cost;
-}
+  return costs;
+}();
 
 /// The cheapest ways to triangulate all runs of a loop (Klincsek 1980).
 struct RunCosts {
@@ -145,7 +154,7 @@ inline constexpr RunCosts costsOf(const Loop& loop) {
         runs.apex[i][j] = static_cast<std::int8_t>(k);
       }
       runs.cost[i][j] =
-          best + (length + 1 < loop.size ? chordCost(loop.edges[i], loop.edges[j]) : 0);
+          best + (length + 1 < loop.size ? kChordCosts[loop.edges[i]][loop.edges[j]] : 0);
     }
   }
   return runs;
@@ -156,6 +165,11 @@ inline constexpr void addTriangle(CubeCase& cell, int a, int b, int c) {
                                   static_cast<std::uint8_t>(c)};
 }
 
+inline constexpr int addCentre(CubeCase& cell, unsigned around) {
+  cell.aroundCentre[cell.centreCount] = static_cast<std::uint16_t>(around);
+  return kCentre + cell.centreCount++;
+}
+
 /// Adds the triangles of a disk that fills a loop. Where each triangulation has a chord in a face,
 /// as only loops of eight and more between faces joined in both ways do, a fan around a vertex
 /// inside the cell.
@@ -163,10 +177,12 @@ inline constexpr void fillLoop(const Loop& loop, CubeCase& cell) {
   const RunCosts runs = costsOf(loop);
   const auto& edges = loop.edges;
   if (runs.cost[0][loop.size - 1] >= kInFace) {
+    unsigned around = 0;
     for (int i = 0; i < loop.size; ++i) {
-      addTriangle(cell, edges[i], edges[(i + 1) % loop.size], kCentre);
-      cell.aroundCentre = static_cast<std::uint16_t>(cell.aroundCentre | 1 << edges[i]);
+      addTriangle(cell, edges[i], edges[(i + 1) % loop.size], kCentre + cell.centreCount);
+      around |= 1u << edges[i];
     }
+    addCentre(cell, around);
     return;
   }
   std::array<std::array<int, 2>, kEdges> open{};
@@ -182,11 +198,128 @@ inline constexpr void fillLoop(const Loop& loop, CubeCase& cell) {
   }
 }
 
-/// The cell's surface with a disk for each loop.
-inline constexpr CubeCase diskCase(CornerMask mask, FaceBits joined) {
-  const Loops loops = loopsOf(mask, joined);
+/// Pairs of loops that a tunnel may join. Cells of four loops have none.
+inline constexpr int kTunnels = 3;
+inline constexpr std::array<std::array<int, 2>, kTunnels> kTunnelEnds = {{{0, 1}, {0, 2}, {1, 2}}};
+
+/// A tube between two loops: from the edge between `first[0]` and `second[start]`, one step after
+/// another along the first loop or, as the other end of a tube runs the other way, back along the
+/// second.
+struct Tube {
+  int cost = -1;
+  int start = 0;
+  std::array<std::array<bool, kEdges + 1>, kEdges + 1> alongSecond{};  ///< the last step to a place
+};
+
+/// The cheapest of those that begin at `start` with a step along the first loop and end with one
+/// along the second, as any tube does that is seen from the right edge. Round one loop alone is no
+/// way: there the tube would be pinched.
+inline constexpr Tube tubeFrom(const Loop& first, const Loop& second, int start) {
+  constexpr int kNoWay = 1000 * kInFace;
+  const int n = first.size, m = second.size;
+  Tube tube;
+  tube.start = start;
+  std::array<std::array<int, kEdges + 1>, kEdges + 1> cost{};
+  for (int i = 0; i <= n; ++i) {
+    for (int j = i == 0 ? 1 : 0; j <= m; ++j) {
+      if (i == 0 || (i == n && j == 0) || (j == m && i < n)) {
+        cost[i][j] = kNoWay;
+        continue;
+      }
+      const bool back = j > 0 && cost[i][j - 1] < cost[i - 1][j];
+      tube.alongSecond[i][j] = back;
+      cost[i][j] = (back ? cost[i][j - 1] : cost[i - 1][j]) +
+                   kChordCosts[first.edges[i % n]][second.edges[(start + m - j) % m]];
+    }
+  }
+  tube.cost = cost[n][m];
+  return tube;
+}
+
+inline constexpr void joinLoops(const Loop& first, const Loop& second, CubeCase& cell) {
+  Tube best;
+  for (int start = 0; start < second.size; ++start) {
+    const Tube tube = tubeFrom(first, second, start);
+    if (best.cost < 0 || tube.cost < best.cost) best = tube;
+  }
+  int i = first.size, j = second.size;
+  while (i + j > 0) {
+    const auto ofFirst = [&](int k) { return first.edges[k % first.size]; };
+    const auto ofSecond = [&](int k) {
+      return second.edges[(best.start + second.size - k) % second.size];
+    };
+    if (best.alongSecond[i][j]) {
+      addTriangle(cell, ofSecond(j), ofSecond(j - 1), ofFirst(i));
+      --j;
+    } else {
+      addTriangle(cell, ofFirst(i - 1), ofFirst(i), ofSecond(j));
+      --i;
+    }
+  }
+}
+
+/// Puts the vertex `middle` onto the edge from `a` to `b` of one triangle; returns the bits of its
+/// corners.
+inline constexpr unsigned splitSide(CubeCase& cell, int a, int b, int middle) {
+  const int count = cell.count;
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const auto t = cell.triangles[i];
+      if (t[k] != a || t[(k + 1) % 3] != b) continue;
+      const int apex = t[(k + 2) % 3];
+      cell.triangles[i][(k + 1) % 3] = static_cast<std::uint8_t>(middle);
+      addTriangle(cell, middle, b, apex);
+      return 1u << a | 1u << b | (apex < kEdges ? 1u << apex : 0);
+    }
+  }
+  return 0;
+}
+
+inline constexpr bool hasSide(const CubeCase& cell, int a, int b) {
+  for (int i = 0; i < cell.count; ++i) {
+    const auto& t = cell.triangles[i];
+    for (int k = 0; k < 3; ++k) {
+      if (t[k] == a && t[(k + 1) % 3] == b) return true;
+    }
+  }
+  return false;
+}
+
+/// Splits the edges of two triangles that lie in a face, as some tubes must have them, by vertices
+/// inside the cell: the cell beyond the face may have the same edge.
+inline constexpr void leaveFaces(CubeCase& cell) {
+  for (int i = 0; i < cell.count; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = cell.triangles[i][k], b = cell.triangles[i][(k + 1) % 3];
+      if (a >= b || b >= kEdges || kChordCosts[a][b] < kInFace || !hasSide(cell, b, a)) continue;
+      const int middle = kCentre + cell.centreCount;
+      const unsigned around = splitSide(cell, a, b, middle) | splitSide(cell, b, a, middle);
+      addCentre(cell, around);
+    }
+  }
+}
+
+/// Whether these loops may have that tunnel, counted from 1.
+inline constexpr bool mayHave(const Loops& loops, int tunnel) {
+  return tunnel > 0 && kTunnelEnds[tunnel - 1][1] < loops.count && loops.count <= kTunnels;
+}
+
+/// The cell's surface with a disk for each loop, or, for a tunnel, a tube between two of them.
+inline constexpr CubeCase caseFor(const Loops& loops, int tunnel) {
   CubeCase cell;
-  for (int i = 0; i < loops.count; ++i) fillLoop(loops.loops[i], cell);
+  cell.loopCount = static_cast<std::uint8_t>(loops.count);
+  int one = -1, other = -1;
+  if (tunnel > 0) {
+    one = kTunnelEnds[tunnel - 1][0];
+    other = kTunnelEnds[tunnel - 1][1];
+    joinLoops(loops.loops[one], loops.loops[other], cell);
+    leaveFaces(cell);
+  }
+  for (int i = 0; i < loops.count; ++i) {
+    const Loop& loop = loops.loops[i];
+    for (int k = 0; k < loop.size; ++k) cell.loopOf[loop.edges[k]] = static_cast<std::uint8_t>(i);
+    if (i != one && i != other) fillLoop(loop, cell);
+  }
   return cell;
 }
 

@@ -5,6 +5,7 @@
 #include "base/run_call.h"
 #include "base/single_precision.h"
 #include "extract/marching_cubes.h"
+#include "extract/mc33.h"
 #include "extract/surface_nets.h"
 #include "extract/tetrahedra.h"
 #include "grid/volume.h"
@@ -22,6 +23,8 @@ Mesh meshOf(const grid::Volume& volume, Method method, const ContourOptions& opt
     case Method::MarchingCubes:
       return extraction::meshCubes(volume, extraction::marchingCubesRule(options.ambiguity),
                                    options, report, job);
+    case Method::MarchingCubes33:
+      return extraction::meshCubes(volume, extraction::mc33Rule(), options, report, job);
     case Method::SurfaceNets:
       return extraction::meshSurfaceNets(volume, options, report, job);
     default:
@@ -41,9 +44,9 @@ void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& 
 
 }  // namespace
 
-const std::array<std::string_view, 7>& methodNames() {
-  static constexpr std::array<std::string_view, 7> kNames = {"dual", "mc",   "surface-nets", "mt5",
-                                                             "mt6",  "mt24", "bcc"};
+const std::array<std::string_view, 8>& methodNames() {
+  static constexpr std::array<std::string_view, 8> kNames = {"dual", "mc",  "mc33", "surface-nets",
+                                                             "mt5",  "mt6", "mt24", "bcc"};
   return kNames;
 }
 

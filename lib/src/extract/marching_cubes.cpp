@@ -8,9 +8,9 @@ namespace {
 
 constexpr FaceBits kAll = 0x3f;
 
-/// The case of a cell whose faces are joined by their values.
+/// The ambiguous faces of a cell that are joined by their values.
 template <Ambiguity kRule>
-CaseCode decideByValues(CornerMask mask, const CornerValues& values) {
+FaceBits joinedByValues(CornerMask mask, const CornerValues& values) {
   unsigned joined = 0;
   base::forEachBit(uniform::ambiguousFaces(mask), [&](int face) {
     std::array<double, 4> around;
@@ -19,7 +19,12 @@ CaseCode decideByValues(CornerMask mask, const CornerValues& values) {
     }
     if (uniform::joinsInside(kRule, around)) joined |= 1u << face;
   });
-  return codeOf(mask, static_cast<FaceBits>(joined));
+  return static_cast<FaceBits>(joined);
+}
+
+template <Ambiguity kRule>
+CaseCode decideByValues(CornerMask mask, const CornerValues& values) {
+  return codeOf(mask, joinedByValues<kRule>(mask, values));
 }
 
 FaceBits joinedWithoutValues(CornerMask mask, Ambiguity rule) {
@@ -29,6 +34,10 @@ FaceBits joinedWithoutValues(CornerMask mask, Ambiguity rule) {
 }
 
 }  // namespace
+
+FaceBits facesJoinedBySaddles(CornerMask mask, const CornerValues& values) {
+  return joinedByValues<Ambiguity::Asymptotic>(mask, values);
+}
 
 CubeRule marchingCubesRule(Ambiguity rule) {
   CubeRule cubes;

@@ -15,4 +15,7 @@ namespace tufa::extraction {
 /// a face but the arcs that both cells share (Wenger, "Isosurfaces", 2013).
 [[nodiscard]] CubeRule marchingCubesRule(Ambiguity rule);
 
+/// The ambiguous faces of a cell that Ambiguity::Asymptotic joins.
+[[nodiscard]] FaceBits facesJoinedBySaddles(CornerMask mask, const CornerValues& values);
+
 }  // namespace tufa::extraction

@@ -1,0 +1,199 @@
+// The topology of each cell against that of the trilinear surface itself, by oracles of another
+// kind.
+
+#include "extract/mc33.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <set>
+#include <utility>
+
+#include "unit/extract/cube_symmetry.h"
+#include "unit/extract/trilinear_oracle.h"
+#include "unit/uniform/cell_oracle.h"
+
+namespace tufa::extraction {
+namespace {
+
+using test::TrilinearCell;
+
+struct Topology {
+  int components = 0;
+  int euler = 0;
+  friend bool operator==(const Topology&, const Topology&) = default;
+  friend std::ostream& operator<<(std::ostream& out, const Topology& t) {
+    return out << t.components << " components, Euler characteristic " << t.euler;
+  }
+};
+
+/// Of the triangles of a case, as they are.
+Topology topologyOf(const CubeCase& cell) {
+  std::array<int, kEdges + kMostCentres> root;
+  std::iota(root.begin(), root.end(), 0);
+  std::set<int> vertices;
+  std::set<std::pair<int, int>> edges;
+  for (int i = 0; i < cell.count; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = cell.triangles[i][k], b = cell.triangles[i][(k + 1) % 3];
+      vertices.insert(a);
+      edges.emplace(std::min(a, b), std::max(a, b));
+      const int keep = root[a], drop = root[b];
+      for (int& r : root) r = r == drop ? keep : r;
+    }
+  }
+  std::set<int> roots;
+  for (const int vertex : vertices) roots.insert(root[vertex]);
+  return {static_cast<int>(roots.size()),
+          static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) + cell.count};
+}
+
+CornerMask maskOf(const CornerValues& values) {
+  unsigned mask = 0;
+  for (int i = 0; i < 8; ++i) mask |= values[i] < 0 ? 1u << i : 0;
+  return static_cast<CornerMask>(mask);
+}
+
+CubeCase chosenFor(const CornerValues& values) {
+  static const CubeRule rule = mc33Rule();
+  const CornerMask mask = maskOf(values);
+  return caseOf(rule.asks[mask] ? rule.decide(mask, values) : rule.codes[mask]);
+}
+
+/// Of the trilinear surface: its Euler characteristic by the critical points of the field, which
+/// counts disks, as tubes add 0; its rims by the test's own walk around the cell.
+Topology trilinear(const CornerValues& values, bool& certain) {
+  const TrilinearCell cell(values);
+  const CornerMask mask = maskOf(values);
+  unsigned joined = 0;
+  for (int face = 0; face < kFaces; ++face) {
+    std::array<double, 4> c;
+    for (int i = 0; i < 4; ++i) c[i] = static_cast<double>(values[uniform::kFaceCorners[face][i]]);
+    const double saddle = (c[0] * c[2] - c[1] * c[3]) / (c[0] + c[2] - c[1] - c[3]);
+    joined |= saddle < 0 ? 1u << face : 0;
+  }
+  const auto rims = uniform::test::partitionOf(mask, static_cast<FaceBits>(joined), 0);
+  if (mask == 0 || mask == 255) return {};
+  const int euler = cell.eulerOfSide(1, certain) + cell.eulerOfSide(-1, certain) - 1;
+  return {(static_cast<int>(rims.size()) + euler) / 2, euler};
+}
+
+class Cells {
+ public:
+  explicit Cells(std::uint32_t seed) : random_(seed) {}
+  /// Values of even spread, or of magnitudes of an even spread of logarithms.
+  CornerValues next() {
+    CornerValues values;
+    const bool even = random_() % 2 == 0;
+    for (float& value : values) {
+      const double size = even ? uniform_(random_) : std::pow(10, -3 * uniform_(random_));
+      value = static_cast<float>(random_() % 2 == 0 ? size : -size);
+    }
+    return values;
+  }
+
+ private:
+  std::mt19937 random_;
+  std::uniform_real_distribution<double> uniform_{0, 1};
+};
+
+TEST(Mc33, HasTheTopologyOfTheTrilinearSurfaceInAMillionRandomCells) {
+  Cells cells(1);
+  int mismatches = 0, uncertain = 0, tubes = 0;
+  std::set<std::pair<int, int>> seen;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const CornerValues values = cells.next();
+    bool certain = true;
+    const Topology expected = trilinear(values, certain);
+    if (!certain) {
+      ++uncertain;
+      continue;
+    }
+    const Topology found = topologyOf(chosenFor(values));
+    tubes += found.euler < found.components ? 1 : 0;
+    seen.emplace(found.components, found.euler);
+    if (found == expected) continue;
+    if (++mismatches < 5) ADD_FAILURE() << int{maskOf(values)} << ": " << found << ", " << expected;
+  }
+  EXPECT_EQ(mismatches, 0);
+  EXPECT_LT(uncertain, 100);
+  EXPECT_GT(tubes, 1000);
+  EXPECT_TRUE(seen.count({4, 4}));  // four disks, and a disk beside a tube
+  EXPECT_TRUE(seen.count({2, 1}));
+}
+
+TEST(Mc33, HasTheComponentsThatAFineLatticeShows) {
+  Cells cells(2);
+  int compared = 0, tubes = 0;
+  for (int i = 0; i < 12'000; ++i) {
+    const CornerValues values = cells.next();
+    const CornerMask mask = maskOf(values);
+    if (mask == 0 || mask == 255) continue;
+    const CubeCase chosen = chosenFor(values);
+    // Most cells are a single disk: a few of them will do.
+    if (chosen.loopCount == 1 && i % 50 != 0) continue;
+    const TrilinearCell cell(values);
+    const auto sides = cell.componentsOnLattice(18, false);
+    if (sides != cell.componentsOnLattice(18, true)) continue;
+    const Topology found = topologyOf(chosen);
+    // Both sides and the surface between them fill a ball (Mayer and Vietoris).
+    EXPECT_EQ(found.components, sides[0] + sides[1] - 1) << int{mask};
+    ++compared;
+    tubes += found.euler < found.components ? 1 : 0;
+  }
+  EXPECT_GT(compared, 1000);
+  EXPECT_GT(tubes, 20);
+}
+
+TEST(Mc33, SweepsAlongAnyAxisAlike) {
+  Cells cells(3);
+  const auto symmetries = test::CubeSymmetry::all();
+  for (int i = 0; i < 20'000; ++i) {
+    const CornerValues values = cells.next();
+    const Topology found = topologyOf(chosenFor(values));
+    const auto& symmetry = symmetries[static_cast<std::size_t>(i) % symmetries.size()];
+    CornerValues turned, opposite;
+    for (int corner = 0; corner < 8; ++corner) {
+      turned[symmetry.corner(corner)] = values[corner];
+      opposite[corner] = -values[corner];
+    }
+    EXPECT_EQ(topologyOf(chosenFor(turned)), found);
+    EXPECT_EQ(topologyOf(chosenFor(opposite)), found);
+  }
+}
+
+TEST(Mc33, CasesHaveNoEdgeOfTwoTrianglesInAFace) {
+  int tubes = 0;
+  uniform::test::forAllCells([&](CornerMask mask, FaceBits joined) {
+    const Loops loops = loopsOf(mask, joined);
+    for (int tunnel = 1; tunnel <= kTunnels; ++tunnel) {
+      if (!mayHave(loops, tunnel)) continue;
+      ++tubes;
+      const CubeCase& cell = caseOf(codeOf(mask, joined, tunnel));
+      std::set<std::pair<int, int>> sides;
+      for (int t = 0; t < cell.count; ++t) {
+        for (int k = 0; k < 3; ++k) {
+          const auto side = std::pair(cell.triangles[t][k], cell.triangles[t][(k + 1) % 3]);
+          EXPECT_TRUE(sides.insert(side).second) << int{mask};
+        }
+      }
+      int rim = 0;
+      for (const auto& [a, b] : sides) {
+        const bool isRim = sides.count({b, a}) == 0;
+        rim += isRim ? 1 : 0;
+        EXPECT_TRUE(isRim || std::max(a, b) >= kCentre || !shareFace(a, b)) << int{mask};
+      }
+      int crossings = 0;
+      for (int i = 0; i < loops.count; ++i) crossings += loops.loops[i].size;
+      EXPECT_EQ(rim, crossings) << int{mask};
+      EXPECT_EQ(topologyOf(cell), (Topology{loops.count - 1, loops.count - 2}));
+    }
+  });
+  EXPECT_EQ(tubes, 408);
+}
+
+}  // namespace
+}  // namespace tufa::extraction
