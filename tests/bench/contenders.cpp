@@ -23,6 +23,14 @@ Outcome runTufa(const openvdb::FloatGrid& grid, double tolerance, int threads) {
   return {mesh->positions.size(), mesh->triangleCount(), report.stages, mesh};
 }
 
+Outcome runMethod(const openvdb::FloatGrid& grid, Method method, int threads) {
+  ExtractOptions options;
+  options.contour.threads = threads;
+  ContourReport report;
+  const auto mesh = std::make_shared<Mesh>(extract(grid, method, options, &report));
+  return {mesh->positions.size(), mesh->triangleCount(), report.stages, mesh};
+}
+
 struct VolumeToMeshResult {
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
@@ -72,7 +80,35 @@ Contender readOfAllLeaves(const openvdb::FloatGrid& grid, std::size_t peer) {
           }};
 }
 
+void addFlyingEdges(const openvdb::FloatGrid& grid, std::size_t peer, std::vector<Contender>& all) {
+  const auto run = flyingEdgesOf(grid);
+  if (!run) return;
+  all.push_back({"vtkFlyingEdges3D on a dense copy", peer, [run](int threads) {
+                   const FlyingEdgesMesh mesh = run(threads);
+                   return Outcome{mesh.vertices, mesh.triangles, {}, mesh.made};
+                 }});
+}
+
 }  // namespace
+
+std::string nameOf(Method method) {
+  return "tufa, " + std::string(methodNames().at(static_cast<std::size_t>(method)));
+}
+
+std::vector<Contender> methodsFor(const openvdb::FloatGrid& grid) {
+  constexpr std::size_t kVolumeToMesh = 0, kMarchingCubes = 1;
+  std::vector<Contender> all = {{"volumeToMesh, adaptivity 0", kVolumeToMesh,
+                                 [&](int threads) { return runVolumeToMesh(grid, 0, threads); }}};
+  for (const std::string_view name : methodNames()) {
+    const Method method = *methodByName(name);
+    if (method == Method::Dual) continue;
+    const std::size_t peer = method == Method::MarchingCubes ? kVolumeToMesh : kMarchingCubes;
+    all.push_back({nameOf(method), peer,
+                   [&grid, method](int threads) { return runMethod(grid, method, threads); }});
+  }
+  addFlyingEdges(grid, kMarchingCubes, all);
+  return all;
+}
 
 std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid) {
   constexpr std::size_t kUniformPeer = 1, kAdaptivePeer = 3;
@@ -84,12 +120,7 @@ std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid) {
        [&](int threads) { return runTufa(grid, 0.1, threads); }},
       {"volumeToMesh, adaptivity 0.25", kAdaptivePeer,
        [&](int threads) { return runVolumeToMesh(grid, 0.25, threads); }}};
-  if (const auto run = flyingEdgesOf(grid)) {
-    all.push_back({"vtkFlyingEdges3D on a dense copy", kUniformPeer, [run](int threads) {
-                     const FlyingEdgesMesh mesh = run(threads);
-                     return Outcome{mesh.vertices, mesh.triangles, {}, mesh.made};
-                   }});
-  }
+  addFlyingEdges(grid, kUniformPeer, all);
   all.push_back(readOfAllLeaves(grid, kUniformPeer));
   return all;
 }

@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <tufa/contour.h>
+#include <tufa/extract.h>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -30,5 +31,13 @@ struct Contender {
 /// leaf values, which no mesher that looks at the whole grid can beat. What a contender needs
 /// beside the grid is made here, outside of what is timed. `grid` must outlive the result.
 [[nodiscard]] std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid);
+
+/// volumeToMesh at adaptivity 0, every method of tufa::extract() but dual contouring, and flying
+/// edges where VTK is at hand. Marching cubes is compared with volumeToMesh, the others with
+/// marching cubes. `grid` must outlive the result.
+[[nodiscard]] std::vector<Contender> methodsFor(const openvdb::FloatGrid& grid);
+
+/// How methodsFor() names a method.
+[[nodiscard]] std::string nameOf(Method method);
 
 }  // namespace tufa::bench

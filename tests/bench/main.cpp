@@ -22,6 +22,7 @@ struct Arguments {
   std::vector<double> sizes = {1, 10};
   std::vector<int> threads = {1, 2};
   int repeats = 5;
+  bool methods = false;
 };
 
 void addOptions(CLI::App& app, Arguments& arguments) {
@@ -35,6 +36,8 @@ void addOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--threads", arguments.threads, "numbers of threads")
       ->delimiter(',')
       ->capture_default_str();
+  app.add_flag("--methods", arguments.methods,
+               "compare the methods of `tufa mesh --method` with each other and with their peer");
   app.add_option("--repeats", arguments.repeats, "timed runs of each mesher")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -43,7 +46,8 @@ void addOptions(CLI::App& app, Arguments& arguments) {
 std::vector<Case> measureVolume(const std::string& volume, double millions,
                                 const Arguments& arguments) {
   const openvdb::FloatGrid::Ptr grid = makeVolume(volume, millions * 1e6);
-  const std::vector<Contender> contenders = contendersFor(*grid);
+  const std::vector<Contender> contenders =
+      arguments.methods ? methodsFor(*grid) : contendersFor(*grid);
   std::vector<Case> cases;
   for (const int threads : arguments.threads) {
     cases.push_back({std::filesystem::path(volume).stem().string(),
@@ -65,7 +69,14 @@ void run(const Arguments& arguments) {
     }
   }
   std::cout << timeTable(all);
-  for (const char* name : {"tufa, uniform", "tufa, tolerance 0.1"}) {
+  std::vector<std::string> names = {"tufa, uniform", "tufa, tolerance 0.1"};
+  if (arguments.methods) {
+    names.clear();
+    for (const std::string_view name : tufa::methodNames()) {
+      if (name != "dual") names.push_back(nameOf(*tufa::methodByName(name)));
+    }
+  }
+  for (const std::string& name : names) {
     std::cout << "\n" << name << ", share of each stage:\n\n" << stageTable(all, name);
   }
 }

@@ -99,6 +99,7 @@ std::vector<Result> measure(const std::vector<Contender>& contenders, int thread
   for (int repeat = 0; repeat < repeats; ++repeat) {
     for (std::size_t i = 0; i < contenders.size(); ++i) {
       const Outcome outcome = timedRun(contenders[i], threads, results[i]);
+      results[i].vertices = outcome.vertices;
       results[i].triangles = outcome.triangles;
       stages[i].push_back(outcome.stages);
     }

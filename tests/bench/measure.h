@@ -11,6 +11,7 @@ namespace tufa::bench {
 struct Result {
   std::string name;
   std::size_t peer = 0;  ///< as in Contender
+  std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::vector<double> cpuSeconds;  ///< of all threads, of each repeat
   std::vector<double> seconds;     ///< wall clock of each repeat

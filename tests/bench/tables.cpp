@@ -15,8 +15,9 @@ std::string caseCells(const Case& c) {
 std::string timeTable(const std::vector<Case>& cases) {
   std::string text =
       "| volume | active voxels, millions | threads | mesher | seconds | ratio | CPU seconds | "
-      "million voxels a second | extra bytes an active voxel | triangles |\n"
-      "| --- | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+      "million voxels a second | million vertices a second | extra bytes an active voxel | "
+      "triangles |\n"
+      "| --- | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
   for (const Case& c : cases) {
     for (const Result& result : c.results) {
       const double seconds = median(result.seconds);
@@ -25,8 +26,10 @@ std::string timeTable(const std::vector<Case>& cases) {
       text += caseCells(c) + result.name + " | " + number("%.4f", seconds) + " | " +
               number("%.3f", medianRatio(result, c.results[result.peer])) + " | " +
               number("%.4f", median(result.cpuSeconds)) + " | " +
-              number("%.0f", c.activeVoxels * 1e-6 / seconds) + " | " + bytes + " | " +
-              (result.triangles > 0 ? std::to_string(result.triangles) : "") + " |\n";
+              number("%.0f", c.activeVoxels * 1e-6 / seconds) + " | " +
+              number("%.1f", static_cast<double>(result.vertices) * 1e-6 / seconds) + " | " +
+              bytes + " | " + (result.triangles > 0 ? std::to_string(result.triangles) : "") +
+              " |\n";
     }
   }
   return text;

@@ -61,40 +61,43 @@ inline uniform::Vector gradientAt(const grid::BlockSamples& samples, int cell,
   return gradient;
 }
 
-/// Places the vertices of one kind of edge of one block.
+/// Places the vertices of the edges of one kind, which is known to the compiler: Split::kEdges
+/// holds it at `kKind`.
+template <class Split, int kKind>
 class EdgePlacer {
  public:
-  EdgePlacer(const grid::Volume& volume, const grid::BlockSamples& samples, const EdgeKind& kind)
-      : volume_(volume), samples_(samples), kind_(kind), from_(kind.from), to_(kind.to) {}
+  EdgePlacer(const grid::Volume& volume, const grid::BlockSamples& samples)
+      : volume_(volume), samples_(samples) {}
 
   /// Writes the position of the crossing of the edge of a cell, by linear interpolation, and if
   /// there is room for it the normal, by that of the gradients at both ends.
   void place(const Coord& origin, const std::array<int, 3>& cell, std::size_t vertex,
              Mesh& mesh) const {
     const int lowest = grid::BlockSamples::index(cell[0], cell[1], cell[2]);
-    const float a = valueAt(samples_, lowest, from_);
-    const float b = valueAt(samples_, lowest, to_);
+    const float a = valueAt(samples_, lowest, kFrom);
+    const float b = valueAt(samples_, lowest, kTo);
     using Finder = uniform::CrossingFinder;
     const float along = Finder::keptOffEnds(Finder::linearRoot(a, b));
     std::array<double, 3> at;
     for (int axis = 0; axis < 3; ++axis) {
-      const double step = (kind_.to[axis] - kind_.from[axis]) * static_cast<double>(along);
-      at[axis] = cell[axis] + 0.5 * (kind_.from[axis] + step);
+      const int step = kEdge.to[axis] - kEdge.from[axis];
+      at[axis] = cell[axis] + 0.5 * (kEdge.from[axis] + step * static_cast<double>(along));
     }
     mesh.positions[vertex] = volume_.affine.position(origin, at[0], at[1], at[2]);
     if (mesh.normals.empty()) return;
-    const uniform::Vector ga = gradientAt(samples_, lowest, from_);
-    const uniform::Vector gb = gradientAt(samples_, lowest, to_);
+    const uniform::Vector ga = gradientAt(samples_, lowest, kFrom);
+    const uniform::Vector gb = gradientAt(samples_, lowest, kTo);
     uniform::Vector g;
     for (int i = 0; i < 3; ++i) g[i] = ga[i] + along * (gb[i] - ga[i]);
     mesh.normals[vertex] = volume_.affine.normal(g[0], g[1], g[2]);
   }
 
  private:
+  static constexpr EdgeKind kEdge = Split::kEdges.kinds[kKind];
+  static constexpr PointsAround kFrom{kEdge.from}, kTo{kEdge.to};
+
   const grid::Volume& volume_;
   const grid::BlockSamples& samples_;
-  const EdgeKind& kind_;
-  PointsAround from_, to_;
 };
 
 }  // namespace tufa::extraction

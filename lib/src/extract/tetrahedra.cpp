@@ -173,10 +173,10 @@ class TetrahedraMesher {
     const std::array<int, 3> at = {cell >> 6, (cell >> 3) & 7, cell & 7};
     if constexpr (L::kCentres) {
       const int lowest = BlockSamples::index(at[0], at[1], at[2]);
-      for (int point = kFaceCentre; point < kPoints; ++point) {
-        if (((L::kUsedPoints >> point) & 1) == 0) continue;
-        if (isInside(block, samples, lowest, at, point, mask)) bits |= CellBits{1} << point;
+      [&]<int... kCentre>(std::integer_sequence<int, kCentre...>) {
+        ((bits |= bitOf<kFaceCentre + kCentre>(block, samples, lowest, at, mask)), ...);
       }
+      (std::make_integer_sequence<int, kPoints - kFaceCentre>());
     }
     if constexpr (L::kCentresBeyond) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -191,23 +191,23 @@ class TetrahedraMesher {
 
   // Of a centre. Where all samples around it are on one side it is on that, whatever their mean is
   // rounded to.
-  bool isInside(const SurfaceBlock& block, const BlockSamples& samples, int lowest,
-                const std::array<int, 3>& at, int point, uniform::CornerMask mask) const {
-    static constexpr auto kAround = [] {
-      std::array<PointsAround, kPoints> around{};
-      for (int i = 0; i < kPoints; ++i) around[i] = PointsAround(kPlaces[i]);
-      return around;
-    }();
-    if (point != kCellCentre) {
-      const int face = (point - kFaceCentre) % (kCentreBeyond - kFaceCentre);
-      const auto& corners = uniform::kFaceCorners[face];
-      unsigned inside = 0;
-      for (int i = 0; i < 4; ++i) inside |= ((mask >> corners[i]) & 1u) << i;
-      const bool oneSide = point < kCellCentre ? inside == 0 || inside == 15
-                                               : !isSurfaceCell(block, stepped(at, face));
-      if (oneSide) return inside != 0;
+  template <int kPoint>
+  CellBits bitOf(const SurfaceBlock& block, const BlockSamples& samples, int lowest,
+                 const std::array<int, 3>& at, uniform::CornerMask mask) const {
+    if constexpr (((L::kUsedPoints >> kPoint) & 1) == 0) return 0;
+    static constexpr PointsAround kAround{kPlaces[kPoint]};
+    constexpr CellBits bit = CellBits{1} << kPoint;
+    if constexpr (kPoint != kCellCentre) {
+      constexpr int face = (kPoint - kFaceCentre) % (kCentreBeyond - kFaceCentre);
+      constexpr auto corners = uniform::kFaceCorners[face];
+      constexpr unsigned all =
+          1u << corners[0] | 1u << corners[1] | 1u << corners[2] | 1u << corners[3];
+      const unsigned inside = mask & all;
+      const bool oneSide = kPoint < kCellCentre ? inside == 0 || inside == all
+                                                : !isSurfaceCell(block, stepped(at, face));
+      if (oneSide) return inside != 0 ? bit : 0;
     }
-    return valueAt(samples, lowest, kAround[point]) < 0;
+    return valueAt(samples, lowest, kAround) < 0 ? bit : 0;
   }
 
   static std::array<int, 3> stepped(std::array<int, 3> at, int face) {
@@ -225,6 +225,9 @@ class TetrahedraMesher {
   }
 
   bool isSurfaceCell(const SurfaceBlock& block, const std::array<int, 3>& at) const {
+    if (((at[0] | at[1] | at[2]) & ~7) == 0) {
+      return block.cells.get(grid::cellIndex(at[0], at[1], at[2]));
+    }
     int cell = 0;
     const SurfaceBlock* owner = blockOf(block, at, cell);
     return owner != nullptr && owner->cells.get(cell);
@@ -279,16 +282,23 @@ class TetrahedraMesher {
         samples.gather(volume_.blocks, volume_.scale, block.block, block.neighbours, *accessor);
         auto vertex = static_cast<std::size_t>(edges_[i].first);
         const Coord& origin = volume_.blocks.origin(block.block);
-        for (int kind = 0; kind < L::kKinds; ++kind) {
-          const EdgePlacer placer(volume_, samples, L::kEdges.kinds[kind]);
-          for (int x = 0; x < kBlockSize; ++x) {
-            base::forEachBit(edges_[i].crossed[kind].slabs[x], [&](int bit) {
-              placer.place(origin, {x, bit >> 3, bit & 7}, vertex++, mesh);
-            });
-          }
+        [&]<int... kKind>(std::integer_sequence<int, kKind...>) {
+          (placeKind<kKind>(edges_[i], samples, origin, vertex, mesh), ...);
         }
+        (std::make_integer_sequence<int, L::kKinds>());
       }
     });
+  }
+
+  template <int kKind>
+  void placeKind(const Edges& edges, const BlockSamples& samples, const Coord& origin,
+                 std::size_t& vertex, Mesh& mesh) const {
+    const EdgePlacer<L, kKind> placer(volume_, samples);
+    for (int x = 0; x < kBlockSize; ++x) {
+      base::forEachBit(edges.crossed[kKind].slabs[x], [&](int bit) {
+        placer.place(origin, {x, bit >> 3, bit & 7}, vertex++, mesh);
+      });
+    }
   }
 
   void emit(Mesh& mesh) const {
