@@ -29,6 +29,7 @@ const char* nameOf(Ambiguity rule) {
       return "Join";
     case Ambiguity::Asymptotic:
       return "Asymptotic";
+    case Ambiguity::Original:  // refused
     case Ambiguity::Chord:
       break;
   }
