@@ -70,10 +70,16 @@ void addMethodOption(CLI::App& app, MeshArguments& arguments) {
          "how the surface is extracted (default dual); all others make a triangle mesh or, "
          "surface-nets, quads, of the finest cells: they are not adaptive")
       ->check(CLI::IsMember(names));
+  app.add_option("--sharp-angle", arguments.sharpAngle,
+                 "--method emc: normals in a cell that differ by more, in degrees, mean a crease")
+      ->capture_default_str();
 }
 
 /// Throws Error for options that mean nothing to the method.
 void requireMeaning(const CLI::App& app, Method method) {
+  if (method != Method::ExtendedMarchingCubes && app.get_option("--sharp-angle")->count() > 0) {
+    throw Error(ErrorCode::InvalidArgument, "--sharp-angle is for --method emc alone");
+  }
   if (method == Method::Dual) return;
   for (const char* name : {"--tolerance", "--max-angle", "--min-cell", "--max-cell",
                            "--tolerance-grid", "--simplify", "--no-repair"}) {

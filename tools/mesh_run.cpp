@@ -54,8 +54,9 @@ GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string
     options.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
   }
   options.progress = bar.callback();
-  run.contourSeconds =
-      timed([&] { run.mesh = extract(*grid, arguments.method, {options}, &run.contour); });
+  run.contourSeconds = timed([&] {
+    run.mesh = extract(*grid, arguments.method, {options, arguments.sharpAngle}, &run.contour);
+  });
   if (!arguments.quiet) noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
   if (!arguments.allowEmpty) {
     requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);

@@ -19,6 +19,7 @@ struct MeshArguments {
   std::optional<std::string> format;  ///< of standard output
   std::vector<std::string> grids;     ///< names and patterns; none: the library chooses one
   Method method = Method::Dual;
+  double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
   ContourOptions contour;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";

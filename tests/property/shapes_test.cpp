@@ -5,6 +5,7 @@
 #include <openvdb/openvdb.h>
 
 #include <tufa/contour.h>
+#include <tufa/extract.h>
 #include <tufa/shapes.h>
 #include <algorithm>
 #include <cmath>
@@ -220,6 +221,24 @@ TEST(ShapeAccuracy, OfSharpShapesIsWithinATenthOfAVoxel) {
     EXPECT_LT(creases.largest(), 0.25);
     RecordProperty("surface_largest", std::to_string(surface.largest()));
     RecordProperty("creases_largest", std::to_string(creases.largest()));
+  }
+}
+
+TEST(ShapeAccuracy, OfExtendedMarchingCubesIsBetweenThatOfDualAndOfPlainOnes) {
+  const double voxelSize = 0.01;
+  for (const Shape shape : {Shape::Box, Shape::Bracket}) {
+    ShapeOptions options;
+    options.voxelSize = voxelSize;
+    const auto grid = makeShape(shape, options);
+    ContourReport report;
+    const Mesh mesh = extract(*grid, Method::ExtendedMarchingCubes, {}, &report);
+    EXPECT_GT(report.creaseCells, 500U);
+    const Errors creases = creasesToMesh(mesh, shape, voxelSize);
+    EXPECT_LT(creases.quantile(0.99), 0.27);
+    EXPECT_LT(creases.quantile(0.5), 0.1);
+    const Errors plain = creasesToMesh(extract(*grid, Method::MarchingCubes), shape, voxelSize);
+    EXPECT_GT(plain.quantile(0.99), 2 * creases.quantile(0.99));
+    RecordProperty("creases_median", std::to_string(creases.quantile(0.5)));
   }
 }
 

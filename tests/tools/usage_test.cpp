@@ -252,6 +252,8 @@ TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
   }
   expectFailure("mesh s.vdb -o m.ply --method cubes", 2, "cubes");
   expectFailure("mesh s.vdb -o m.ply --method mc --tolerance 1", 2, "--tolerance");
+  expectFailure("mesh s.vdb -o m.ply --method mc --sharp-angle 20", 2, "--sharp-angle");
+  expectFailure("mesh s.vdb -o m.ply --method emc --sharp-angle 200", 2, "sharp angle");
   expectFailure("mesh s.vdb -o m.ply --ambiguity original", 2, "original");
   EXPECT_EQ(run("mesh s.vdb -o m.ply --method mc --ambiguity original --quiet").exitCode, 0);
 }

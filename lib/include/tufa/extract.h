@@ -19,6 +19,8 @@ enum class Method {
   /// Marching cubes with the topology of the trilinear interpolant (Chernyaev 1995): faces are
   /// joined by their saddles, whatever the rule for ambiguous ones, and there are tunnels.
   MarchingCubes33,
+  /// Extended marching cubes (Kobbelt et al. 2001): with vertices on creases and corners.
+  ExtendedMarchingCubes,
   /// Surface nets (Gibson 1998): like uniform dual contouring, but each vertex is the mean of the
   /// crossings around it.
   SurfaceNets,
@@ -32,13 +34,16 @@ enum class Method {
 [[nodiscard]] TUFA_API std::optional<Method> methodByName(std::string_view name);
 
 /// Names of all methods, in the order of the enum.
-[[nodiscard]] TUFA_API const std::array<std::string_view, 8>& methodNames();
+[[nodiscard]] TUFA_API const std::array<std::string_view, 9>& methodNames();
 
 /// Options of extract().
 struct ExtractOptions {
   /// What surface is meant, and how: `isovalue`, `inside`, `ambiguity`, `normals`, `nonFinite`,
   /// `cap`, `tileFaces`, `threads` and `progress`. Method::Dual takes the others too.
   ContourOptions contour;
+  /// Extended marching cubes: normals at the crossings of a cell that differ by more, in degrees,
+  /// mean a crease; 0 to 180. The default is that of the paper: a cosine of 0.9.
+  double sharpAngle = 25.84;
 };
 
 /// Meshes the surface of `grid` at the isovalue by the method asked for. Grids, transforms, what is

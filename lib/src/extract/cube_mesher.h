@@ -2,37 +2,21 @@
 
 #include <tufa/contour.h>
 
-#include <array>
-#include <vector>
-
 #include "base/job.h"
-#include "extract/block_edges.h"
-#include "extract/cube_cases.h"
+#include "extract/cube_cells.h"
 #include "grid/volume.h"
 
 namespace tufa::extraction {
 
-/// The edges of the lattice: one along each axis.
-struct CubeLattice {
-  static constexpr int kKinds = 3;
-  static constexpr std::array<int, kKinds> kReach = {3, 5, 6};  ///< the other two axes
-};
-
-/// Samples at the corners of a cell, negative inside.
-using CornerValues = std::array<float, kCorners>;
-
-/// How a method chooses the case of a cell: by its corner mask, or, for the masks that `asks`
-/// names, by its values too.
-struct CubeRule {
-  std::array<CaseCode, 256> codes{};
-  std::array<bool, 256> asks{};
-  CaseCode (*decide)(CornerMask mask, const CornerValues& values) = nullptr;
-};
-
 /// Meshes the cells of a volume by their cases: a vertex on each crossed lattice edge, placed as
-/// the crossings of dual contouring are, and for some cases one inside the cell. Positions are
+/// the crossings of dual contouring are, and for some cases some inside the cell. Positions are
 /// counted from the volume's affine.origin(). Sets what `report` says of cells.
 [[nodiscard]] Mesh meshCubes(const grid::Volume& volume, const CubeRule& rule,
                              const ContourOptions& options, ContourReport& report, base::Job& job);
+
+/// Writes the vertex inside a cell that is the mean of the crossings of the edges whose bits are
+/// set; its normal, if the mesh has some, is theirs.
+void placeCentre(unsigned around, int place, const CubeTable& table, VertexIndex centre,
+                 Mesh& mesh);
 
 }  // namespace tufa::extraction

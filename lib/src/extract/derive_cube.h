@@ -43,6 +43,7 @@ struct CubeCase {
   std::array<std::uint16_t, kMostCentres> aroundCentre{};
   std::uint8_t loopCount = 0;
   std::array<std::uint8_t, kEdges> loopOf{};  ///< of each crossed edge
+  std::array<std::int8_t, kEdges> next{};     ///< in its loop; -1 for edges that are not crossed
 };
 
 /// The middle of an edge, in half voxels.
@@ -308,6 +309,7 @@ inline constexpr bool mayHave(const Loops& loops, int tunnel) {
 inline constexpr CubeCase caseFor(const Loops& loops, int tunnel) {
   CubeCase cell;
   cell.loopCount = static_cast<std::uint8_t>(loops.count);
+  for (std::int8_t& edge : cell.next) edge = -1;
   int one = -1, other = -1;
   if (tunnel > 0) {
     one = kTunnelEnds[tunnel - 1][0];
@@ -317,7 +319,10 @@ inline constexpr CubeCase caseFor(const Loops& loops, int tunnel) {
   }
   for (int i = 0; i < loops.count; ++i) {
     const Loop& loop = loops.loops[i];
-    for (int k = 0; k < loop.size; ++k) cell.loopOf[loop.edges[k]] = static_cast<std::uint8_t>(i);
+    for (int k = 0; k < loop.size; ++k) {
+      cell.loopOf[loop.edges[k]] = static_cast<std::uint8_t>(i);
+      cell.next[loop.edges[k]] = static_cast<std::int8_t>(loop.edges[(k + 1) % loop.size]);
+    }
     if (i != one && i != other) fillLoop(loop, cell);
   }
   return cell;

@@ -1,9 +1,13 @@
+#include <tufa/error.h>
 #include <tufa/extract.h>
+#include <string>
 
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "base/run_call.h"
 #include "base/single_precision.h"
+#include "extract/cube_mesher.h"
+#include "extract/emc.h"
 #include "extract/marching_cubes.h"
 #include "extract/mc33.h"
 #include "extract/surface_nets.h"
@@ -17,19 +21,28 @@ namespace {
 
 constexpr double kBlocksEnd = 0.1;
 
-Mesh meshOf(const grid::Volume& volume, Method method, const ContourOptions& options,
+Mesh meshOf(const grid::Volume& volume, Method method, const ExtractOptions& all,
             ContourReport& report, base::Job& job) {
+  const ContourOptions& options = all.contour;
   switch (method) {
     case Method::MarchingCubes:
       return extraction::meshCubes(volume, extraction::marchingCubesRule(options.ambiguity),
                                    options, report, job);
     case Method::MarchingCubes33:
       return extraction::meshCubes(volume, extraction::mc33Rule(), options, report, job);
+    case Method::ExtendedMarchingCubes:
+      return extraction::meshSharp(volume, all.sharpAngle, options, report, job);
     case Method::SurfaceNets:
       return extraction::meshSurfaceNets(volume, options, report, job);
     default:
       return extraction::meshTetrahedra(volume, method, options, report, job);
   }
+}
+
+void requireAngle(double degrees) {
+  if (degrees >= 0 && degrees <= 180) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "the sharp angle is " + std::to_string(degrees) + ", must be 0 to 180 degrees");
 }
 
 // To world space and, where that is harmless, to single precision, as contour() does.
@@ -44,9 +57,9 @@ void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& 
 
 }  // namespace
 
-const std::array<std::string_view, 8>& methodNames() {
-  static constexpr std::array<std::string_view, 8> kNames = {"dual", "mc",  "mc33", "surface-nets",
-                                                             "mt5",  "mt6", "mt24", "bcc"};
+const std::array<std::string_view, 9>& methodNames() {
+  static constexpr std::array<std::string_view, 9> kNames = {
+      "dual", "mc", "mc33", "emc", "surface-nets", "mt5", "mt6", "mt24", "bcc"};
   return kNames;
 }
 
@@ -60,12 +73,13 @@ std::optional<Method> methodByName(std::string_view name) {
 Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions& options,
              ContourReport* report) {
   base::requireKnown(method, Method::BodyCentred, "the method");
+  requireAngle(options.sharpAngle);
   if (method == Method::Dual) return contour(grid, options.contour, report);
   grid::requireMeshable(grid);
   const auto work = [&](ContourReport& out, base::Job& job) {
     job.beginStage("blocks", kBlocksEnd);
     const grid::Volume volume = grid::openVolume(grid, options.contour, job);
-    Mesh mesh = meshOf(volume, method, options.contour, out, job);
+    Mesh mesh = meshOf(volume, method, options, out, job);
     job.beginStage("finish", 1.0);
     finish(volume.affine, options.contour.normals, mesh, job);
     return mesh;

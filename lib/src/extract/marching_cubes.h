@@ -2,7 +2,7 @@
 
 #include <tufa/contour.h>
 
-#include "extract/cube_mesher.h"
+#include "extract/cube_cells.h"
 
 namespace tufa::extraction {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "extract/cube_mesher.h"
+#include "extract/cube_cells.h"
 
 namespace tufa::extraction {
 
