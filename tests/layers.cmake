@@ -23,13 +23,14 @@ list(REMOVE_ITEM sees_lod extract)
 list(REMOVE_ITEM sees_chunks extract)
 # Folders beside the pipeline, and all that each of them sees.
 set(sees_shapes base shapes)
-set(sees_voxelize base voxelize)
+set(sees_voxelize base grid voxelize)
+set(sees_filter base grid filter)
 set(sees_io base io)
 set(sees_check base grid check)
 
 # OpenVDB's headers cost seconds in each file. Only these files may include them; <openvdb/version.h>
 # costs nothing.
-set(knows_openvdb "^(grid|voxelize|shapes|io/grid)/")
+set(knows_openvdb "^(grid|filter|voxelize|shapes|io/grid)/")
 set(publishes_openvdb "^(shapes|voxelize)\\.h$")
 set(includes_openvdb "<(openvdb/|tufa/(shapes|voxelize|tufa)\\.h)")
 set(costs_nothing "<openvdb/version\\.h>")
@@ -88,7 +89,7 @@ foreach(file IN LISTS files)
       string(APPEND broken "${file}: only check names CGAL\n")
     elseif(include MATCHES "${includes_openvdb}" AND NOT include MATCHES "${costs_nothing}"
         AND NOT file MATCHES "${knows_openvdb}")
-      string(APPEND broken "${file}: only grid, voxelize, shapes and io/grid include ${header}\n")
+      string(APPEND broken "${file}: only grid, filter, voxelize, shapes and io/grid include ${header}\n")
     endif()
   endforeach()
 endforeach()

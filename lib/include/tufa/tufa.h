@@ -5,6 +5,7 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/extract.h>
+#include <tufa/filter.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>

@@ -1,20 +1,18 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
-#include <openvdb/util/NullInterrupter.h>
 #include <tufa/voxelize.h>
 
 #include <tufa/error.h>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <thread>
 
 #include "base/job.h"
 #include "base/lattice_range.h"
 #include "base/number_text.h"
 #include "base/vec3.h"
+#include "grid/progress_interrupter.h"
 
 namespace tufa {
 namespace {
@@ -43,30 +41,6 @@ class IndexSpaceMesh {
  private:
   const Mesh& mesh_;
   double voxelSize_;
-};
-
-/// Passes OpenVDB's interrupt checks on to a Progress. OpenVDB calls from any thread and gives the
-/// percentage only at times, so only the caller's thread passes it on.
-class ProgressInterrupter final : public openvdb::util::NullInterrupter {
- public:
-  explicit ProgressInterrupter(const Progress& progress) : progress_(progress) {}
-
-  bool wasInterrupted(int percent = -1) override {
-    if (progress_ && std::this_thread::get_id() == caller_) {
-      fraction_ = std::max(fraction_, std::min(percent / 100.0, 1.0));
-      bool goOn = true;
-      base::runIsolated([&] { goOn = progress_("voxelizing", fraction_); });
-      if (!goOn) cancelled_ = true;
-    }
-    return cancelled_;
-  }
-  [[nodiscard]] bool cancelled() const { return cancelled_; }
-
- private:
-  const Progress& progress_;
-  std::thread::id caller_ = std::this_thread::get_id();
-  double fraction_ = 0;
-  std::atomic<bool> cancelled_{false};
 };
 
 void requireUsableFaces(const Mesh& mesh) {
@@ -132,18 +106,18 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   requireUsableBand(mesh, options);
   openvdb::initialize();
 
-  ProgressInterrupter interrupter(options.progress);
+  grid::ProgressInterrupter interrupter(options.progress, "voxelizing");
   const auto transform = openvdb::math::Transform::createLinearTransform(options.voxelSize);
   const float halfWidth = static_cast<float>(options.halfWidth);
-  openvdb::FloatGrid::Ptr grid;
+  openvdb::FloatGrid::Ptr result;
   base::Job(options.threads, {}).run([&] {
-    grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+    result = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
         interrupter, IndexSpaceMesh(mesh, options.voxelSize), *transform, halfWidth, halfWidth);
   });
   if (interrupter.cancelled()) throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
-  grid->setGridClass(openvdb::GRID_LEVEL_SET);
-  grid->setName("surface");
-  return grid;
+  result->setGridClass(openvdb::GRID_LEVEL_SET);
+  result->setName("surface");
+  return result;
 }
 
 }  // namespace tufa

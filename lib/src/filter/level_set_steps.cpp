@@ -1,0 +1,161 @@
+// Smoothing, offsets and resampling, by OpenVDB's own tools.
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Filter.h>
+#include <openvdb/tools/GridTransformer.h>
+#include <openvdb/tools/LevelSetFilter.h>
+#include <openvdb/tools/LevelSetRebuild.h>
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/lattice_range.h"
+#include "base/number_text.h"
+#include "filter/steps.h"
+
+namespace tufa::filter {
+namespace {
+
+constexpr int kMostIterations = 1000;
+constexpr double kMostVoxels = 1000;  ///< of an offset
+
+template <class GridT>
+using LevelSetFilter =
+    openvdb::tools::LevelSetFilter<GridT, openvdb::FloatGrid, openvdb::util::NullInterrupter>;
+
+template <class GridT>
+bool isLevelSet(const GridT& grid) {
+  return grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+}
+
+/// What OpenVDB's level set tools need.
+template <class GridT>
+void requireLevelSet(const GridT& grid, const char* what) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                std::string(what) + " needs a level set: grid \"" + grid.getName() + "\" " + why);
+  };
+  if (!isLevelSet(grid)) refuse("is none");
+  if (!grid.hasUniformVoxels()) refuse("has voxels that are no cubes; resample it by other means");
+  if (!(grid.background() > 0)) {
+    refuse("has the background " + base::numberText(static_cast<double>(grid.background())) +
+           ", which must be the width of its band");
+  }
+}
+
+template <class GridT>
+void smoothLevelSet(GridT& grid, const Smooth& step, ProgressInterrupter& interrupter) {
+  requireLevelSet(grid, "smoothing");
+  LevelSetFilter<GridT> filter(grid, &interrupter);
+  for (int i = 0; i < step.iterations && !interrupter.cancelled(); ++i) {
+    interrupter.wasInterrupted(100 * i / step.iterations);
+    switch (step.smoothing) {
+      case Smoothing::Gaussian:
+        filter.gaussian();
+        break;
+      case Smoothing::Mean:
+        filter.mean();
+        break;
+      case Smoothing::Median:
+        filter.median();
+        break;
+      case Smoothing::Curvature:
+        filter.meanCurvature();
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+template <class GridT>
+void smooth(GridT& grid, const Smooth& step, ProgressInterrupter& interrupter) {
+  if (step.iterations < 1 || step.iterations > kMostIterations) {
+    throw Error(ErrorCode::InvalidArgument,
+                "smoothing takes 1 to " + std::to_string(kMostIterations) + " iterations, not " +
+                    std::to_string(step.iterations));
+  }
+  if (isLevelSet(grid) || step.smoothing == Smoothing::Curvature) {
+    if (!isLevelSet(grid)) requireLevelSet(grid, "smoothing by curvature");
+    smoothLevelSet(grid, step, interrupter);
+    return;
+  }
+  openvdb::tools::Filter<GridT, openvdb::FloatGrid, openvdb::util::NullInterrupter> filter(
+      grid, &interrupter);
+  switch (step.smoothing) {
+    case Smoothing::Gaussian:
+      filter.gaussian(1, step.iterations);
+      break;
+    case Smoothing::Mean:
+      filter.mean(1, step.iterations);
+      break;
+    default:
+      filter.median(1, step.iterations);
+      break;
+  }
+}
+
+template <class GridT>
+void offset(GridT& grid, const std::vector<double>& distances, ProgressInterrupter& interrupter) {
+  requireLevelSet(grid, "an offset");
+  const double voxel = grid.voxelSize()[0];
+  for (const double distance : distances) {
+    if (std::abs(distance) <= kMostVoxels * voxel) continue;  // false for NaN
+    throw Error(ErrorCode::InvalidArgument, "an offset of " + base::numberText(distance) +
+                                                " world units is more than " +
+                                                base::numberText(kMostVoxels) + " voxels");
+  }
+  LevelSetFilter<GridT> filter(grid, &interrupter);
+  for (const double distance : distances) {
+    if (interrupter.cancelled()) return;
+    // OpenVDB adds its offset to the distances: above 0 the surface moves inward.
+    filter.offset(static_cast<typename GridT::ValueType>(-distance));
+  }
+}
+
+template <class GridT>
+typename GridT::Ptr resample(const GridT& grid, const Resample& step, double mostVoxels,
+                             ProgressInterrupter& interrupter) {
+  base::requireVoxelSize(step.voxelSize);
+  const double factor = step.voxelSize / std::cbrt(grid.transform().voxelVolume());
+  // A band grows with the surface, other grids with the volume.
+  const double voxels =
+      static_cast<double>(grid.activeVoxelCount()) / std::pow(factor, isLevelSet(grid) ? 2 : 3);
+  if (!(voxels <= mostVoxels)) {
+    throw Error(ErrorCode::LimitExceeded, "resampling to voxels of " +
+                                              base::numberText(step.voxelSize) + " makes about " +
+                                              base::numberText(voxels) + " of them, more than " +
+                                              base::numberText(mostVoxels));
+  }
+  if (isLevelSet(grid)) requireLevelSet(grid, "resampling of distances");
+  const double scale = isLevelSet(grid) ? factor : 1;
+  auto result = GridT::create(static_cast<typename GridT::ValueType>(grid.background() * scale));
+  result->insertMeta(grid);
+  result->setGridClass(grid.getGridClass());
+  auto transform = grid.transform().copy();
+  transform->preScale(factor);
+  // OpenVDB rebuilds level sets through a mesh in single precision: near the origin.
+  const openvdb::Vec3d centre =
+      grid.transform().indexToWorld(grid.evalActiveVoxelBoundingBox().getCenter());
+  auto nearby = grid.transform().copy();
+  nearby->postTranslate(-centre);
+  const auto source = grid.copyReplacingMetadataAndTransform(grid, nearby);  // of the same tree
+  result->setTransform(transform->copy());
+  result->transform().postTranslate(-centre);
+  openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(
+      *source, *result, static_cast<openvdb::util::NullInterrupter&>(interrupter));
+  result->setTransform(transform);
+  return result;
+}
+
+#define TUFA_STEPS(GridT)                                                         \
+  template void smooth(GridT&, const Smooth&, ProgressInterrupter&);              \
+  template void offset(GridT&, const std::vector<double>&, ProgressInterrupter&); \
+  template GridT::Ptr resample(const GridT&, const Resample&, double, ProgressInterrupter&)
+TUFA_STEPS(openvdb::FloatGrid);
+TUFA_STEPS(openvdb::DoubleGrid);
+#undef TUFA_STEPS
+
+}  // namespace tufa::filter

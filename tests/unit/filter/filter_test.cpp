@@ -1,0 +1,302 @@
+// Filters of grids before they are meshed.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Composite.h>
+#include <openvdb/tools/LevelSetSphere.h>
+#include <openvdb/tools/LevelSetUtil.h>
+#include <tufa/filter.h>
+
+#include <tufa/contour.h>
+#include <cmath>
+#include <numbers>
+
+#include "support/expect_error.h"
+
+namespace tufa {
+namespace {
+
+using openvdb::DoubleGrid;
+using openvdb::FloatGrid;
+using test::expectError;
+
+constexpr double kVoxel = 0.1;
+
+template <class GridT = FloatGrid>
+typename GridT::Ptr makeSphere(float radius, const openvdb::Vec3f& centre = {0, 0, 0}) {
+  return openvdb::tools::createLevelSetSphere<GridT>(radius, centre, static_cast<float>(kVoxel));
+}
+
+/// Two large spheres, and small ones around them.
+FloatGrid::Ptr makeDust() {
+  auto grid = makeSphere(1);
+  openvdb::tools::csgUnion(*grid, *makeSphere(0.8F, {4, 0, 0}));
+  for (const float x : {-2.0F, 2.0F, 6.0F}) {
+    openvdb::tools::csgUnion(*grid, *makeSphere(0.2F, {x, 2, 0}));
+  }
+  return grid;
+}
+
+double volumeOf(const Mesh& mesh) {
+  double sixfold = 0;
+  for (const Triangle& t : triangulate(mesh)) {
+    const auto& [a, b, c] = std::tie(mesh.positions[t.vertices[0]], mesh.positions[t.vertices[1]],
+                                     mesh.positions[t.vertices[2]]);
+    sixfold += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) +
+               a.z * (b.x * c.y - b.y * c.x);
+  }
+  return sixfold / 6;
+}
+
+double volumeOf(const openvdb::GridBase& grid, ContourOptions options = {}) {
+  options.uniform = true;
+  return volumeOf(contour(grid, options));
+}
+
+double ball(double radius) { return 4 * std::numbers::pi / 3 * std::pow(radius, 3); }
+
+/// The grid after one filter.
+openvdb::GridBase::Ptr after(const openvdb::GridBase& grid, const Filter& filter,
+                             const FilterOptions& options = {}) {
+  return applyFilters(grid, {filter}, options);
+}
+
+template <class GridT>
+class FilterTypes : public ::testing::Test {};
+using Types = ::testing::Types<FloatGrid, DoubleGrid>;
+TYPED_TEST_SUITE(FilterTypes, Types);
+
+TYPED_TEST(FilterTypes, OffsetMovesTheSurfaceOutward) {
+  const auto grid = makeSphere<TypeParam>(1);
+  const double tolerance = 0.02 * ball(1);
+  EXPECT_NEAR(volumeOf(*after(*grid, Offset{0.25})), ball(1.25), tolerance);
+  EXPECT_NEAR(volumeOf(*after(*grid, Offset{-0.45})), ball(0.55), tolerance);
+  EXPECT_NEAR(volumeOf(*grid), ball(1), tolerance);  // stays as it is
+  EXPECT_NEAR(volumeOf(*after(*grid, Open{0.3})), ball(1), tolerance);
+  EXPECT_NEAR(volumeOf(*after(*grid, Resample{0.05})), ball(1), tolerance);
+  EXPECT_NEAR(volumeOf(*after(*grid, Smooth{Smoothing::Mean, 2})), ball(1), 3 * tolerance);
+}
+
+TEST(Filters, OpeningTakesAwayWhatIsThinAndClosingFillsGaps) {
+  const auto dust = makeDust();
+  const auto opened = after(*dust, Open{0.3});
+  EXPECT_NEAR(volumeOf(*opened), ball(1) + ball(0.8), 0.1);
+  // Two spheres with a gap of 0.2 between them.
+  auto pair = makeSphere(1);
+  openvdb::tools::csgUnion(*pair, *makeSphere(1, {2.2F, 0, 0}));
+  EXPECT_FALSE(pair->tree().getValue({11, 0, 0}) < 0);
+  const auto closed = openvdb::gridPtrCast<FloatGrid>(after(*pair, Close{0.4}));
+  EXPECT_LT(closed->tree().getValue({11, 0, 0}), 0);
+}
+
+TEST(Filters, SmoothingByCurvatureShrinksASphere) {
+  const auto grid = makeSphere(1);
+  double before = ball(1);
+  for (const int iterations : {5, 20}) {
+    const double volume = volumeOf(*after(*grid, Smooth{Smoothing::Curvature, iterations}));
+    EXPECT_LT(volume, before);
+    before = volume;
+  }
+  for (const Smoothing smoothing : {Smoothing::Gaussian, Smoothing::Mean, Smoothing::Median}) {
+    EXPECT_NEAR(volumeOf(*after(*grid, Smooth{smoothing, 1})), ball(1), 0.1 * ball(1));
+  }
+}
+
+TEST(Filters, FogIsSmoothedAndSampledAnew) {
+  auto fog = makeSphere(1);
+  openvdb::tools::sdfToFogVolume(*fog);
+  ContourOptions options;
+  options.isovalue = 0.5;
+  const double volume = volumeOf(*fog, options);
+  for (const Smoothing smoothing : {Smoothing::Gaussian, Smoothing::Mean, Smoothing::Median}) {
+    const auto smooth = after(*fog, Smooth{smoothing, 1});
+    EXPECT_EQ(smooth->getGridClass(), openvdb::GRID_FOG_VOLUME);
+    EXPECT_NEAR(volumeOf(*smooth, options), volume, 0.2 * volume);
+  }
+  const auto finer = after(*fog, Resample{0.05});
+  EXPECT_NEAR(finer->voxelSize()[0], 0.05, 1e-12);
+  EXPECT_NEAR(volumeOf(*finer, options), volume, 0.02 * volume);
+  expectError(ErrorCode::UnsupportedGrid, "level set", [&] {
+    static_cast<void>(after(*fog, Smooth{Smoothing::Curvature, 1}));
+  });
+  expectError(ErrorCode::UnsupportedGrid, "level set",
+              [&] { static_cast<void>(after(*fog, Offset{0.1})); });
+}
+
+TEST(Filters, ResamplingKeepsThePlaceFarFromTheOrigin) {
+  const openvdb::Vec3d far(3e5, -2e5, 1e5);
+  const auto grid = makeSphere(1);
+  grid->transform().postTranslate(far);
+  const auto finer = after(*grid, Resample{0.05});
+  EXPECT_EQ(finer->getGridClass(), openvdb::GRID_LEVEL_SET);
+  for (const Position& p : contour(*finer).positions) {
+    const double distance = (openvdb::Vec3d(p.x, p.y, p.z) - far).length();
+    ASSERT_NEAR(distance, 1, 0.02);
+  }
+}
+
+TEST(Filters, ABoxCutsALevelSetOpenUnlessItIsCapped) {
+  const auto grid = makeSphere(1);
+  const auto half = after(*grid, ClipBox{{-2, -2, -2}, {2, 2, 0}});
+  EXPECT_EQ(half->getGridClass(), openvdb::GRID_LEVEL_SET);
+  ContourReport report;
+  const Mesh open = contour(*half, {}, &report);
+  EXPECT_GT(report.openEdges, 0u);
+  for (const Position& p : open.positions) {
+    EXPECT_LT(p.z, 2 * kVoxel);
+    // All of it is the sphere, nothing the cut.
+    EXPECT_NEAR(std::hypot(p.x, p.y, p.z), 1, 0.2 * kVoxel);
+  }
+  ContourOptions capped;
+  capped.cap = true;
+  const double volume = volumeOf(*half, capped);
+  EXPECT_NEAR(volume, 0.5 * ball(1), kVoxel * std::numbers::pi);
+}
+
+TEST(Filters, GridsClipByTheirVoxelsAndMaskByTheirInside) {
+  const auto grid = makeSphere(1);
+  // The band of a small sphere passes through the large one at one side.
+  const auto other = openvdb::tools::createLevelSetSphere<FloatGrid>(0.5F, {1, 0, 0}, 0.07F);
+  const auto inBand = contour(*after(*grid, ClipGrid{other}));
+  const auto inside = contour(*after(*grid, Mask{other}));
+  ASSERT_FALSE(inside.positions.empty());
+  ASSERT_FALSE(inBand.positions.empty());
+  double nearest = 1;
+  for (const Position& p : inside.positions) {
+    const double distance = std::hypot(p.x - 1, p.y, p.z);
+    EXPECT_LT(distance, 0.5 + 2 * kVoxel);
+    nearest = std::min(nearest, distance);
+  }
+  EXPECT_LT(nearest, 2 * kVoxel);
+  for (const Position& p : inBand.positions) {
+    EXPECT_NEAR(std::hypot(p.x - 1, p.y, p.z), 0.5, 3 * 0.07 + 2 * kVoxel);
+  }
+  expectError(ErrorCode::InvalidArgument, "no grid",
+              [&] { static_cast<void>(after(*grid, Mask{})); });
+}
+
+TEST(Filters, KeepLargestComponents) {
+  const auto dust = makeDust();
+  std::vector<FilterReport> reports;
+  const auto two = applyFilters(*dust, {KeepLargest{2}}, {}, &reports);
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_EQ(reports[0].filter, "keep-largest");
+  EXPECT_EQ(reports[0].components, 5u);
+  EXPECT_EQ(reports[0].componentsKept, 2u);
+  EXPECT_LT(reports[0].voxelsAfter, reports[0].voxelsBefore);
+  EXPECT_NEAR(volumeOf(*two), ball(1) + ball(0.8), 0.1);
+  const auto one = after(*dust, KeepLargest{1});
+  EXPECT_NEAR(volumeOf(*one), ball(1), 0.06);
+  EXPECT_EQ(volumeOf(*after(*dust, KeepLargest{9})), volumeOf(*dust));
+  // A ball of 0.2 has some 33 voxels.
+  EXPECT_NEAR(volumeOf(*after(*dust, MinComponent{100})), ball(1) + ball(0.8), 0.1);
+  EXPECT_EQ(volumeOf(*after(*dust, MinComponent{10})), volumeOf(*dust));
+  EXPECT_TRUE(contour(*after(*dust, MinComponent{100000})).positions.empty());
+}
+
+TEST(Filters, ACavityBelongsToTheSolidAroundIt) {
+  auto shell = makeSphere(1);
+  openvdb::tools::csgDifference(*shell, *makeSphere(0.5F));
+  std::vector<FilterReport> reports;
+  const auto kept = applyFilters(*shell, {KeepLargest{1}}, {}, &reports);
+  EXPECT_EQ(reports[0].components, 1u);
+  EXPECT_NEAR(volumeOf(*kept), ball(1) - ball(0.5), 0.1);
+}
+
+TEST(Filters, ComponentsOfFogAreThoseOfItsIsovalue) {
+  // Two tops, 0.9 and 0.6, on one plateau of 0.2.
+  auto fog = FloatGrid::create(0);
+  fog->fill({{0, 0, 0}, {40, 10, 10}}, 0.2F);
+  fog->fill({{2, 2, 2}, {12, 8, 8}}, 0.9F);
+  fog->fill({{20, 2, 2}, {38, 8, 8}}, 0.6F);
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  const auto found = [&](double isovalue) {
+    FilterOptions options;
+    options.isovalue = isovalue;
+    std::vector<FilterReport> reports;
+    const auto kept = applyFilters(*fog, {KeepLargest{1}}, options, &reports);
+    EXPECT_EQ(kept->activeVoxelCount(), fog->activeVoxelCount());
+    return reports[0].components;
+  };
+  EXPECT_EQ(found(0.1), 1u);
+  EXPECT_EQ(found(0.5), 2u);
+  EXPECT_EQ(found(0.7), 1u);
+}
+
+TEST(Filters, ComponentsMeetAcrossTilesAndLeaves) {
+  // A bar of large tiles with voxels at both ends, one of which does not touch it.
+  auto fog = FloatGrid::create(0);
+  fog->tree().addTile(1, {0, 0, 0}, 1, true);
+  fog->tree().addTile(2, {128, 0, 0}, 1, true);
+  fog->tree().addTile(1, {8, 0, 0}, 1, true);
+  fog->fill({{256, 60, 60}, {259, 60, 60}}, 1);  // touches the second tile
+  fog->fill({{16, 3, 3}, {125, 3, 3}}, 1);       // a thread between, with a gap to the large one
+  std::vector<FilterReport> reports;
+  FilterOptions options;
+  options.isovalue = 0.5;
+  static_cast<void>(applyFilters(*fog, {KeepLargest{1}}, options, &reports));
+  EXPECT_EQ(reports[0].components, 2u);
+  fog->fill({{126, 3, 3}, {127, 3, 3}}, 1);
+  static_cast<void>(applyFilters(*fog, {KeepLargest{1}}, options, &reports));
+  EXPECT_EQ(reports[0].components, 1u);
+}
+
+TEST(Filters, WorkInTheirOrder) {
+  const auto dust = makeDust();
+  std::vector<FilterReport> reports;
+  const auto result = applyFilters(
+      *dust, {MinComponent{100}, Offset{0.1}, ClipBox{{-2, -2, -2}, {2, 2, 2}}}, {}, &reports);
+  ASSERT_EQ(reports.size(), 3u);
+  EXPECT_EQ(reports[0].filter, "min-component");
+  EXPECT_EQ(reports[1].filter, "offset");
+  EXPECT_EQ(reports[2].filter, "clip");
+  EXPECT_EQ(reports[1].voxelsBefore, reports[0].voxelsAfter);
+  EXPECT_NEAR(volumeOf(*result), ball(1.1), 0.06);
+}
+
+TEST(Filters, TheNumberOfThreadsDoesNotMatter) {
+  const auto dust = makeDust();
+  const std::vector<Filter> filters = {Smooth{}, Open{0.1}, Resample{0.07}, KeepLargest{2}};
+  FilterOptions one;
+  one.threads = 1;
+  const Mesh a = contour(*applyFilters(*dust, filters, one));
+  const Mesh b = contour(*applyFilters(*dust, filters));
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.triangles, b.triangles);
+}
+
+TEST(Filters, RefuseWhatHasNoMeaning) {
+  const auto grid = makeSphere(1);
+  const auto refused = [&](const Filter& filter, ErrorCode code, const std::string& part) {
+    expectError(code, part, [&] { static_cast<void>(after(*grid, filter)); });
+  };
+  const double nan = std::nan("");
+  refused(Smooth{Smoothing::Mean, 0}, ErrorCode::InvalidArgument, "iterations");
+  refused(Offset{1e6}, ErrorCode::InvalidArgument, "voxels");
+  refused(Offset{nan}, ErrorCode::InvalidArgument, "offset");
+  refused(Open{0}, ErrorCode::InvalidArgument, "above 0");
+  refused(Close{-1}, ErrorCode::InvalidArgument, "above 0");
+  refused(Resample{0}, ErrorCode::InvalidArgument, "voxel size");
+  refused(Resample{1e-4}, ErrorCode::LimitExceeded, "more than");
+  refused(ClipBox{{0, 0, 0}, {1, 0, 1}}, ErrorCode::InvalidArgument, "corner");
+  refused(ClipBox{{0, 0, 0}, {1, nan, 1}}, ErrorCode::InvalidArgument, "corner");
+  refused(KeepLargest{0}, ErrorCode::InvalidArgument, "component");
+  FilterOptions above;
+  above.inside = Inside::Above;
+  expectError(ErrorCode::UnsupportedGrid, "background",
+              [&] { static_cast<void>(after(*grid, KeepLargest{1}, above)); });
+  grid->transform().preScale(openvdb::Vec3d(1, 2, 1));
+  refused(Offset{0.1}, ErrorCode::UnsupportedGrid, "cubes");
+}
+
+TEST(Filters, CanBeCancelled) {
+  FilterOptions options;
+  options.progress = [](std::string_view stage, double /*fraction*/) { return stage != "open"; };
+  const auto grid = makeSphere(1);
+  expectError(ErrorCode::Cancelled, "cancelled", [&] {
+    static_cast<void>(applyFilters(*grid, {Smooth{}, Open{0.3}, Smooth{}}, options));
+  });
+}
+
+}  // namespace
+}  // namespace tufa
