@@ -188,6 +188,7 @@ void addLodCommand(CLI::App& app, Command& chosen) {
   lod->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);
+  addFilterOptions(*lod, arguments->filters);
   addContourOptions(*lod, arguments->lod.contour, arguments->isovalue);
   lod->add_flag("--allow-empty", arguments->allowEmpty,
                 "write an empty file where the grid has no surface");
@@ -199,6 +200,7 @@ void addLodCommand(CLI::App& app, Command& chosen) {
   lod->add_flag("--quiet", arguments->quiet, "no table and no progress bar");
   lod->callback([arguments, lod, &chosen] {
     chosen = [arguments, lod] {
+      orderFilters(*lod, arguments->filters);
       settle(*arguments, *lod);
       return runLod(*arguments);
     };

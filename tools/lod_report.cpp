@@ -69,6 +69,7 @@ Json toJson(const LodRun& run, const LodArguments& arguments) {
   for (const auto& file : run.written.files) json["outputs"].push_back(file.string());
   json["isovalue"] = run.contour.isovalue;
   json["inside"] = run.contour.insideIsBelow ? "below" : "above";
+  if (!run.filters.reports.empty()) json["filters"] = toJson(run.filters);
   json["active_voxels"] = run.contour.activeVoxels;
   json["non_finite_values"] = run.contour.nonFiniteValues;
   json["open_edges"] = run.contour.openEdges;
@@ -79,11 +80,9 @@ Json toJson(const LodRun& run, const LodArguments& arguments) {
   }
   json["stopped"] = run.chain.stopped;
   json["float_levels"] = run.written.floatLevels;
-  json["seconds"] = {{"read", run.readSeconds},
-                     {"chain", run.chainSeconds},
-                     {"check", run.checkSeconds},
-                     {"write", run.writeSeconds},
-                     {"shared", run.chain.sharedSeconds}};
+  json["seconds"] = {{"read", run.readSeconds},   {"filter", run.filters.seconds},
+                     {"chain", run.chainSeconds}, {"check", run.checkSeconds},
+                     {"write", run.writeSeconds}, {"shared", run.chain.sharedSeconds}};
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = resolveThreads(arguments.lod.contour.threads);
   return json;
@@ -111,7 +110,7 @@ std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
 std::string describe(const LodRun& run, const LodArguments& arguments) {
   std::string text = shownGrid(run.gridName) + ": " + formatCount(run.contour.activeVoxels) +
                      " active voxels, isovalue " + formatNumber(run.contour.isovalue) + "\n" +
-                     layOut(tableOf(run));
+                     tools::describe(run.filters) + layOut(tableOf(run));
   text += "read " + shortNumber(run.readSeconds) + " s, chain " + shortNumber(run.chainSeconds) +
           " s (of which all levels share " + shortNumber(run.chain.sharedSeconds) + " s)";
   if (!run.checks.empty()) text += ", check " + shortNumber(run.checkSeconds) + " s";

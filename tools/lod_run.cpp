@@ -34,10 +34,10 @@ double smallestAngle(const Mesh& mesh) {
   return smallest;
 }
 
-LodOptions chainOptions(const LodArguments& arguments, const openvdb::GridBase& grid,
-                        ProgressBar& bar) {
+LodOptions chainOptions(const LodArguments& arguments, const ContourOptions& meshing,
+                        const openvdb::GridBase& grid, ProgressBar& bar) {
   LodOptions options = arguments.lod;
-  options.contour.isovalue = readIsovalue(arguments.isovalue, grid, arguments.input);
+  options.contour = meshing;
   options.contour.tolerance = readTolerance("--tolerance", arguments.tolerance, grid);
   for (const std::string& text : arguments.tolerances) {
     options.tolerances.push_back(readTolerance("--tolerances", text, grid));
@@ -52,7 +52,10 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   run.gridName = nameOf(*grid);
   if (!arguments.allowEmpty) requireVoxels(*grid, arguments.input);
-  const LodOptions options = chainOptions(arguments, *grid, bar);
+  ContourOptions meshing = arguments.lod.contour;
+  meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
+  grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run.filters);
+  const LodOptions options = chainOptions(arguments, meshing, *grid, bar);
   run.dropping = options.allowTopologyChange;
   run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
   if (run.chain.levels.empty() && !run.chain.stopped.empty()) {
@@ -105,7 +108,9 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
 
 /// Of the calls that a run makes: how long each is likely to take.
 std::vector<double> callShares(const LodArguments& arguments) {
-  std::vector<double> shares{kContourShare};
+  std::vector<double> shares;
+  if (!arguments.filters.inOrder.empty()) shares.push_back(kFilterShare);
+  shares.push_back(kContourShare);
   if (arguments.report) shares.push_back(0.2 * kContourShare);  // the uniform mesh
   if (arguments.check) shares.push_back(kCheckShare);
   shares.push_back(kWriteShare);

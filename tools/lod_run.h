@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "filter_options.h"
+
 namespace tufa::tools {
 
 /// What `tufa lod` was asked for.
@@ -16,6 +18,7 @@ struct LodArguments {
   std::string output;
   std::optional<std::string> format;  ///< of standard output
   std::optional<std::string> grid;
+  FilterWords filters;
   LodOptions lod;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
@@ -36,6 +39,7 @@ struct LodArguments {
 /// What one run found and how long its parts took.
 struct LodRun {
   std::string gridName;
+  FilterRun filters;
   LodChain chain;
   bool dropping = false;  ///< components may be left out
   ContourReport contour;

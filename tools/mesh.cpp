@@ -107,6 +107,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
       ->allow_extra_args(false);
   addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);
+  addFilterOptions(*mesh, arguments->filters);
   addContourOptions(*mesh, arguments->contour, arguments->isovalue);
   mesh->add_option("--crease", arguments->creaseAngle,
                    ".glb and .obj: normals are split where faces differ by more, in degrees; "
@@ -120,6 +121,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
   mesh->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   mesh->callback([mesh, arguments, &chosen] {
     chosen = [mesh, arguments] {
+      orderFilters(*mesh, arguments->filters);
       requireMeaning(*mesh, arguments->method);
       return runMesh(*arguments);
     };

@@ -29,6 +29,7 @@ void addGrid(Json& json, const GridRun& run) {
   json["isovalue"] = run.contour.isovalue;
   json["inside"] = run.contour.insideIsBelow ? "below" : "above";
   json["distance_field"] = run.contour.distanceField;
+  if (!run.filters.reports.empty()) json["filters"] = toJson(run.filters);
   json["active_voxels"] = run.contour.activeVoxels;
   json["non_finite_values"] = run.contour.nonFiniteValues;
   json["surface_cells"] = run.contour.surfaceCells;
@@ -50,6 +51,7 @@ Json secondsOf(const GridRun& run) {
   Json stages = Json::object();
   for (const StageTime& stage : run.contour.stages) stages[stage.stage] = stage.seconds;
   return {{"read", run.readSeconds},
+          {"filter", run.filters.seconds},
           {"contour", run.contourSeconds},
           {"check", run.checkSeconds},
           {"stages", stages}};
@@ -78,6 +80,7 @@ std::string describeGrid(const GridRun& run) {
   text += "read " + shortNumber(run.readSeconds) + " s, contour " +
           shortNumber(run.contourSeconds) + " s" +
           (run.check ? ", check " + shortNumber(run.checkSeconds) + " s" : "") + "\n";
+  text += tools::describe(run.filters);
   if (run.contour.certificate) text += describeCertificate(*run.contour.certificate);
   if (run.check) text += tools::describe(*run.check);
   return text;

@@ -49,6 +49,7 @@ GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string
 
   ContourOptions options = arguments.contour;
   options.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
+  grid = filterVolume(grid, arguments.input, arguments.filters, options, bar, run.filters);
   options.tolerance = readTolerance("--tolerance", arguments.tolerance, *grid);
   if (arguments.toleranceGrid) {
     options.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
@@ -122,7 +123,11 @@ void requireRoomForAll(const std::vector<std::string>& grids, const MeshArgument
 
 /// Of the calls that a run makes: how long each is likely to take.
 std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids) {
-  std::vector<double> shares(grids, kContourShare);
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < grids; ++i) {
+    if (!arguments.filters.inOrder.empty()) shares.push_back(kFilterShare);
+    shares.push_back(kContourShare);
+  }
   if (arguments.check) shares.insert(shares.end(), grids, kCheckShare);
   const bool oneFile = grids == 1 || !hasBraces(arguments.output);
   shares.insert(shares.end(), oneFile ? 1 : grids, kWriteShare);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "filter_options.h"
+
 namespace tufa::tools {
 
 /// What `tufa mesh` was asked for.
@@ -20,6 +22,7 @@ struct MeshArguments {
   std::vector<std::string> grids;     ///< names and patterns; none: the library chooses one
   Method method = Method::Dual;
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
+  FilterWords filters;
   ContourOptions contour;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
@@ -35,6 +38,7 @@ struct MeshArguments {
 struct GridRun {
   std::string grid;
   std::string output;  ///< the file it went into
+  FilterRun filters;
   Mesh mesh;
   ContourReport contour;
   std::optional<CheckReport> check;

@@ -38,9 +38,11 @@ class ProgressBar {
   Clock::time_point drawn_{};
 };
 
-/// How long meshing, checking and writing take on the sample volumes, compared with each other.
+/// How long meshing, checking, writing and filtering take on the sample volumes, compared with each
+/// other.
 inline constexpr double kContourShare = 30;
 inline constexpr double kCheckShare = 3;
 inline constexpr double kWriteShare = 0.5;
+inline constexpr double kFilterShare = 3;
 
 }  // namespace tufa::tools

@@ -180,18 +180,28 @@ void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& 
                   "\" in " + shownInput(file) + " " + describeValues(describeGrid(grid)));
 }
 
-double readTolerance(const std::string& option, const std::string& text,
-                     const openvdb::GridBase& grid) {
+std::optional<Length> lengthIn(const std::string& text) {
   const bool world = !text.empty() && (text.back() == 'w' || text.back() == 'W');
   const std::string number = world ? text.substr(0, text.size() - 1) : text;
   const std::optional<double> value = numberIn<double>(number);
-  if (!value || !(*value >= 0)) {
+  if (!value || !std::isfinite(*value)) return std::nullopt;
+  return Length{*value, world};
+}
+
+double voxelSizeOf(const openvdb::GridBase& grid) {
+  return std::cbrt(grid.transform().voxelVolume());
+}
+
+double readTolerance(const std::string& option, const std::string& text,
+                     const openvdb::GridBase& grid) {
+  const std::optional<Length> length = lengthIn(text);
+  if (!length || !(length->value >= 0)) {
     throw Error(ErrorCode::InvalidArgument,
                 option +
                     " must be a number of voxels, or of world units with the suffix w, not \"" +
                     text + "\"");
   }
-  return world ? *value / std::cbrt(grid.transform().voxelVolume()) : *value;
+  return length->world ? length->value / voxelSizeOf(grid) : length->value;
 }
 
 void noteData(const ContourReport& report) {

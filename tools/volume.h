@@ -50,6 +50,18 @@ void noteChoice(const std::string& file, const std::string& grid);
 /// Throws Error(InvalidArgument) that names the option if OpenVDB takes no voxels of that size.
 void requireVoxelSize(const std::string& option, double size);
 
+/// A distance as text has it.
+struct Length {
+  double value = 0;
+  bool world = false;  ///< in world units, else in voxels
+};
+
+/// "0.1" is in voxels, "0.1w" or "0.1W" in world units; nothing for any other text.
+[[nodiscard]] std::optional<Length> lengthIn(const std::string& text);
+
+/// The cube root of a voxel's volume, in world units.
+[[nodiscard]] double voxelSizeOf(const openvdb::GridBase& grid);
+
 /// "0.1" is in voxels, "0.1w" or "0.1W" in world units; gives voxels. `option` is for the message.
 [[nodiscard]] double readTolerance(const std::string& option, const std::string& text,
                                    const openvdb::GridBase& grid);
