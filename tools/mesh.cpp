@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "console.h"
 #include "mesh_run.h"
+#include "mesh_sequence.h"
 #include "standard_streams.h"
 #include "volume.h"
 
@@ -62,6 +63,29 @@ void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
   app.add_flag("--uniform", options.uniform, "do not merge cells");
 }
 
+void addSequenceOptions(CLI::App& app, SequenceArguments& sequence) {
+  app.add_option("--frames", sequence.frames,
+                 "of a sequence, a name with #### for the frame's number: 1-240, 1-240x2 or 3,7,9; "
+                 "default: all that there are");
+  constexpr int kMostJobs = 256;
+  app.add_option("--jobs", sequence.jobs, "of a sequence: frames at a time")
+      ->check(CLI::Range(1, kMostJobs))
+      ->capture_default_str();
+  app.add_flag("--resume", sequence.resume,
+               "of a sequence: leave out frames whose mesh is newer than their volume");
+  app.add_option("--report", sequence.report, "of a sequence: a .csv or .json about all frames");
+}
+
+/// Throws Error for options that mean nothing without a sequence.
+void requireSequence(const CLI::App& app, const MeshArguments& arguments) {
+  for (const char* name : {"--jobs", "--resume", "--report"}) {
+    if (app.get_option(name)->count() == 0) continue;
+    throw Error(ErrorCode::InvalidArgument, std::string(name) + " is for sequences, and " +
+                                                arguments.input +
+                                                " has no #### in the place of a frame's number");
+  }
+}
+
 void addMethodOption(CLI::App& app, MeshArguments& arguments) {
   const std::vector<std::string> names(methodNames().begin(), methodNames().end());
   app.add_option_function<std::string>(
@@ -93,8 +117,12 @@ void requireMeaning(const CLI::App& app, Method method) {
 
 void addMeshCommand(CLI::App& app, Command& chosen) {
   const auto arguments = std::make_shared<MeshArguments>();
+  const auto sequence = std::make_shared<SequenceArguments>();
   CLI::App* const mesh = app.add_subcommand("mesh", "Mesh the surface of a volume");
-  mesh->add_option("FILE", arguments->input, "a .vdb file, or - for standard input")->required();
+  mesh->add_option("FILE", arguments->input,
+                   "a .vdb file, a sequence with #### for the frame's number, or - for standard "
+                   "input")
+      ->required();
   mesh->add_option("-o,--output", arguments->output,
                    "the mesh to write: .ply (binary), .obj, .stl, .off or .glb, or - for standard "
                    "output")
@@ -119,10 +147,13 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
                  checkerHelp("check the mesh; exit 1 if it is not watertight"));
   mesh->add_flag("--json", arguments->json, "one JSON object on standard output");
   mesh->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
-  mesh->callback([mesh, arguments, &chosen] {
-    chosen = [mesh, arguments] {
+  addSequenceOptions(*mesh, *sequence);
+  mesh->callback([mesh, arguments, sequence, &chosen] {
+    chosen = [mesh, arguments, sequence] {
       orderFilters(*mesh, arguments->filters);
       requireMeaning(*mesh, arguments->method);
+      if (isSequence(*arguments, *sequence)) return runSequence(*arguments, *sequence);
+      requireSequence(*mesh, *arguments);
       return runMesh(*arguments);
     };
   });

@@ -1,0 +1,163 @@
+// Sequences of volumes: `tufa mesh 'smoke.####.vdb'`.
+
+#include <gtest/gtest.h>
+
+#include <tufa/io.h>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/command_fixture.h"
+
+namespace tufa {
+namespace {
+
+using test::CommandTest;
+using test::Outcome;
+using test::readBytes;
+using test::writeBytes;
+using Json = nlohmann::json;
+
+class Sequence : public CommandTest {
+ protected:
+  /// Frames 1 to 4 of a sphere, of which 3 is missing.
+  void SetUp() override {
+    makeSphere();
+    for (const char* frame : {"f.0001.vdb", "f.0002.vdb", "f.0004.vdb"}) {
+      std::filesystem::copy_file(folder / "s.vdb", folder / frame);
+    }
+  }
+
+  /// The frames of a report.
+  static std::vector<std::string> statesOf(const Json& json) {
+    std::vector<std::string> states;
+    for (const Json& frame : json.at("frames")) states.push_back(frame.at("state"));
+    return states;
+  }
+
+  bool exists(const char* file) { return std::filesystem::exists(folder / file); }
+};
+
+using States = std::vector<std::string>;
+
+TEST_F(Sequence, MeshesEveryFrameAndTellsOfEach) {
+  ASSERT_EQ(run("mesh s.vdb -o one.ply --quiet").exitCode, 0);
+  const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --frames 1-4 --jobs 2");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  for (const char* mesh : {"m.0001.ply", "m.0002.ply", "m.0004.ply"}) {
+    EXPECT_EQ(readBytes(folder / mesh), readBytes(folder / "one.ply"));
+  }
+  EXPECT_FALSE(exists("m.0003.ply"));
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 5) << outcome.out;
+  EXPECT_EQ(outcome.out.rfind("[1/4] f.0001.vdb: 462 triangles, within ", 0), 0u) << outcome.out;
+  EXPECT_NE(outcome.out.find("\n[3/4] f.0003.vdb: missing\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\n4 frames: 3 done, 1 missing, in "), std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(Sequence, FramesAreRangesStepsAndLists) {
+  const auto numbers = [&](const std::string& frames) {
+    const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --json" +
+                                (frames.empty() ? "" : " --frames " + frames));
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    std::vector<int> found;
+    const Json json = Json::parse(outcome.out);
+    for (const Json& frame : json.at("frames")) found.push_back(frame.at("frame"));
+    return found;
+  };
+  EXPECT_EQ(numbers(""), (std::vector{1, 2, 4}));
+  EXPECT_EQ(numbers("1-4x3"), (std::vector{1, 4}));
+  EXPECT_EQ(numbers("4,1-2,2"), (std::vector{1, 2, 4}));
+  EXPECT_EQ(numbers("0002"), (std::vector{2}));
+  // Digits beyond those asked for.
+  std::filesystem::rename(folder / "f.0004.vdb", folder / "f.12345.vdb");
+  writeBytes(folder / "f.002.vdb", "not a frame");
+  EXPECT_EQ(numbers(""), (std::vector{1, 2, 12345}));
+}
+
+TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
+  const std::string bytes = readBytes(folder / "s.vdb");
+  writeBytes(folder / "f.0002.vdb", bytes.substr(0, bytes.size() / 2));
+  const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --jobs 3 --report all.csv --json");
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_NE(outcome.err.find("f.0002.vdb"), std::string::npos) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(statesOf(json), (States{"done", "failed", "done"}));
+  EXPECT_EQ(json["frames"][1]["error"]["code"], "unreadable_file");
+  EXPECT_EQ(json["failed"], 1);
+  EXPECT_EQ(json["done"], 2);
+  EXPECT_TRUE(exists("m.0004.ply"));
+  EXPECT_FALSE(exists("m.0002.ply"));
+  const std::string csv = readBytes(folder / "all.csv");
+  EXPECT_EQ(csv.rfind("frame,state,file,output,triangles,", 0), 0u);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
+  EXPECT_NE(csv.find("\n2,failed,f.0002.vdb,m.0002.ply,,,,,,"), std::string::npos) << csv;
+}
+
+TEST_F(Sequence, EmptyFramesAreWrittenEmpty) {
+  const Outcome outcome =
+      run("mesh 'f.####.vdb' -o 'm.####.ply' --iso 2.5 --report all.json --inside below");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("no surface, an empty mesh: m.0001.ply"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(readMesh(folder / "m.0001.ply").triangleCount(), 0u);
+  const Json json = Json::parse(readBytes(folder / "all.json"));
+  EXPECT_EQ(statesOf(json), (States{"empty", "empty", "empty"}));
+}
+
+TEST_F(Sequence, ResumeLeavesOutWhatIsNewer) {
+  ASSERT_EQ(run("mesh 'f.####.vdb' -o 'm.####.ply' --quiet").exitCode, 0);
+  const auto now = std::filesystem::last_write_time(folder / "m.0002.ply");
+  std::filesystem::last_write_time(folder / "f.0001.vdb", now - std::chrono::hours(1));
+  std::filesystem::last_write_time(folder / "f.0002.vdb", now + std::chrono::hours(1));
+  std::filesystem::last_write_time(folder / "f.0004.vdb", now - std::chrono::hours(1));
+  const Json json =
+      Json::parse(run("mesh 'f.####.vdb' -o 'm.####.ply' --resume --json --frames 1-4").out);
+  EXPECT_EQ(statesOf(json), (States{"skipped", "done", "missing", "skipped"}));
+}
+
+TEST_F(Sequence, CheckedFramesThatAreNotWatertightFail) {
+  // A clipped level set is open.
+  const Outcome outcome =
+      run("mesh 'f.####.vdb' -o 'm.####.ply' --frames 1-2 --check --clip -2,-2,-2,2,2,0");
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_NE(outcome.err.find("m.0001.ply is not watertight"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(exists("m.0002.ply"));
+}
+
+TEST_F(Sequence, WhatIsWrongWithAllFramesIsToldOnce) {
+  expectFailure("mesh 'f.####.vdb' -o m.ply", 2, "all frames would be written to m.ply");
+  expectFailure("mesh s.vdb -o m.ply --frames 1-2", 2, "####");
+  expectFailure("mesh s.vdb -o m.ply --jobs 2", 2, "--jobs");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --frames 4-1", 2, "--frames");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --frames 1-4x0", 2, "--frames");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --frames 7-9", 3, "no file of the sequence");
+  expectFailure("mesh 'g.####.vdb' -o 'm.####.ply'", 3, "no file of the sequence");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.txt'", 2, "ending");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --report all.txt", 2, ".csv");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --report m.0001.csv --tolerance x", 2,
+                "--tolerance");
+  expectFailure("mesh 'f.####.vdb' -o 'f.####.vdb'", 2, "overwritten");
+}
+
+/// As Command.StopsWhenAsked: waits until the command hears signals.
+TEST_F(Sequence, StopsAllFramesWhenAsked) {
+  if (!std::filesystem::exists("/proc/self/status")) GTEST_SKIP() << "no /proc to look into";
+  ASSERT_EQ(run("make sphere --voxel 0.004 -o f.0001.vdb --quiet").exitCode, 0);
+  std::filesystem::copy_file(folder / "f.0001.vdb", folder / "f.0002.vdb",
+                             std::filesystem::copy_options::overwrite_existing);
+  const auto files = folder.fileCount();
+  const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --frames 1-2 --jobs 2",
+                              "& until [ \"$(grep -c -e '^Name:.tufa$' -e '^SigCgt:.*[2367abef]$' "
+                              "/proc/$!/status)\" = 2 ]; do :; done; kill -INT $!; wait $!");
+  EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+  EXPECT_EQ(folder.fileCount(), files);
+}
+
+}  // namespace
+}  // namespace tufa

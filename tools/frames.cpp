@@ -1,0 +1,122 @@
+#include "frames.h"
+
+#include <tufa/error.h>
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include "number.h"
+
+namespace tufa::tools {
+namespace {
+
+constexpr int kMostFrames = 1000000;
+
+/// Where the last part of a name has its first run of #.
+struct Place {
+  std::size_t begin = std::string::npos;
+  std::size_t length = 0;
+};
+
+Place placeIn(const std::string& file) {
+  Place place;
+  place.begin = file.find('#');
+  if (place.begin == std::string::npos) return place;
+  place.length = std::min(file.find_first_not_of('#', place.begin), file.size()) - place.begin;
+  return place;
+}
+
+[[noreturn]] void refuse(std::string_view part) {
+  throw Error(
+      ErrorCode::InvalidArgument,
+      "--frames takes numbers and ranges such as 1-240 or 1-240x2, with commas between, not "
+      "\"" +
+          std::string(part) + "\"");
+}
+
+int readNumber(std::string_view text, std::string_view part) {
+  const auto number = numberIn<int>(text);
+  if (!number || *number < 0) refuse(part);
+  return *number;
+}
+
+void addRange(std::string_view part, std::vector<int>& frames) {
+  const std::size_t dash = part.find('-');
+  if (dash == std::string_view::npos) {
+    frames.push_back(readNumber(part, part));
+    return;
+  }
+  const std::size_t times = part.find('x', dash);
+  const int first = readNumber(part.substr(0, dash), part);
+  const int last = readNumber(part.substr(dash + 1, times - std::min(times, dash + 1)), part);
+  const int step = times == std::string_view::npos ? 1 : readNumber(part.substr(times + 1), part);
+  if (step == 0 || last < first) refuse(part);
+  if ((last - first) / step >= kMostFrames) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--frames " + std::string(part) + " has more than a million frames");
+  }
+  for (long long frame = first; frame <= last; frame += step) {
+    frames.push_back(static_cast<int>(frame));
+  }
+}
+
+void sortOnce(std::vector<int>& frames) {
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+}
+
+}  // namespace
+
+bool namesFrames(const std::string& name) {
+  return placeIn(std::filesystem::path(name).filename().string()).length > 0;
+}
+
+std::string frameFile(const std::string& name, int frame) {
+  const std::filesystem::path path = name;
+  std::string file = path.filename().string();
+  const Place place = placeIn(file);
+  std::string digits = std::to_string(frame);
+  if (digits.size() < place.length) digits.insert(0, place.length - digits.size(), '0');
+  file.replace(place.begin, place.length, digits);
+  return (path.parent_path() / file).string();
+}
+
+std::vector<int> readFrames(const std::string& text) {
+  std::vector<int> frames;
+  for (std::string_view rest = text; true;) {
+    const std::size_t comma = rest.find(',');
+    addRange(rest.substr(0, comma), frames);
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  sortOnce(frames);
+  return frames;
+}
+
+std::vector<int> findFrames(const std::string& name) {
+  const std::filesystem::path path = name;
+  const std::string file = path.filename().string();
+  const Place place = placeIn(file);
+  const std::string before = file.substr(0, place.begin);
+  const std::string after = file.substr(place.begin + place.length);
+  std::vector<int> frames;
+  std::error_code error;
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string found = entry.path().filename().string();
+    if (found.size() <= before.size() + after.size()) continue;
+    if (!found.starts_with(before) || !found.ends_with(after)) continue;
+    const auto number = numberIn<int>(
+        std::string_view(found).substr(before.size(), found.size() - before.size() - after.size()));
+    // Only numbers with as many digits as the name asks for.
+    if (number && *number >= 0 && frameFile(name, *number) == (path.parent_path() / found)) {
+      frames.push_back(*number);
+    }
+  }
+  sortOnce(frames);
+  return frames;
+}
+
+}  // namespace tufa::tools

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tufa::tools {
+
+// The names of the files of a sequence: #### stands for the frame's number, with zeros in front to
+// as many digits.
+
+/// Whether a name has a place for a frame's number in its last part.
+[[nodiscard]] bool namesFrames(const std::string& name);
+
+/// The file of a frame.
+[[nodiscard]] std::string frameFile(const std::string& name, int frame);
+
+/// The frames that text means: "7", "1-240", "1-240x2" for every second one, and several of these
+/// with commas between; rising, each once. Throws Error(InvalidArgument).
+[[nodiscard]] std::vector<int> readFrames(const std::string& text);
+
+/// The frames of which there are files, rising.
+[[nodiscard]] std::vector<int> findFrames(const std::string& name);
+
+}  // namespace tufa::tools
