@@ -25,12 +25,13 @@ list(REMOVE_ITEM sees_chunks extract)
 set(sees_shapes base shapes)
 set(sees_voxelize base grid voxelize)
 set(sees_filter base grid filter)
+set(sees_attributes base attributes)
 set(sees_io base io)
 set(sees_check base grid check)
 
 # OpenVDB's headers cost seconds in each file. Only these files may include them; <openvdb/version.h>
 # costs nothing.
-set(knows_openvdb "^(grid|filter|voxelize|shapes|io/grid)/")
+set(knows_openvdb "^(grid|attributes|filter|voxelize|shapes|io/grid)/")
 set(publishes_openvdb "^(shapes|voxelize)\\.h$")
 set(includes_openvdb "<(openvdb/|tufa/(shapes|voxelize|tufa)\\.h)")
 set(costs_nothing "<openvdb/version\\.h>")
@@ -89,7 +90,7 @@ foreach(file IN LISTS files)
       string(APPEND broken "${file}: only check names CGAL\n")
     elseif(include MATCHES "${includes_openvdb}" AND NOT include MATCHES "${costs_nothing}"
         AND NOT file MATCHES "${knows_openvdb}")
-      string(APPEND broken "${file}: only grid, filter, voxelize, shapes and io/grid include ${header}\n")
+      string(APPEND broken "${file}: only grid, attributes, filter, voxelize, shapes and io/grid include ${header}\n")
     endif()
   endforeach()
 endforeach()

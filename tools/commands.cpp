@@ -79,6 +79,14 @@ CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isoval
                         "auto: half way between the least and the greatest value");
 }
 
+void addFrameOptions(CLI::App& app, UpAxis& up, double& scale) {
+  addChoice<UpAxis>(app, "--up", up, {{"y", UpAxis::Y}, {"z", UpAxis::Z}},
+                    ".glb and .usda: axis of the volume that points up; glTF's is y (default y)");
+  app.add_option("--scale", scale, ".glb and .usda: metres in a world unit")
+      ->check(above0())
+      ->capture_default_str();
+}
+
 void addContourOptions(CLI::App& app, ContourOptions& options,
                        std::optional<std::string>& isovalue) {
   addIsovalueOption(app, isovalue);

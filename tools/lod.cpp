@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "attribute_options.h"
 #include "checker.h"
 #include "commands.h"
 #include "console.h"
@@ -88,26 +89,27 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   const std::string first = lodFile(arguments.output, 0).string();
   requireMeshOutput(first, arguments.format);
   const MeshFormat format = meshFormat(first, arguments.format);
-  if (format != MeshFormat::Glb) {
-    if (format != MeshFormat::Obj && command.count("--crease") > 0) {
-      throw Error(ErrorCode::InvalidArgument, "--crease is for .glb and .obj only");
-    }
-    for (const char* option : {"--lod-scenes", "--up", "--scale", "--quantize", "--compress"}) {
-      if (command.count(option) == 0) continue;
-      throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for .glb only");
-    }
-    if (lodFile(arguments.output, 0) == arguments.output) {
-      throw Error(
-          ErrorCode::InvalidArgument,
-          arguments.output + ": only .glb holds several levels; --separate makes one file a level");
-    }
+  requireAttributes(arguments.attributes, format);
+  const bool glb = format == MeshFormat::Glb, usda = format == MeshFormat::Usda;
+  const auto refuse = [&](const char* option, bool known, const char* formats) {
+    if (known || command.count(option) == 0) return;
+    throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for " + formats + " only");
+  };
+  refuse("--crease", glb || usda || format == MeshFormat::Obj, ".glb, .obj and .usda");
+  for (const char* option : {"--up", "--scale"}) refuse(option, glb || usda, ".glb and .usda");
+  for (const char* option : {"--lod-scenes", "--quantize", "--compress"}) {
+    refuse(option, glb, ".glb");
+  }
+  if (!glb && !usda && lodFile(arguments.output, 0) == arguments.output) {
+    throw Error(ErrorCode::InvalidArgument,
+                arguments.output +
+                    ": only .glb and .usda hold several levels; --separate makes one file a level");
   }
   if (arguments.check || arguments.report) requireChecker();
   requireDistinctLevels(arguments);
   if (arguments.report) requireWritable(*arguments.report);
   arguments.writing.name = assetName(arguments.output);
   arguments.writing.allLevelsScene = arguments.scenes == "many";
-  arguments.writing.up = arguments.up == "z" ? UpAxis::Z : UpAxis::Y;
   if (arguments.quantize) arguments.writing.compression = LodCompression::Quantized;
   if (arguments.compress) arguments.writing.compression = LodCompression::Meshopt;
 }
@@ -155,19 +157,14 @@ void addChainOptions(CLI::App& app, LodArguments& arguments) {
 
 void addGlbOptions(CLI::App& app, LodArguments& arguments) {
   app.add_option("--crease", arguments.writing.creaseAngle,
-                 ".glb and .obj: normals are split where faces differ by more, in degrees")
+                 ".glb, .obj and .usda: normals are split where faces differ by more, in degrees")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   app.add_option("--lod-scenes", arguments.scenes,
                  "many: a second scene of all levels, for programs that find them by name")
       ->check(CLI::IsMember({"one", "many"}))
       ->capture_default_str();
-  app.add_option("--up", arguments.up, "axis of the volume that points up; glTF's is y")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->capture_default_str();
-  app.add_option("--scale", arguments.writing.scale, "metres in a world unit")
-      ->check(above0())
-      ->capture_default_str();
+  addFrameOptions(app, arguments.writing.up, arguments.writing.scale);
   app.add_flag("--quantize", arguments.quantize,
                "positions in 16 bits, normals in 8 (KHR_mesh_quantization)");
   app.add_flag("--compress", arguments.compress, "the same and packed (EXT_meshopt_compression)");
@@ -181,14 +178,15 @@ void addLodCommand(CLI::App& app, Command& chosen) {
   CLI::App* const lod = app.add_subcommand("lod", "Make levels of detail of a volume's surface");
   lod->add_option("FILE", arguments->input, "a .vdb file, or - for standard input")->required();
   lod->add_option("-o,--output", arguments->output,
-                  "a .glb with all levels, or OUT_LOD{}.ply, .obj, .stl, .off or .glb for one "
-                  "file a level, or - for standard output")
+                  "a .glb or .usda with all levels, or OUT_LOD{} with any ending of tufa mesh for "
+                  "one file a level, or - for standard output")
       ->required();
-  addFormatOption(*lod, arguments->format, "of standard output: glb");
+  addFormatOption(*lod, arguments->format, "of standard output: glb or usda");
   lod->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);
   addFilterOptions(*lod, arguments->filters);
+  addAttributeOption(*lod, arguments->attributes);
   addContourOptions(*lod, arguments->lod.contour, arguments->isovalue);
   lod->add_flag("--allow-empty", arguments->allowEmpty,
                 "write an empty file where the grid has no surface");

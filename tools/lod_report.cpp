@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "attribute_options.h"
 #include "console.h"
 #include "lod_run.h"
 #include "paths.h"
@@ -80,9 +81,10 @@ Json toJson(const LodRun& run, const LodArguments& arguments) {
   }
   json["stopped"] = run.chain.stopped;
   json["float_levels"] = run.written.floatLevels;
-  json["seconds"] = {{"read", run.readSeconds},   {"filter", run.filters.seconds},
-                     {"chain", run.chainSeconds}, {"check", run.checkSeconds},
-                     {"write", run.writeSeconds}, {"shared", run.chain.sharedSeconds}};
+  json["seconds"] = {{"read", run.readSeconds},          {"filter", run.filters.seconds},
+                     {"chain", run.chainSeconds},        {"attributes", run.attributeSeconds},
+                     {"check", run.checkSeconds},        {"write", run.writeSeconds},
+                     {"shared", run.chain.sharedSeconds}};
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = resolveThreads(arguments.lod.contour.threads);
   return json;
@@ -113,6 +115,10 @@ std::string describe(const LodRun& run, const LodArguments& arguments) {
                      tools::describe(run.filters) + layOut(tableOf(run));
   text += "read " + shortNumber(run.readSeconds) + " s, chain " + shortNumber(run.chainSeconds) +
           " s (of which all levels share " + shortNumber(run.chain.sharedSeconds) + " s)";
+  if (!run.chain.levels.empty() && !run.chain.levels[0].mesh.attributes.empty()) {
+    text += ", attributes " + tools::describe(run.chain.levels[0].mesh.attributes) + " " +
+            shortNumber(run.attributeSeconds) + " s";
+  }
   if (!run.checks.empty()) text += ", check " + shortNumber(run.checkSeconds) + " s";
   std::vector<std::filesystem::path> files = run.written.files;
   if (arguments.report) files.emplace_back(*arguments.report);

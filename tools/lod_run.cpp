@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "attribute_options.h"
 #include "base/vec3.h"
 #include "checker.h"
 #include "console.h"
@@ -76,6 +77,12 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
     run.reference = contour(*grid, uniform);
   }
   grid.reset();
+  if (!arguments.attributes.empty()) {
+    run.attributeSeconds = timed([&] {
+      const AttributeGrids attributes(arguments.input, arguments.attributes);
+      for (Lod& lod : run.chain.levels) attributes.sample(lod.mesh, options.contour.threads);
+    });
+  }
 
   for (const Lod& lod : run.chain.levels) run.smallestAngles.push_back(smallestAngle(lod.mesh));
   if (arguments.check) {
@@ -97,7 +104,8 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   writing.progress = bar.callback();
   run.writeSeconds = timed([&] {
     if (isStandard(arguments.output)) {
-      writeLods(run.chain, standardOutput(), writing, &run.written);
+      writeLods(run.chain, standardOutput(), meshFormat("-", arguments.format), writing,
+                &run.written);
       run.written.files.emplace_back(arguments.output);
     } else {
       writeLods(run.chain, arguments.output, writing, &run.written);

@@ -19,12 +19,12 @@ struct LodArguments {
   std::optional<std::string> format;  ///< of standard output
   std::optional<std::string> grid;
   FilterWords filters;
+  std::vector<std::string> attributes;  ///< words for AttributeGrids
   LodOptions lod;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
   std::vector<std::string> tolerances;
   LodWriteOptions writing;
-  std::string up = "y";
   std::string scenes = "one";
   bool quantize = false;
   bool compress = false;
@@ -48,6 +48,7 @@ struct LodRun {
   std::vector<CheckReport> checks;     ///< empty, or one for each LOD
   double readSeconds = 0;
   double chainSeconds = 0;
+  double attributeSeconds = 0;
   double checkSeconds = 0;
   double writeSeconds = 0;
   Mesh reference;  ///< the uniform mesh, if there is to be a report

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "attribute_options.h"
 #include "checker.h"
 #include "commands.h"
 #include "console.h"
@@ -123,24 +124,28 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
                    "a .vdb file, a sequence with #### for the frame's number, or - for standard "
                    "input")
       ->required();
-  mesh->add_option("-o,--output", arguments->output,
-                   "the mesh to write: .ply (binary), .obj, .stl, .off or .glb, or - for standard "
-                   "output")
+  mesh->add_option(
+          "-o,--output", arguments->output,
+          "the mesh to write: .ply (binary), .obj, .stl, .off, .glb or .usda, or - for standard "
+          "output")
       ->required();
   addFormatOption(*mesh, arguments->format, "of the mesh in standard output");
   mesh->add_option(
           "--grid", arguments->grids,
-          "names of grids, or patterns with * and ?: .glb and .obj hold several meshes, and "
+          "names of grids, or patterns with * and ?: .glb, .obj and .usda hold several meshes, and "
           "{} in the output's name makes a file for each; default: the first level set")
       ->allow_extra_args(false);
   addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);
   addFilterOptions(*mesh, arguments->filters);
+  addAttributeOption(*mesh, arguments->attributes);
   addContourOptions(*mesh, arguments->contour, arguments->isovalue);
-  mesh->add_option("--crease", arguments->creaseAngle,
-                   ".glb and .obj: normals are split where faces differ by more, in degrees; "
-                   "default: 40 if the field is a distance field, else 180: nowhere")
+  mesh->add_option(
+          "--crease", arguments->creaseAngle,
+          ".glb, .obj and .usda: normals are split where faces differ by more, in degrees; "
+          "default: 40 if the field is a distance field, else 180: nowhere")
       ->check(CLI::Range(0.0, 180.0));
+  addFrameOptions(*mesh, arguments->up, arguments->scale);
   mesh->add_flag("--allow-empty", arguments->allowEmpty,
                  "write an empty mesh where the grid has no surface");
   mesh->add_flag("--check", arguments->check,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "attribute_options.h"
 #include "console.h"
 #include "mesh_run.h"
 #include "paths.h"
@@ -44,17 +45,21 @@ void addGrid(Json& json, const GridRun& run) {
   json["vertices"] = run.mesh.positions.size();
   json["triangles"] = run.mesh.triangleCount();
   json["quads"] = run.mesh.quads.size();
+  if (!run.mesh.attributes.empty()) {
+    json["attributes"] = Json::array();
+    for (const Attribute& attribute : run.mesh.attributes) {
+      json["attributes"].push_back({{"name", attribute.name}, {"width", attribute.width}});
+    }
+  }
   if (run.contour.certificate) json["certificate"] = toJson(*run.contour.certificate);
 }
 
 Json secondsOf(const GridRun& run) {
   Json stages = Json::object();
   for (const StageTime& stage : run.contour.stages) stages[stage.stage] = stage.seconds;
-  return {{"read", run.readSeconds},
-          {"filter", run.filters.seconds},
-          {"contour", run.contourSeconds},
-          {"check", run.checkSeconds},
-          {"stages", stages}};
+  return {{"read", run.readSeconds},       {"filter", run.filters.seconds},
+          {"contour", run.contourSeconds}, {"attributes", run.attributeSeconds},
+          {"check", run.checkSeconds},     {"stages", stages}};
 }
 
 std::string describeCertificate(const Certificate& certificate) {
@@ -82,6 +87,10 @@ std::string describeGrid(const GridRun& run) {
           (run.check ? ", check " + shortNumber(run.checkSeconds) + " s" : "") + "\n";
   text += tools::describe(run.filters);
   if (run.contour.certificate) text += describeCertificate(*run.contour.certificate);
+  if (!run.mesh.attributes.empty()) {
+    text += "attributes: " + tools::describe(run.mesh.attributes) + ", sampled in " +
+            shortNumber(run.attributeSeconds) + " s\n";
+  }
   if (run.check) text += tools::describe(*run.check);
   return text;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "attribute_options.h"
 #include "checker.h"
 #include "console.h"
 #include "paths.h"
@@ -62,6 +63,12 @@ GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string
   if (!arguments.allowEmpty) {
     requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
   }
+  grid.reset();
+  if (!arguments.attributes.empty()) {
+    run.attributeSeconds = timed([&] {
+      AttributeGrids(arguments.input, arguments.attributes).sample(run.mesh, options.threads);
+    });
+  }
   return run;
 }
 
@@ -79,6 +86,8 @@ WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, Pr
   if (!run.grid.empty()) options.name = run.grid;
   options.creaseAngle =
       arguments.creaseAngle.value_or(run.contour.distanceField ? kCreaseAngle : kNoCreases);
+  options.up = arguments.up;
+  options.scale = arguments.scale;
   options.threads = arguments.contour.threads;
   options.progress = bar.callback();
   return options;
@@ -114,11 +123,12 @@ void requireRoomForAll(const std::vector<std::string>& grids, const MeshArgument
   const std::string& output = arguments.output;
   if (grids.size() < 2 || hasBraces(output)) return;
   const MeshFormat format = meshFormat(output, arguments.format);
-  if (format == MeshFormat::Glb || format == MeshFormat::Obj) return;
-  throw Error(ErrorCode::InvalidArgument,
-              output + " would hold " + std::to_string(grids.size()) +
-                  " meshes, as only .glb and .obj can; write {} in the file name for one file a "
-                  "grid");
+  if (format == MeshFormat::Glb || format == MeshFormat::Obj || format == MeshFormat::Usda) return;
+  throw Error(
+      ErrorCode::InvalidArgument,
+      output + " would hold " + std::to_string(grids.size()) +
+          " meshes, as only .glb, .obj and .usda can; write {} in the file name for one file a "
+          "grid");
 }
 
 /// Of the calls that a run makes: how long each is likely to take.
@@ -140,6 +150,15 @@ void requireFeasible(const MeshArguments& arguments) {
   if (arguments.check) requireChecker();
   requireDistinct(arguments.output, {arguments.input});
   requireMeshOutput(arguments.output, arguments.format);
+  if (!arguments.attributes.empty()) {
+    requireAttributes(arguments.attributes, meshFormat(arguments.output, arguments.format));
+  }
+  if (arguments.up != UpAxis::Y || arguments.scale != 1) {
+    const MeshFormat format = meshFormat(arguments.output, arguments.format);
+    if (format != MeshFormat::Glb && format != MeshFormat::Usda) {
+      throw Error(ErrorCode::InvalidArgument, "--up and --scale are for .glb and .usda only");
+    }
+  }
 }
 
 MeshRun meshFile(const MeshArguments& arguments) {

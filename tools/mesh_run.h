@@ -23,11 +23,14 @@ struct MeshArguments {
   Method method = Method::Dual;
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
   FilterWords filters;
+  std::vector<std::string> attributes;  ///< words for AttributeGrids
   ContourOptions contour;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
   std::optional<std::string> toleranceGrid;
   std::optional<double> creaseAngle;  ///< degrees; unset: 40 where the field is a distance field
+  UpAxis up = UpAxis::Y;
+  double scale = 1;  ///< metres in a world unit
   bool allowEmpty = false;
   bool check = false;
   bool json = false;
@@ -44,6 +47,7 @@ struct GridRun {
   std::optional<CheckReport> check;
   double readSeconds = 0;
   double contourSeconds = 0;
+  double attributeSeconds = 0;
   double checkSeconds = 0;
 };
 

@@ -24,6 +24,9 @@ namespace tufa::tools {
 void addContourOptions(CLI::App& app, ContourOptions& options,
                        std::optional<std::string>& isovalue);
 
+/// Declares `--up` and `--scale`, for formats that say what is up and how long a metre is.
+void addFrameOptions(CLI::App& app, UpAxis& up, double& scale);
+
 /// Declares `--iso` alone.
 CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isovalue);
 

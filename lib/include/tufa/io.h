@@ -17,11 +17,19 @@ namespace tufa {
 
 /// The formats of meshes that Tufa reads and writes.
 enum class MeshFormat {
-  Ply,  ///< .ply: binary when written
-  Obj,  ///< .obj
-  Stl,  ///< .stl: binary when written
-  Off,  ///< .off
-  Glb,  ///< .glb: binary glTF 2.0
+  Ply,   ///< .ply: binary when written
+  Obj,   ///< .obj
+  Stl,   ///< .stl: binary when written
+  Off,   ///< .off
+  Glb,   ///< .glb: binary glTF 2.0
+  Usda,  ///< .usda: OpenUSD as text; written only
+};
+
+/// The axis of the volume that points up. In glTF it is y: a volume with z up is rotated. .usda
+/// says which it is.
+enum class UpAxis {
+  Y,  ///< as in Houdini and glTF
+  Z,  ///< as in Blender
 };
 
 /// The names of the formats in the order of MeshFormat: "ply", "obj", and so on.
@@ -34,26 +42,29 @@ enum class MeshFormat {
 /// Options of write().
 struct WriteOptions {
   std::string name = "mesh";  ///< of the object inside formats that name objects (.obj, .glb)
-  /// .glb and .obj: where the normals of two faces at an edge differ by more than this angle, each
-  /// side keeps a normal of its own. In .glb, which has one normal a vertex, the vertices there
-  /// become several at one position. Degrees, 0 to 180; 180, or a mesh without normals, splits
-  /// none.
+  /// .glb, .obj and .usda: where the normals of two faces at an edge differ by more than this
+  /// angle, each side keeps a normal of its own. In .glb, which has one normal a vertex, the
+  /// vertices there become several at one position. Degrees, 0 to 180; 180, or a mesh without
+  /// normals, splits none.
   double creaseAngle = 40;
+  UpAxis up = UpAxis::Y;  ///< .glb and .usda: of the volume
+  double scale = 1;       ///< .glb and .usda: metres in a world unit; above 0
   int threads = 0;    ///< most threads; 0: as many as the TBB arena allows. Never changes the file.
   Progress progress;  ///< called from the calling thread; may cancel
 };
 
 /// A mesh and its name in a file.
 struct NamedMesh {
-  std::string name;  ///< of the node in .glb, of the object in .obj
+  std::string name;  ///< of the node in .glb, of the object in .obj, of the prim in .usda
   Mesh mesh;         ///< world space
 };
 
 /// Writes a mesh in the format that the file name's ending says: .ply (binary), .obj, .stl
-/// (binary), .off or .glb. Quads stay quads in .ply, .obj and .off.
+/// (binary), .off, .glb or .usda (text). Quads stay quads in .ply, .obj and .off, and in .usda
+/// where no normals are split. Attributes go into .ply, .glb and .usda.
 ///
 /// .ply, .obj and .off keep double precision if some position needs it (contour() rounds to single
-/// where that does no harm); .glb then stores positions relative to the node's translation; .stl is
+/// where that does no harm); .glb and .usda then store positions relative to a translation; .stl is
 /// single precision always. The file appears whole or not at all: it is written under a temporary
 /// name in the same folder and renamed. A pipe or a device is written to as it is, as .ply if it
 /// has no ending.
@@ -63,9 +74,9 @@ struct NamedMesh {
 TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options = {});
 
-/// Writes several meshes to one file: .glb, a node each, or .obj, an object each. Their names are
-/// used in place of WriteOptions::name. Otherwise as write(); throws Error(InvalidArgument) for
-/// formats that hold one mesh only.
+/// Writes several meshes to one file: .glb, a node each, .obj, an object each, or .usda, a prim
+/// each. Their names are used in place of WriteOptions::name. Otherwise as write(); throws
+/// Error(InvalidArgument) for formats that hold one mesh only.
 TUFA_API void writeMeshes(const std::vector<NamedMesh>& meshes, const std::filesystem::path& path,
                           const WriteOptions& options = {});
 

@@ -2,6 +2,7 @@
 
 #include <tufa/contour.h>
 #include <tufa/export.h>
+#include <tufa/io.h>
 #include <tufa/mesh.h>
 #include <tufa/openvdb_fwd.h>
 #include <tufa/progress.h>
@@ -87,12 +88,6 @@ struct Camera {
 [[nodiscard]] TUFA_API std::size_t selectLod(const LodChain& chain, const Camera& camera,
                                              double pixelError = 1);
 
-/// The axis of the volume that points up. In glTF it is y: a volume with z up is rotated.
-enum class UpAxis {
-  Y,  ///< as in Houdini and glTF
-  Z,  ///< as in Blender
-};
-
 /// How a .glb stores vertices and indices.
 enum class LodCompression {
   None,       ///< positions and normals as floats: every program reads that
@@ -100,7 +95,8 @@ enum class LodCompression {
   Meshopt,    ///< the same, and packed: EXT_meshopt_compression
 };
 
-/// Options of writeLods(). `allLevelsScene`, `up`, `scale` and `compression` are for .glb only.
+/// Options of writeLods(). `allLevelsScene` and `compression` are for .glb only, `up` and `scale`
+/// for .glb and .usda.
 struct LodWriteOptions {
   std::string name = "mesh";  ///< of nodes and meshes: NAME_LOD0, NAME_LOD1, ...
   /// .glb and .obj: normals are split where those of two faces at an edge differ by more than this
@@ -135,6 +131,8 @@ struct LodWriteReport {
 /// the extension MSFT_lod and alone stands in the default scene, so that programs that know nothing
 /// of LODs show the finest. Each node's `extras` hold its errors and counts. Triangles are ordered
 /// for the vertex cache, vertices by their first use.
+///
+/// A .usda has the LODs as a variant set, LOD, of which LOD0 is chosen.
 ///
 /// A file name with braces makes one file for each LOD, see lodFile(), of any format that write()
 /// has; other than .glb, they are in world units as write() makes them.

@@ -43,12 +43,13 @@ struct FileBytes {
 TUFA_API void write(const Mesh& mesh, std::ostream& stream, MeshFormat format,
                     const WriteOptions& options = {});
 
-/// Writes several meshes to a stream, as .glb or .obj: see writeMeshes() for files.
+/// Writes several meshes to a stream, as .glb, .obj or .usda: see writeMeshes() for files.
 TUFA_API void writeMeshes(const std::vector<NamedMesh>& meshes, std::ostream& stream,
                           MeshFormat format, const WriteOptions& options = {});
 
-/// Writes all LODs to a stream as one .glb: see writeLods() for files. The report names no file.
-TUFA_API void writeLods(const LodChain& chain, std::ostream& stream,
+/// Writes all LODs to a stream as one .glb or .usda: see writeLods() for files. The report names no
+/// file.
+TUFA_API void writeLods(const LodChain& chain, std::ostream& stream, MeshFormat format,
                         const LodWriteOptions& options = {}, LodWriteReport* report = nullptr);
 
 /// Writes grids to a stream as a .vdb without offsets. Throws Error(UnwritableFile).

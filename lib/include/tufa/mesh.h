@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tufa {
@@ -58,12 +59,28 @@ struct Quad {
   friend bool operator==(const Quad&, const Quad&) = default;
 };
 
+/// What an attribute is to programs that read a file.
+enum class AttributeRole {
+  Value,   ///< a number or a vector: a property of its own name in .ply, `_NAME` in .glb
+  Colour,  ///< linear red, green and blue from 0 to 1: `COLOR_0` in .glb, in bytes in .ply
+};
+
+/// Values at the vertices of a mesh, such as a temperature or a velocity.
+struct Attribute {
+  std::string name;                           ///< "temperature"
+  int width = 1;                              ///< values for each vertex, 1 to 4; a colour has 3
+  AttributeRole role = AttributeRole::Value;  ///< for files
+  std::vector<float> values = {};             ///< those of one position after the other
+};
+
 /// An indexed polygon mesh. Plain data, no hidden state.
 struct Mesh {
   std::vector<Position> positions;  ///< world space
   std::vector<Normal> normals;      ///< empty, or one for each position
   std::vector<Quad> quads;          ///< faces of four corners
   std::vector<Triangle> triangles;  ///< faces of three corners
+  /// Values at the positions; what makes meshes leaves them empty, see <tufa/attributes.h>.
+  std::vector<Attribute> attributes = {};
 
   /// Triangles once every quad is split in two.
   [[nodiscard]] std::size_t triangleCount() const { return triangles.size() + 2 * quads.size(); }

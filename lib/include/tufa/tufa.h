@@ -1,11 +1,14 @@
 #pragma once
 
 // The whole of Tufa::tufa. The checker, <tufa/check.h>, is apart: it links CGAL under the GPL.
+#include <tufa/attributes.h>
 #include <tufa/chunks.h>
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/extract.h>
 #include <tufa/filter.h>
+#include <tufa/float_mesh.h>
+#include <tufa/fwd.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>

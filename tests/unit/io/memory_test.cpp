@@ -33,6 +33,7 @@ TEST(Memory, MeshesHaveTheBytesOfFiles) {
     std::ostringstream stream;
     write(mesh, stream, meshFormatOf(path));
     EXPECT_EQ(stream.str(), readBytes(path)) << name;
+    if (name == "usda") continue;  // which is not read
     const std::string bytes = stream.str();
     EXPECT_EQ(readMesh({bytes}, meshFormatOf(path)).positions, readMesh(path).positions) << name;
   }
@@ -55,7 +56,7 @@ TEST(Memory, SeveralMeshesAndLodsHaveTheBytesOfFiles) {
   const LodChain chain = buildLods(*grid, options);
   LodWriteReport report;
   writeLods(chain, folder / "l.glb");
-  writeLods(chain, lods, {}, &report);
+  writeLods(chain, lods, MeshFormat::Glb, {}, &report);
   EXPECT_EQ(lods.str(), readBytes(folder / "l.glb"));
   EXPECT_TRUE(report.files.empty());
   EXPECT_EQ(report.vertices.size(), 2u);

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "io/gltf/glb.h"
+#include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -159,12 +160,27 @@ LodStream normalStream(const ShadedMesh& shaded, UpAxis up, bool quantized) {
   return stream;
 }
 
+/// Attributes are floats in any case: what range they need is not known.
+LodStream attributeStream(const Attribute& attribute, const ShadedMesh& shaded) {
+  const auto width = static_cast<std::size_t>(attribute.width);
+  LodStream stream{
+      {}, width * sizeof(float), shaded.sources.size(), glb::kFloat, gltfType(attribute)};
+  stream.bytes.reserve(stream.stride * stream.count);
+  for (const VertexIndex source : shaded.sources) {
+    for (std::size_t i = source * width; i < (source + 1) * width; ++i) {
+      append(stream.bytes, gltfValue(attribute, i));
+    }
+  }
+  return stream;
+}
+
 LodStream indexStream(const ShadedMesh& shaded) {
   const bool isShort = shaded.sources.size() <= glb::kMostShortVertices;
   LodStream stream{{},
                    isShort ? 2U : 4U,
                    shaded.indices.size(),
-                   isShort ? glb::kUnsignedShort : glb::kUnsignedInt};
+                   isShort ? glb::kUnsignedShort : glb::kUnsignedInt,
+                   "SCALAR"};
   stream.bytes.reserve(stream.stride * stream.count);
   for (const VertexIndex index : shaded.indices) {
     if (isShort) {
@@ -279,9 +295,13 @@ LodStreams encodeLevel(const Mesh& mesh, const ShadedMesh& shaded,
     streams.positions = positionStream(elements, shaded, frame.quantized);
     streams.normals = normalStream(shaded, options.up, quantized);
     streams.indices = indexStream(shaded);
+    for (const Attribute& attribute : mesh.attributes) {
+      streams.attributes.push_back(attributeStream(attribute, shaded));
+    }
     if (options.compression == LodCompression::Meshopt) {
       packVertices(streams.positions);
       packVertices(streams.normals);
+      for (LodStream& attribute : streams.attributes) packVertices(attribute);
       packTriangles(shaded, streams.indices);
     }
     return streams;

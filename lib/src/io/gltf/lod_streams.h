@@ -26,6 +26,7 @@ struct LodStream {
   std::size_t stride = 0;  ///< bytes from element to element
   std::size_t count = 0;   ///< elements
   int componentType = 0;   ///< as glTF numbers them
+  std::string type = "VEC3";
 };
 
 /// One LOD as stored in a .glb.
@@ -34,8 +35,9 @@ struct LodStreams {
   LodStream positions;
   LodStream normals;
   LodStream indices;
-  std::array<float, 3> least{};     ///< of the stored positions
-  std::array<float, 3> greatest{};  ///< the same
+  std::vector<LodStream> attributes;  ///< in the mesh's order
+  std::array<float, 3> least{};       ///< of the stored positions
+  std::array<float, 3> greatest{};    ///< the same
 };
 
 /// The frames to try for the LODs of a chain. An LOD takes the first that keeps its vertices apart.

@@ -1,6 +1,9 @@
 // .glb: the binary container of glTF 2.0, meshes of triangles under a node each.
 
+#include <cmath>
+
 #include "io/gltf/glb.h"
+#include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -21,11 +24,19 @@ struct Layout {
   std::uint64_t indexCount = 0;
   [[nodiscard]] std::uint64_t positionBytes() const { return sizeof(Floats) * vertexCount; }
   [[nodiscard]] std::uint64_t normalBytes() const { return sizeof(Floats) * normalCount; }
+  [[nodiscard]] std::uint64_t bytesOf(const Attribute& attribute) const {
+    return sizeof(float) * static_cast<std::uint64_t>(attribute.width) * vertexCount;
+  }
+  [[nodiscard]] std::uint64_t attributeBytes() const {
+    std::uint64_t bytes = 0;
+    for (const Attribute& attribute : mesh->attributes) bytes += bytesOf(attribute);
+    return bytes;
+  }
   /// Without padding.
   [[nodiscard]] std::uint64_t indexBytes() const { return indexCount * (shortIndices ? 2 : 4); }
   [[nodiscard]] std::uint64_t padding() const { return (4 - indexBytes() % 4) % 4; }
   [[nodiscard]] std::uint64_t end() const {
-    return begin + positionBytes() + normalBytes() + indexBytes() + padding();
+    return begin + positionBytes() + normalBytes() + attributeBytes() + indexBytes() + padding();
   }
 };
 
@@ -63,8 +74,41 @@ std::size_t addView(Json& json, std::uint64_t offset, std::uint64_t bytes, int t
       {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", target}});
 }
 
+/// The node of a mesh: it turns the volume's axis that points up to y, and world units to metres.
+Json nodeOf(const Layout& layout, const FileFrame& frame, const std::string& name,
+            std::size_t mesh) {
+  Json node = {{"name", name}, {"mesh", mesh}, {"translation", layout.middle}};
+  if (frame.up == UpAxis::Y && frame.scale == 1) return node;
+  const auto& [x, y, z] = layout.middle;
+  std::array<double, 3> middle{x, y, z};
+  if (frame.up == UpAxis::Z) {
+    middle = {x, z, -double{y}};
+    const double half = std::sqrt(0.5);
+    node["rotation"] = {-half, 0.0, 0.0, half};
+  }
+  // Without + 0 there would be -0 too.
+  for (double& coordinate : middle) coordinate = frame.scale * coordinate + 0.0;
+  node["translation"] = middle;
+  if (frame.scale != 1) node["scale"] = {frame.scale, frame.scale, frame.scale};
+  return node;
+}
+
+/// Adds accessors of floats for the attributes of a part, whose first lies at `begin`.
+void describeAttributes(Json& json, const Layout& layout, std::uint64_t begin, Json& attributes) {
+  const std::vector<Attribute>& all = layout.mesh->attributes;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t view = addView(json, begin, layout.bytesOf(all[i]), glb::kArrayBuffer);
+    begin += layout.bytesOf(all[i]);
+    attributes[gltfName(all, i)] = glb::add(json, "accessors",
+                                            {{"bufferView", view},
+                                             {"componentType", glb::kFloat},
+                                             {"count", layout.vertexCount},
+                                             {"type", gltfType(all[i])}});
+  }
+}
+
 /// Adds the mesh of a part and its node.
-void describe(Json& json, const Layout& layout, const std::string& name) {
+void describe(Json& json, const Layout& layout, const std::string& name, const FileFrame& frame) {
   const Bounds bounds = boundsOf(*layout.mesh);
   const std::size_t positionView =
       addView(json, layout.begin, layout.positionBytes(), glb::kArrayBuffer);
@@ -85,7 +129,9 @@ void describe(Json& json, const Layout& layout, const std::string& name) {
                                      {"count", layout.normalCount},
                                      {"type", "VEC3"}});
   }
-  const std::size_t indexView = addView(json, normalBegin + layout.normalBytes(),
+  const std::uint64_t attributeBegin = normalBegin + layout.normalBytes();
+  describeAttributes(json, layout, attributeBegin, attributes);
+  const std::size_t indexView = addView(json, attributeBegin + layout.attributeBytes(),
                                         layout.indexBytes(), glb::kElementArrayBuffer);
   const std::size_t indices =
       glb::add(json, "accessors",
@@ -96,7 +142,7 @@ void describe(Json& json, const Layout& layout, const std::string& name) {
   const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"mode", 4}};
   const std::size_t mesh =
       glb::add(json, "meshes", {{"name", name}, {"primitives", Json::array({primitive})}});
-  glb::add(json, "nodes", {{"name", name}, {"mesh", mesh}, {"translation", layout.middle}});
+  glb::add(json, "nodes", nodeOf(layout, frame, name, mesh));
 }
 
 template <class Index>
@@ -122,6 +168,18 @@ void writeIndices(const Layout& layout, MeshSink& sink) {
   });
 }
 
+void writeAttribute(const Layout& layout, const Attribute& attribute, MeshSink& sink) {
+  const auto width = static_cast<std::size_t>(attribute.width);
+  for (std::size_t vertex = 0; vertex < layout.vertexCount; ++vertex) {
+    const std::size_t source = layout.shaded != nullptr ? layout.shaded->sources[vertex] : vertex;
+    for (std::size_t i = source * width; i < (source + 1) * width; ++i) {
+      const float value = gltfValue(attribute, i);
+      sink.write(&value, sizeof value);
+    }
+    if (vertex % MeshSink::kStride == 0) sink.advance(0);
+  }
+}
+
 void writeArrays(const Layout& layout, MeshSink& sink) {
   const std::vector<Position>& positions = layout.mesh->positions;
   const auto writePosition = [&](const Position& p) {
@@ -139,6 +197,9 @@ void writeArrays(const Layout& layout, MeshSink& sink) {
                 const Floats unit = glb::unitNormal(n);
                 sink.write(unit.data(), sizeof unit);
               });
+  for (const Attribute& attribute : layout.mesh->attributes) {
+    writeAttribute(layout, attribute, sink);
+  }
   if (layout.shortIndices) {
     writeIndices<std::uint16_t>(layout, sink);
   } else {
@@ -150,7 +211,7 @@ void writeArrays(const Layout& layout, MeshSink& sink) {
 
 }  // namespace
 
-void writeGlb(std::span<const MeshPart> parts, MeshSink& sink) {
+void writeGlb(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink) {
   Json document = glb::emptyDocument();
   std::vector<Layout> layouts;
   std::uint64_t bytes = 0;
@@ -158,7 +219,7 @@ void writeGlb(std::span<const MeshPart> parts, MeshSink& sink) {
     if (part.mesh->triangleCount() == 0) continue;
     layouts.push_back(layOut(part, bytes));
     bytes = layouts.back().end();
-    describe(document, layouts.back(), part.name);
+    describe(document, layouts.back(), part.name, frame);
     document["scenes"][0]["nodes"].push_back(layouts.size() - 1);
   }
   if (bytes > 0) document["buffers"] = Json::array({{{"byteLength", bytes}}});

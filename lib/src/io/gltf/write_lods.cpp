@@ -8,6 +8,7 @@
 #include "base/known_enum.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/lod_streams.h"
+#include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
@@ -20,10 +21,7 @@ void requireInRange(const LodWriteOptions& options) {
   if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
     throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
   }
-  if (!(options.scale > 0 && std::isfinite(options.scale))) {
-    throw Error(ErrorCode::InvalidArgument, "the scale must be above 0");
-  }
-  base::requireKnown(options.up, UpAxis::Z, "the axis that points up");
+  requireSoundFrame(FileFrame{options.name, options.up, options.scale});
   base::requireKnown(options.compression, LodCompression::Meshopt, "the compression");
 }
 
@@ -34,7 +32,7 @@ class LodDocument {
       : chain_(chain), options_(options) {}
 
   void addLevel(std::size_t level, LodStreams streams) {
-    Json accessors = addAccessors(streams);
+    Json accessors = addAccessors(streams, chain_.levels[level].mesh.attributes);
     const std::string name = options_.name + "_LOD" + std::to_string(level);
     const Json extras = extrasOf(level, streams);
     const std::size_t mesh = glb::add(
@@ -51,9 +49,10 @@ class LodDocument {
     node["extras"] = extras;
     glb::add(json_, "nodes", std::move(node));
     levels_.push_back(level);
-    for (LodStream* stream : {&streams.positions, &streams.normals, &streams.indices}) {
-      blobs_.push_back(std::move(stream->bytes));
-    }
+    blobs_.push_back(std::move(streams.positions.bytes));
+    blobs_.push_back(std::move(streams.normals.bytes));
+    for (LodStream& attribute : streams.attributes) blobs_.push_back(std::move(attribute.bytes));
+    blobs_.push_back(std::move(streams.indices.bytes));
   }
 
   void write(OutputFile& file) {
@@ -99,21 +98,22 @@ class LodDocument {
     Json accessor = {{"bufferView", addView(stream, vertices)},
                      {"componentType", stream.componentType},
                      {"count", stream.count},
-                     {"type", vertices ? "VEC3" : "SCALAR"}};
+                     {"type", stream.type}};
     if (vertices && stream.componentType != glb::kFloat) accessor["normalized"] = true;
     return glb::add(json_, "accessors", std::move(accessor));
   }
 
   /// The primitive of an LOD.
-  Json addAccessors(const LodStreams& streams) {
+  Json addAccessors(const LodStreams& streams, const std::vector<Attribute>& attributes) {
     const std::size_t positions = addAccessor(streams.positions, true);
     json_["accessors"][positions]["min"] = streams.least;
     json_["accessors"][positions]["max"] = streams.greatest;
-    const std::size_t normals = addAccessor(streams.normals, true);
+    Json names = {{"POSITION", positions}, {"NORMAL", addAccessor(streams.normals, true)}};
+    for (std::size_t i = 0; i < attributes.size(); ++i) {
+      names[gltfName(attributes, i)] = addAccessor(streams.attributes[i], true);
+    }
     const std::size_t indices = addAccessor(streams.indices, false);
-    return {{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}},
-            {"indices", indices},
-            {"mode", 4}};
+    return {{"attributes", names}, {"indices", indices}, {"mode", 4}};
   }
 
   [[nodiscard]] Json extrasOf(std::size_t level, const LodStreams& streams) const {
@@ -197,15 +197,17 @@ class LodWriter {
         job_(options.threads, options.progress) {}
 
   void writeOne(const std::filesystem::path& path) {
-    requireGlb(path);
+    const MeshFormat format = meshFormatOf(path);
+    requireLevels(format, path.string());
     OutputFile file(path);
-    writeAll(file);
+    writeAll(file, format);
     report_.files.push_back(path);
   }
 
-  void writeOne(std::ostream& stream) {
+  void writeOne(std::ostream& stream, MeshFormat format) {
+    requireLevels(format, "the stream");
     OutputFile file(stream);
-    writeAll(file);
+    writeAll(file, format);
   }
 
   void writeMany(const std::filesystem::path& path) {
@@ -218,12 +220,12 @@ class LodWriter {
   }
 
  private:
-  static void requireGlb(const std::filesystem::path& path) {
-    if (meshFormatOf(path) == MeshFormat::Glb) return;
+  static void requireLevels(MeshFormat format, const std::string& target) {
+    if (format == MeshFormat::Glb || format == MeshFormat::Usda) return;
     throw Error(ErrorCode::InvalidArgument,
-                path.string() +
-                    ": only .glb holds several levels; write {} in the file name for one file a "
-                    "level");
+                target +
+                    ": only .glb and .usda hold several levels; write {} in the file name for one "
+                    "file a level");
   }
 
   /// The share of the work that some LODs are, by their triangles.
@@ -237,7 +239,11 @@ class LodWriter {
     return done / all;
   }
 
-  void writeAll(OutputFile& file) {
+  void writeAll(OutputFile& file, MeshFormat format) {
+    if (format == MeshFormat::Usda) {
+      writeVariants(file);
+      return;
+    }
     job_.run([&] {
       LodDocument document(chain_, options_);
       for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
@@ -248,9 +254,32 @@ class LodWriter {
     job_.finish();
   }
 
+  void writeVariants(OutputFile& file) {
+    std::vector<MeshPart> parts;
+    job_.run([&] {
+      for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
+        const Mesh& mesh = chain_.levels[level].mesh;
+        requireSoundAttributes(mesh);
+        job_.beginStage("encoding", 0.5 * shareUpTo(level + 1));
+        parts.push_back({&mesh, options_.name, {}});
+        if (options_.creaseAngle < 180 && !mesh.normals.empty()) {
+          parts.back().shaded = splitAtCreases(mesh, options_.creaseAngle, job_);
+        }
+        report_.vertices.push_back(mesh.positions.size());
+      }
+      job_.beginStage("writing", 1);
+      const Progress nobody;
+      MeshSink sink(file, 0, 0, nobody);
+      writeUsdaLods(parts, {options_.name, options_.up, options_.scale}, sink);
+      file.commit();
+    });
+    job_.finish();
+  }
+
   void addLevel(LodDocument& document, std::size_t level) {
     const Mesh& mesh = chain_.levels[level].mesh;
     job_.beginStage("encoding", shareUpTo(level + 1));
+    requireSoundAttributes(mesh);
     if (mesh.triangleCount() == 0) return;
     ShadedMesh shaded = splitAtCreases(mesh, options_.creaseAngle, job_);
     orderForGraphics(shaded);
@@ -283,6 +312,8 @@ class LodWriter {
     WriteOptions options;
     options.name = options_.name + "_LOD" + std::to_string(level);
     options.creaseAngle = options_.creaseAngle;
+    options.up = options_.up;
+    options.scale = options_.scale;
     options.threads = options_.threads;
     tufa::write(mesh, path, options);
     report_.vertices.push_back(mesh.positions.size());
@@ -330,9 +361,10 @@ void writeLods(const LodChain& chain, const std::filesystem::path& path,
   });
 }
 
-void writeLods(const LodChain& chain, std::ostream& stream, const LodWriteOptions& options,
-               LodWriteReport* report) {
-  io::runWriter(chain, options, report, [&](io::LodWriter& writer) { writer.writeOne(stream); });
+void writeLods(const LodChain& chain, std::ostream& stream, MeshFormat format,
+               const LodWriteOptions& options, LodWriteReport* report) {
+  io::runWriter(chain, options, report,
+                [&](io::LodWriter& writer) { writer.writeOne(stream, format); });
 }
 
 }  // namespace tufa

@@ -65,11 +65,24 @@ struct MeshPart {
   std::optional<ShadedMesh> shaded;  ///< if its normals are split at creases
 };
 
+/// What a file says of its meshes as a whole.
+struct FileFrame {
+  std::string name;  ///< of what holds them all
+  UpAxis up = UpAxis::Y;
+  double scale = 1;  ///< metres in a world unit
+};
+
+/// Throws Error(InvalidArgument) for an axis that is none, or a scale that is not above 0.
+void requireSoundFrame(const FileFrame& frame);
+
 // One format each.
 void writePly(const Mesh& mesh, MeshSink& sink);
 void writeOff(const Mesh& mesh, MeshSink& sink);
 void writeStl(const Mesh& mesh, MeshSink& sink);
 void writeObj(std::span<const MeshPart> parts, MeshSink& sink);
-void writeGlb(std::span<const MeshPart> parts, MeshSink& sink);
+void writeGlb(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink);
+void writeUsda(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink);
+/// As variants of one prim, the finest first.
+void writeUsdaLods(std::span<const MeshPart> levels, const FileFrame& frame, MeshSink& sink);
 
 }  // namespace tufa::io

@@ -18,6 +18,8 @@ Mesh readAs(MeshFormat format, const io::InputBytes& input) {
       return io::readOff(input);
     case MeshFormat::Glb:
       return io::readGlb(input);
+    case MeshFormat::Usda:
+      input.fail(".usda is written, not read");
   }
   return {};
 }

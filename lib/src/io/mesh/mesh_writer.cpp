@@ -10,6 +10,7 @@
 #include "base/known_enum.h"
 #include "base/single_precision.h"
 #include "io/input_bytes.h"
+#include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
@@ -51,6 +52,12 @@ void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, c
                                             " can hold");
 }
 
+void requireSoundFrame(const FileFrame& frame) {
+  base::requireKnown(frame.up, UpAxis::Z, "the axis that points up");
+  if (frame.scale > 0 && std::isfinite(frame.scale)) return;
+  throw Error(ErrorCode::InvalidArgument, "the scale must be above 0");
+}
+
 MeshSink::MeshSink(OutputFile& file, std::size_t total, double begin, const Progress& progress)
     : file_(file), progress_(progress), begin_(begin), total_(total + 1) {}
 
@@ -70,6 +77,7 @@ constexpr double kShadingEnd = 0.4;
 
 void requireSound(const MeshPart& part) {
   const Mesh& mesh = *part.mesh;
+  requireSoundAttributes(mesh);
   if (mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) return;
   throw Error(ErrorCode::InvalidArgument, "the mesh has " + std::to_string(mesh.normals.size()) +
                                               " normals for " +
@@ -99,8 +107,9 @@ double splitNormals(std::span<MeshPart> parts, const WriteOptions& options) {
   return kShadingEnd;
 }
 
+/// These hold several meshes, too.
 bool hasNormalsAtCorners(MeshFormat format) {
-  return format == MeshFormat::Obj || format == MeshFormat::Glb;
+  return format == MeshFormat::Obj || format == MeshFormat::Glb || format == MeshFormat::Usda;
 }
 
 /// `open()` opens what is written to, once the options are known to be sound.
@@ -110,6 +119,8 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
   if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
     throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
   }
+  const FileFrame frame{options.name, options.up, options.scale};
+  requireSoundFrame(frame);
   std::size_t total = 0;
   for (const MeshPart& part : parts) {
     requireSound(part);
@@ -134,7 +145,10 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
       writeOff(*parts.front().mesh, sink);
       break;
     case MeshFormat::Glb:
-      writeGlb(parts, sink);
+      writeGlb(parts, frame, sink);
+      break;
+    case MeshFormat::Usda:
+      writeUsda(parts, frame, sink);
       break;
   }
   file.commit();
@@ -145,7 +159,7 @@ std::vector<MeshPart> partsOf(const std::vector<NamedMesh>& meshes, MeshFormat f
                               const std::string& target) {
   if (!hasNormalsAtCorners(format)) {
     throw Error(ErrorCode::InvalidArgument,
-                target + ": of the formats only .glb and .obj hold several meshes");
+                target + ": of the formats only .glb, .obj and .usda hold several meshes");
   }
   std::vector<MeshPart> parts;
   for (const NamedMesh& named : meshes) parts.push_back({&named.mesh, named.name, {}});
@@ -156,7 +170,8 @@ std::vector<MeshPart> partsOf(const std::vector<NamedMesh>& meshes, MeshFormat f
 }  // namespace io
 
 std::span<const std::string_view> meshFormatNames() {
-  static constexpr std::array<std::string_view, 5> names = {"ply", "obj", "stl", "off", "glb"};
+  static constexpr std::array<std::string_view, 6> names = {"ply", "obj", "stl",
+                                                            "off", "glb", "usda"};
   return names;
 }
 
@@ -186,7 +201,7 @@ void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptio
 }
 
 void write(const Mesh& mesh, std::ostream& stream, MeshFormat format, const WriteOptions& options) {
-  base::requireKnown(format, MeshFormat::Glb, "the format");
+  base::requireKnown(format, MeshFormat::Usda, "the format");
   io::MeshPart part{&mesh, options.name, {}};
   io::writeParts({&part, 1}, format, options, [&] { return io::OutputFile(stream); });
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -44,11 +45,32 @@ std::string plyHeader(const Mesh& mesh, bool precise) {
       header += std::string("property float ") + axis + "\n";
     }
   }
+  for (const Attribute& attribute : mesh.attributes) {
+    const bool bytes = attribute.role == AttributeRole::Colour;
+    for (const std::string& name : plyNames(attribute)) {
+      header += std::string("property ") + (bytes ? "uchar " : "float ") + name + "\n";
+    }
+  }
   header += "element face " + std::to_string(mesh.quads.size() + mesh.triangles.size()) + "\n";
   // int rather than uint wherever it will do: some readers know no other type.
   const bool small = mesh.positions.size() <= std::size_t{std::numeric_limits<std::int32_t>::max()};
   header += std::string("property list uchar ") + (small ? "int" : "uint") + " vertex_indices\n";
   return header + "end_header\n";
+}
+
+void writePlyAttributes(const Mesh& mesh, std::size_t vertex, MeshSink& sink) {
+  Record<4 * sizeof(float)> record;
+  for (const Attribute& attribute : mesh.attributes) {
+    const auto width = static_cast<std::size_t>(attribute.width);
+    for (std::size_t i = vertex * width; i < (vertex + 1) * width; ++i) {
+      if (attribute.role == AttributeRole::Colour) {
+        record.add(colourByte(attribute.values[i]));
+      } else {
+        record.add(attribute.values[i]);
+      }
+    }
+    record.writeTo(sink);
+  }
 }
 
 template <class Scalar>
@@ -60,10 +82,12 @@ void writePlyVertices(const Mesh& mesh, MeshSink& sink) {
         .add(static_cast<Scalar>(p.y))
         .add(static_cast<Scalar>(p.z));
     if (!mesh.normals.empty()) {
-      const Normal& normal = mesh.normals[n++];
+      const Normal& normal = mesh.normals[n];
       record.add(normal.x).add(normal.y).add(normal.z);
     }
     record.writeTo(sink);
+    if (!mesh.attributes.empty()) writePlyAttributes(mesh, n, sink);
+    ++n;
   });
 }
 

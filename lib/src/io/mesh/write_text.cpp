@@ -1,39 +1,13 @@
 // .obj and .off: text. Numbers are the shortest that read back to the same value.
 
 #include <array>
-#include <charconv>
 #include <string_view>
 
 #include "io/mesh/mesh_format.h"
+#include "io/mesh/text_line.h"
 
 namespace tufa::io {
 namespace {
-
-/// A line of text while it is built.
-class Line {
- public:
-  explicit Line(MeshSink& sink) : sink_(sink) {}
-
-  Line& text(std::string_view part) {
-    end_ = std::copy(part.begin(), part.end(), end_);
-    return *this;
-  }
-  template <class Number>
-  Line& number(Number value) {
-    end_ = std::to_chars(end_, buffer_.data() + buffer_.size(), value).ptr;
-    return *this;
-  }
-  void finish() {
-    *end_++ = '\n';
-    sink_.write(buffer_.data(), static_cast<std::size_t>(end_ - buffer_.data()));
-    end_ = buffer_.data();
-  }
-
- private:
-  MeshSink& sink_;
-  std::array<char, 256> buffer_;  // the longest line has seven numbers of at most 24 characters
-  char* end_ = buffer_.data();
-};
 
 template <class Vector>
 void writeVector(Line& line, std::string_view keyword, const Vector& v) {

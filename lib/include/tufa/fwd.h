@@ -1,0 +1,66 @@
+#pragma once
+
+#include <tufa/export.h>
+#include <tufa/openvdb_fwd.h>
+
+// Names of Tufa's types, for headers that only pass them on.
+
+namespace tufa {
+
+class Coord;
+class Error;
+class Progress;
+struct Attribute;
+struct AttributeOptions;
+struct Camera;
+struct Certificate;
+struct CheckOptions;
+struct CheckReport;
+struct Chunk;
+struct ChunkEntry;
+struct ChunkIndex;
+struct ChunkOptions;
+struct ContourOptions;
+struct ContourReport;
+struct DistanceOptions;
+struct DistanceReport;
+struct ExtractOptions;
+struct FileBytes;
+struct FilterOptions;
+struct FilterReport;
+struct FloatMesh;
+struct FloatMeshOptions;
+struct GridInfo;
+struct GridName;
+struct LeafCell;
+struct Lod;
+struct LodChain;
+struct LodOptions;
+struct LodWriteOptions;
+struct LodWriteReport;
+struct Mesh;
+struct NamedMesh;
+struct Normal;
+struct Position;
+struct ProgressState;
+struct Quad;
+struct ShapeOptions;
+struct Triangle;
+struct VoxelizeOptions;
+struct WriteOptions;
+enum class Ambiguity;
+enum class AttributeRole;
+enum class ChunkFormat;
+enum class ErrorCode;
+enum class Inside;
+enum class LodCompression;
+enum class MeshFormat;
+enum class Method;
+enum class NonFinite;
+enum class Normals;
+enum class Shape;
+enum class Smoothing;
+enum class UpAxis;
+enum class Winding;
+
+}  // namespace tufa

@@ -1,0 +1,119 @@
+#include <openvdb/openvdb.h>
+#include <tufa/attributes.h>
+
+#include <tufa/error.h>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "base/job.h"
+
+namespace tufa {
+namespace {
+
+using openvdb::Coord;
+using openvdb::Vec3d;
+
+constexpr std::size_t kGrain = 4096;
+
+using SampledTypes =
+    openvdb::NumericGridTypes::Append<openvdb::Vec3GridTypes>::Append<openvdb::BoolGrid>;
+
+template <class Value>
+constexpr int widthOf() {
+  if constexpr (openvdb::VecTraits<Value>::IsVec) {
+    return Value::size;
+  } else {
+    return 1;
+  }
+}
+
+template <class Value>
+double component(const Value& value, int i) {
+  if constexpr (openvdb::VecTraits<Value>::IsVec) {
+    return static_cast<double>(value[i]);
+  } else {
+    return static_cast<double>(value);
+  }
+}
+
+/// One component of the values around a place in index space. Not by openvdb::tools::BoxSampler,
+/// which rounds what lies between integers.
+template <class Accessor>
+double sampleComponent(const Accessor& accessor, const Vec3d& place, int i) {
+  const Coord least = Coord::floor(place);
+  const Vec3d share = place - least.asVec3d();
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+    const double weight = (x == 1 ? share[0] : 1 - share[0]) * (y == 1 ? share[1] : 1 - share[1]) *
+                          (z == 1 ? share[2] : 1 - share[2]);
+    // A value that is not finite must not spoil places that it has no part in.
+    if (weight > 0) sum += weight * component(accessor.getValue(least.offsetBy(x, y, z)), i);
+  }
+  return sum;
+}
+
+/// The values at a range of positions.
+template <class GridT>
+void sampleRange(const GridT& grid, const Mesh& mesh, std::size_t begin, std::size_t end,
+                 Attribute& attribute) {
+  const auto accessor = grid.getConstUnsafeAccessor();
+  const bool staggered = grid.getGridClass() == openvdb::GRID_STAGGERED;
+  const auto width = static_cast<std::size_t>(attribute.width);
+  for (std::size_t v = begin; v < end; ++v) {
+    const Position& p = mesh.positions[v];
+    const Vec3d place = grid.transform().worldToIndex(Vec3d(p.x, p.y, p.z));
+    for (int i = 0; i < attribute.width; ++i) {
+      Vec3d at = place;
+      if (staggered && attribute.width == 3) at[i] += 0.5;
+      const auto value = static_cast<float>(sampleComponent(accessor, at, i));
+      attribute.values[v * width + static_cast<std::size_t>(i)] = std::isfinite(value) ? value : 0;
+    }
+  }
+}
+
+std::string shownName(const openvdb::GridBase& grid) { return "grid \"" + grid.getName() + "\""; }
+
+void requireSound(const Attribute& attribute, const openvdb::GridBase& grid) {
+  if (attribute.name.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "the attribute of a grid without a name needs one");
+  }
+  if (attribute.role == AttributeRole::Colour && attribute.width != 3) {
+    throw Error(ErrorCode::InvalidArgument,
+                shownName(grid) + " holds numbers; a colour needs vectors");
+  }
+}
+
+}  // namespace
+
+Attribute sampleAttribute(const Mesh& mesh, const openvdb::GridBase& grid,
+                          const AttributeOptions& options) {
+  if (!grid.transform().isLinear()) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                "the transform of " + shownName(grid) + " is a frustum; it must be linear");
+  }
+  Attribute attribute;
+  attribute.name = options.name.value_or(grid.getName());
+  attribute.role = options.role;
+  base::Job job(options.threads, {});
+  const bool sampled = grid.apply<SampledTypes>([&](const auto& typed) {
+    using Value = typename std::decay_t<decltype(typed)>::ValueType;
+    attribute.width = widthOf<Value>();
+    requireSound(attribute, grid);
+    attribute.values.resize(mesh.positions.size() * static_cast<std::size_t>(attribute.width));
+    job.run([&] {
+      job.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        sampleRange(typed, mesh, begin, end, attribute);
+      });
+    });
+  });
+  if (!sampled) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                shownName(grid) + " holds " + grid.valueType() +
+                    " values; an attribute is sampled from numbers, booleans or vectors");
+  }
+  return attribute;
+}
+
+}  // namespace tufa
