@@ -238,9 +238,7 @@ std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
 int runBuild(const ChunksArguments& arguments) {
   requireWritableFolder(arguments.output);
   const ChunksRun run = build(arguments);
-  ContourReport contour = run.contour;
-  contour.openEdges = 0;  // would count those at the borders of regions
-  noteData(contour);
+  noteData(run.contour);
   if (arguments.json) {
     print(runToJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {

@@ -21,6 +21,6 @@ done
 check bin/fuzz_contour "$corpus"/contour
 check bin/stages_test --gtest_filter="Blocks*:Isovalue*:Ambiguity*:CaseTable*:Crease*:Crossings*:Qef*:PlaceVertices*"
 check bin/io_test
-check bin/collapse_test
+check bin/reduce_test
 # Files damaged in thousands of ways are for the sanitizers, which are quicker.
 check bin/chunk_parts_test --gtest_filter="-*SurviveDamage*:*SurvivesDamage*:*EndTooEarly*"

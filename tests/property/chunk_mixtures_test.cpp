@@ -4,6 +4,7 @@
 
 #include <tufa/check.h>
 #include <tufa/chunks.h>
+#include <tufa/lod.h>
 #include <tufa/shapes.h>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <random>
 #include <set>
 
+#include "support/expect_error.h"
 #include "support/mesh_oracle.h"
 #include "support/print.h"
 #include "support/uniform_mesh.h"
@@ -142,60 +144,59 @@ TEST(ChunkPairs, NoneAreLeft) {
   }
 }
 
-// Triangles inside of all chunks at a level.
-std::size_t insideOf(const ChunkIndex& index, std::size_t level) {
+// Triangles of all chunks at a level, without transition strips.
+std::size_t trianglesOf(const ChunkIndex& index, std::size_t level) {
   std::size_t count = 0;
-  for (const ChunkEntry& entry : index.chunks) count += entry.levels[level].interiorTriangles;
+  for (const ChunkEntry& entry : index.chunks) {
+    count += entry.levels[level].interiorTriangles + entry.levels[level].regularTriangles;
+  }
   return count;
 }
 
-TEST(ChunkInsides, AreCollapsedAsFarAsTheToleranceAllows) {
+// Curves on faces follow the tolerance as all else does: what is left of them costs few triangles.
+TEST(ChunkFaces, CostFewTrianglesAtAnyLevel) {
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Terrain, 0.02);
   ChunkOptions options;
-  options.chunkSize = 32;
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
   const Made made = makeChunks(*grid, options);
-  options.contour.simplify = false;
-  const Made plain = makeChunks(*grid, options);
-  for (std::size_t level = 0; level < made.index.tolerances.size(); ++level) {
-    EXPECT_LT(2 * insideOf(made.index, level), insideOf(plain.index, level)) << level;
-    for (std::size_t i = 0; i < made.chunks.size(); ++i) {
-      const ChunkLevelEntry& entry = made.index.chunks[i].levels[level];
-      EXPECT_LE(entry.maxErrorVoxels, std::max(0.5, made.index.tolerances[level])) << level;
-      EXPECT_EQ(entry.intersectionsLeft, 0u) << level;
-    }
+  LodOptions lods;
+  lods.levels = options.levels;
+  const LodChain chain = buildLods(*grid, lods);
+  ASSERT_EQ(chain.levels.size(), made.index.tolerances.size());
+  const double most[] = {1.2, 1.4, 2.5, 8};
+  for (std::size_t level = 0; level < chain.levels.size(); ++level) {
+    EXPECT_LT(static_cast<double>(trianglesOf(made.index, level)),
+              most[level] * static_cast<double>(chain.levels[level].mesh.triangleCount()))
+        << level;
   }
 }
 
-// Triangles of all regular strips at a level.
-std::size_t stripsOf(const ChunkIndex& index, std::size_t level) {
-  std::size_t count = 0;
-  for (const ChunkEntry& entry : index.chunks) count += entry.levels[level].regularTriangles;
-  return count;
-}
-
-// Vertices beside faces are joined, too, and each still stands for one stretch of a curve.
-TEST(ChunkRims, AreCollapsedAlongTheirCurves) {
-  ChunkOptions options;
-  options.chunkSize = 32;
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
-  const Made made = makeChunks(*grid, options);
-  options.contour.simplify = false;
-  const Made plain = makeChunks(*grid, options);
-  for (std::size_t level = 0; level < made.index.tolerances.size(); ++level) {
-    EXPECT_LT(stripsOf(made.index, level), stripsOf(plain.index, level)) << level;
-  }
-  for (const Chunk& chunk : made.chunks) {
-    for (const ChunkLevel& level : chunk.levels) {
-      for (const std::vector<ChunkSeam>& face : level.seams) {
-        for (const ChunkSeam& seam : face) {
-          std::vector<VertexIndex> runs = seam.tiles;
-          runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
-          if (seam.closed && runs.size() > 1 && runs.front() == runs.back()) runs.pop_back();
-          const std::set<VertexIndex> different(runs.begin(), runs.end());
-          EXPECT_EQ(runs.size(), different.size()) << chunk.index;
-        }
+// With strips of either kind: the certificate is a bound, and no tolerance is exceeded.
+TEST(ChunkErrors, KeepTheTolerances) {
+  for (const Shape kind : {Shape::Terrain, Shape::Bracket, Shape::Gyroid}) {
+    ChunkOptions options;
+    options.chunkSize = 16;
+    const Made made = makeChunks(*shapeOf(kind, 0.04), options);
+    for (const ChunkEntry& entry : made.index.chunks) {
+      for (std::size_t level = 0; level < entry.levels.size(); ++level) {
+        const ChunkLevelEntry& own = entry.levels[level];
+        const std::size_t next = std::min(level + 1, entry.levels.size() - 1);
+        EXPECT_GT(own.maxErrorVoxels, 0);
+        EXPECT_LE(own.maxErrorVoxels, made.index.tolerances[level]);
+        EXPECT_LE(own.transitionErrorVoxels, made.index.tolerances[next]);
+        EXPECT_EQ(own.intersectionsLeft, 0u);
       }
     }
+  }
+}
+
+TEST(ChunkOptions, RefuseWhatCollapsesCannotKeep) {
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Sphere, 0.1);
+  ChunkOptions plain, cells;
+  plain.contour.simplify = false;
+  cells.contour.minCell = 2;
+  for (const ChunkOptions& options : {plain, cells}) {
+    test::expectError(ErrorCode::InvalidArgument, "made by collapsing edges",
+                      [&] { (void)makeChunks(*grid, options); });
   }
 }
 
@@ -235,14 +236,14 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
   EXPECT_TRUE(report.watertight());
   EXPECT_EQ(report.selfIntersectingPairs, 0u);
   EXPECT_EQ(report.eulerCharacteristic, check(nearby).eulerCharacteristic);
-  // Rounding alone may part them: where a collapse is made again without what was worse, by a few
-  // dozen triangles.
+  // Rounding alone parts them: where a cut vertex is joined to its neighbour in one and not in the
+  // other, collapses around it come in another order.
   EXPECT_NEAR(static_cast<double>(away.triangles.size()),
               static_cast<double>(nearby.triangles.size()),
-              0.03 * static_cast<double>(nearby.triangles.size()));
+              0.1 * static_cast<double>(nearby.triangles.size()));
 }
 
-// Regions are made at the same time, and come in the same order all the same.
+// Parts of the surface are reduced at the same time, and chunks come in the same order all the same.
 TEST(ChunkThreads, GiveTheSameBytes) {
   const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.025);
   ChunkOptions options;

@@ -20,9 +20,9 @@ inline constexpr int kChunkFaces = 6;
 
 /// Options of buildChunks().
 struct ChunkOptions {
-  /// How the surface is read. `tolerance` is that of LOD 0. `simplify` collapses edges inside
-  /// chunks, not those on their faces. Ignored: `uniform`, `normals` (always the gradient's),
-  /// `keepLeaves`; no cell is larger than a chunk.
+  /// How the surface is read. `tolerance` is that of LOD 0. Ignored: `uniform`, `normals` (always
+  /// the gradient's), `keepLeaves`. Needs edge collapse: `simplify`, and no bounds on cells or
+  /// angles.
   ContourOptions contour;
   int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
   int levels = 4;      ///< LODs of each chunk, 1 to 16
@@ -31,19 +31,11 @@ struct ChunkOptions {
   std::vector<Coord> only;
 };
 
-/// A curve along which the surface passes a face of a chunk, at one LOD of the chunk. The uniform
-/// mesh divides it into short arcs, the same on both sides of the face and at every LOD.
+/// A curve along which the surface passes a face of a chunk, at one LOD of the chunk. Vertices of a
+/// coarser LOD are some of those of a finer one, at the same places.
 struct ChunkSeam {
-  /// The value of `begin` and `end` if there is no such vertex.
-  static constexpr VertexIndex kNone = std::numeric_limits<VertexIndex>::max();
-
-  /// For each arc the vertex inside the chunk that stands for it. From arc to arc the chunk's
-  /// surface lies to the right of the face, seen from outside.
-  std::vector<VertexIndex> tiles;
-  std::vector<VertexIndex> polyline;  ///< for each arc the vertex on the face that stands for it
-  VertexIndex begin = kNone;          ///< vertex on a chunk edge before the first arc, if any
-  VertexIndex end = kNone;            ///< vertex on a chunk edge behind the last arc, if any
-  bool closed = false;                ///< the last arc is followed by the first
+  std::vector<VertexIndex> vertices;  ///< in the order of the chunk's triangles beside them
+  bool closed = false;                ///< the last vertex is followed by the first
 };
 
 /// A chunk at one LOD: an interior, and for each face two strips, one of which is drawn. All
@@ -53,10 +45,11 @@ struct ChunkLevel {
   std::vector<Normal> normals;      ///< one for each position
   std::vector<Triangle> interior;   ///< always drawn
   /// To a neighbour of the same LOD or a finer one.
+  /// Only triangles that are others beside a coarser neighbour; the rest is `interior`.
   std::array<std::vector<Triangle>, kChunkFaces> regular;
-  /// To a neighbour that is coarser by one LOD; none at the last LOD.
+  /// The same triangles beside a neighbour that is coarser by one LOD; none at the last LOD.
   std::array<std::vector<Triangle>, kChunkFaces> transition;
-  /// The curves of the strips, for strips to neighbours that are coarser by more.
+  /// The chunk's curves on each face, for strips to neighbours that are coarser by more.
   std::array<std::vector<ChunkSeam>, kChunkFaces> seams;
   double maxErrorVoxels = 0;         ///< certified, with the regular strips
   double transitionErrorVoxels = 0;  ///< certified, with the transition strips
@@ -117,8 +110,8 @@ using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
 /// normals. See contour() for what is kept and for the errors thrown; throws Error(InvalidArgument)
 /// for options out of their range too.
 ///
-/// Memory holds the grid and, for each thread, one region (a box of chunks of at least 128 voxels)
-/// and the chunks of a few more.
+/// Memory holds the grid, its whole uniform mesh and all LODs; which chunks are asked for does not
+/// change that.
 TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                                 const ChunkSink& sink, ContourReport* report = nullptr);
 

@@ -5,18 +5,20 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <string>
 #include <utility>
 
-#include "base/bits.h"
 #include "base/box.h"
 #include "base/job.h"
 #include "base/run_call.h"
-#include "chunks/levels/region.h"
-#include "chunks/seams/chunk_cells.h"
+#include "chunks/chain/chunk_chain.h"
+#include "chunks/chain/mixed_forms.h"
+#include "chunks/chain/split_level.h"
+#include "chunks/cut/cut_mesh.h"
+#include "chunks/cut/part_rounded.h"
 #include "grid/blocks.h"
 #include "grid/field.h"
+#include "intersect/surface.h"
 #include "octree/cut_rule.h"
 #include "refine/rounding.h"
 #include "refine/surface_model.h"
@@ -24,18 +26,11 @@
 namespace tufa {
 namespace {
 
-using chunks::ChunkCells;
-
-// Chunks are built together in regions of at least this many voxels, aligned to their size, so that
-// less is built twice at their borders. The region of a chunk depends on its index alone.
-constexpr int kLeastRegion = 128;
-// Two more blocks are read around a region: an ambiguous face depends on cells at most six away,
-// and a vertex that snaps to a crease on cells at most fourteen away.
-constexpr int kMargin = 2 * grid::kBlockSize;
-constexpr double kIndexEnd = 0.02;
-// Regions whose chunks are kept at most, for each thread, until those before them are handed to the
-// caller. With more, threads would wait less for each other but use more memory.
-constexpr std::size_t kRegionsPerThread = 4;
+// Shares of the time that stages took on the sample volumes.
+constexpr uniform::StageEnds kEnds = {0.01, 0.02, 0.06, 0.07, 0.08, 0.12};
+constexpr double kCutEnd = 0.14;
+constexpr double kFirstLevelEnd = 0.75;
+constexpr double kLevelsEnd = 0.95;
 
 void requireOptions(const ChunkOptions& options) {
   const auto refuse = [](const std::string& message) {
@@ -49,28 +44,15 @@ void requireOptions(const ChunkOptions& options) {
   if (options.levels < 1 || options.levels > 16) {
     refuse("chunks have 1 to 16 levels, not " + std::to_string(options.levels));
   }
+  if (!octree::maySimplify(options.contour)) {
+    refuse(
+        "chunks are made by collapsing edges: not without simplifying, or with bounds on angles or "
+        "cells");
+  }
   octree::requireFactor(options.factor);
 }
 
-// The regions that hold blocks and chunks that are asked for.
-std::set<Coord> findRegions(const grid::Blocks& blocks, const ChunkOptions& options,
-                            int regionLevel) {
-  const auto regionOf = [&](const Coord& voxel) {
-    return Coord(voxel[0] >> regionLevel, voxel[1] >> regionLevel, voxel[2] >> regionLevel);
-  };
-  std::set<Coord> regions;
-  for (std::size_t i = 0; i < blocks.count(); ++i) {
-    regions.insert(regionOf(blocks.origin(static_cast<grid::BlockRef>(i))));
-  }
-  if (options.only.empty()) return regions;
-  std::set<Coord> asked;
-  const int chunkLevel = std::countr_zero(static_cast<unsigned>(options.chunkSize));
-  for (const Coord& chunk : options.only) asked.insert(regionOf(chunk << chunkLevel));
-  std::erase_if(regions, [&](const Coord& region) { return !asked.contains(region); });
-  return regions;
-}
-
-// Whether all positions of the grid may be rounded to floats; the same for every region.
+// Whether all positions of the grid may be rounded to floats.
 bool fitsSinglePrecision(const grid::Blocks& blocks, const grid::Transform& transform) {
   double largest = 0;
   for (std::size_t i = 0; i < blocks.count(); ++i) {
@@ -95,38 +77,62 @@ Position middleOf(const grid::Blocks& blocks, const grid::Transform& transform) 
   return {std::round(world[0]), std::round(world[1]), std::round(world[2])};
 }
 
-ChunkIndex describe(const grid::Transform& transform, const ChunkOptions& options) {
+ChunkIndex describe(const grid::Volume& volume, const ChunkOptions& options) {
   ChunkIndex index;
   index.chunkSize = options.chunkSize;
   double tolerance = options.contour.tolerance;
   for (int i = 0; i < options.levels; ++i, tolerance *= options.factor) {
     index.tolerances.push_back(std::min(tolerance, octree::kLargestTolerance));
   }
-  index.voxelSize = grid::Affine(transform).voxelSize();
-  index.transform = transform.matrix();
+  index.voxelSize = grid::Affine(volume.transform).voxelSize();
+  index.transform = volume.transform.matrix();
   return index;
 }
 
-ChunkEntry entryOf(const chunks::MadeChunk& made) {
-  ChunkEntry entry;
-  entry.index = made.chunk.index;
-  for (std::size_t i = 0; i < made.chunk.levels.size(); ++i) {
-    const ChunkLevel& level = made.chunk.levels[i];
-    ChunkLevelEntry& out = entry.levels.emplace_back();
-    out.vertices = level.positions.size();
-    out.interiorTriangles = level.interior.size();
-    for (const auto& strip : level.regular) out.regularTriangles += strip.size();
-    for (const auto& strip : level.transition) out.transitionTriangles += strip.size();
-    base::Box box = base::Box::empty();
-    for (const Position& p : level.positions) box.add(p);
-    if (box.isEmpty()) box = {Vec3(0), Vec3(0)};
-    out.least = box.lower;
-    out.greatest = box.upper;
-    out.maxErrorVoxels = level.maxErrorVoxels;
-    out.transitionErrorVoxels = level.transitionErrorVoxels;
-    out.intersectionsLeft = made.pairsLeft[i];
-  }
-  return entry;
+ChunkLevelEntry entryOf(const ChunkLevel& level, std::size_t pairsLeft) {
+  ChunkLevelEntry out;
+  out.vertices = level.positions.size();
+  out.interiorTriangles = level.interior.size();
+  for (const auto& strip : level.regular) out.regularTriangles += strip.size();
+  for (const auto& strip : level.transition) out.transitionTriangles += strip.size();
+  base::Box box = base::Box::empty();
+  for (const Position& p : level.positions) box.add(p);
+  if (box.isEmpty()) box = {Vec3(0), Vec3(0)};
+  out.least = box.lower;
+  out.greatest = box.upper;
+  out.maxErrorVoxels = level.maxErrorVoxels;
+  out.transitionErrorVoxels = level.transitionErrorVoxels;
+  out.intersectionsLeft = pairsLeft;
+  return out;
+}
+
+// For each chunk the pairs of triangles of a level that intersect, as they are or beside the next
+// level.
+std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::ChainLevel& level,
+                                    base::Job& job) {
+  std::vector<std::size_t> counts(cut.chunks.size(), 0);
+  const auto count = [&](bool isChanged) {
+    Mesh mesh;
+    mesh.positions = level.positions;
+    std::vector<std::uint32_t> chunkOf;
+    std::vector<intersect::PolygonIndex> candidates;
+    for (std::size_t t = 0; t < level.triangles.size(); ++t) {
+      const Triangle other = chunks::changed(level, level.triangles[t]);
+      if (isChanged && chunks::isGone(other)) continue;
+      if (!isChanged || !(other == level.triangles[t])) {
+        candidates.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
+      }
+      mesh.triangles.push_back(isChanged ? other : level.triangles[t]);
+      chunkOf.push_back(level.chunkOf[t]);
+    }
+    const intersect::Surface surface(mesh, job);
+    for (const intersect::PolygonPair& pair : intersect::findPairs(surface, candidates, job)) {
+      ++counts[chunkOf[pair.a]];
+    }
+  };
+  count(false);
+  count(true);
+  return counts;
 }
 
 class ChunkBuilder {
@@ -139,100 +145,66 @@ class ChunkBuilder {
     ContourOptions contour = options_.contour;
     contour.uniform = false;
     contour.normals = Normals::Gradient;
-    chunkLevel_ = std::countr_zero(static_cast<unsigned>(options_.chunkSize));
-    region_.rule = octree::readRule(contour, grid::transformOf(grid_));
-    region_.rule.maxLevel = std::min(region_.rule.maxLevel, chunkLevel_);
-    region_.rule.chunkLevel = chunkLevel_;
-    region_.repair = contour.repair;
-    region_.simplify = octree::maySimplify(contour);
-    job_.beginStage("index", kIndexEnd);
-    const grid::Volume volume = grid::openVolume(grid_, contour, job_);
-    const grid::Blocks& blocks = volume.blocks;
-    ChunkIndex index = describe(volume.transform, options_);
+    const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_));
+    job_.beginStage("blocks", kEnds.blocks);
+    const refine::SurfaceModel model(grid::openVolume(grid_, contour, job_), contour, kEnds, job_);
+    report_ = model.report();
+    const grid::Volume& volume = model.surface().volume;
+    ChunkIndex index = describe(volume, options_);
     index.grid = grid::nameOf(grid_);
-    region_.tolerances = index.tolerances;
-    region_.singlePrecision = fitsSinglePrecision(blocks, volume.transform);
-    if (!region_.singlePrecision) index.origin = middleOf(blocks, volume.transform);
-    report_.isovalue = blocks.iso().isovalue;
-    report_.insideIsBelow = blocks.iso().insideIsBelow;
-    report_.distanceField = volume.scale.distance;
-    report_.activeVoxels = blocks.activeVoxels();
-    report_.nonFiniteValues = blocks.nonFiniteValues();
-
-    const int regionLevel =
-        std::max(chunkLevel_, std::countr_zero(static_cast<unsigned>(kLeastRegion)));
-    const std::set<Coord> found = findRegions(blocks, options_, regionLevel);
-    const std::vector<Coord> regions(found.begin(), found.end());
-    const std::size_t atOnce = kRegionsPerThread * base::threadCount();
-    for (std::size_t begin = 0; begin < regions.size(); begin += atOnce) {
-      const std::size_t end = std::min(regions.size(), begin + atOnce);
-      const double share = static_cast<double>(end) / static_cast<double>(regions.size());
-      job_.beginStage("chunks", kIndexEnd + (1 - kIndexEnd) * share);
-      std::vector<Region> made(end - begin);
-      job_.forParts(made.size(), [&](base::Job& part, std::size_t i) {
-        made[i] = makeRegion(volume, contour, regions[begin + i], regionLevel, part);
-      });
-      for (Region& region : made) handOut(std::move(region), index);
-    }
-    index.chunks = std::move(entries_);
-    std::sort(index.chunks.begin(), index.chunks.end(),
-              [](const ChunkEntry& a, const ChunkEntry& b) { return a.index < b.index; });
+    const bool isSingle = fitsSinglePrecision(volume.blocks, volume.transform);
+    if (!isSingle) index.origin = middleOf(volume.blocks, volume.transform);
+    if (model.mesh().positions.empty()) return index;
+    job_.beginStage("cut", kCutEnd);
+    chunks::CutMesh cut =
+        chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, job_);
+    chunks::partRounded(cut, model.affine(), isSingle, job_);
+    makeLevels(cut, model, rule, isSingle, index.tolerances);
+    job_.beginStage("chunks", 1);
+    handOut(cut, index);
     return index;
   }
 
  private:
-  // The result for a region.
-  struct Region {
-    std::vector<chunks::MadeChunk> chunks;
-    std::uint64_t surfaceCells = 0, openEdges = 0;
-  };
-
-  [[nodiscard]] Region makeRegion(const grid::Volume& volume, const ContourOptions& contour,
-                                  const Coord& region, int regionLevel, base::Job& job) const {
-    const auto size = static_cast<std::int32_t>(1) << regionLevel;
-    const Coord corner(region[0] * size, region[1] * size, region[2] * size);
-    ChunkCells cells;
-    cells.level = chunkLevel_;
-    cells.own = {cells.chunkOf(corner), cells.chunkOf(corner.offsetBy(size - 1))};
-    const base::IndexBox box{corner.offsetBy(-kMargin), corner.offsetBy(size + kMargin - 1)};
-    const uniform::StageEnds ends = {0.1, 0.15, 0.3, 0.35, 0.4, 0.45};
-    const refine::SurfaceModel model(grid::partOf(volume, box), contour, ends, job);
-    job.beginStage("levels", 1);
-    Region made;
-    countOwn(model.view(), cells, made);
-    made.chunks = chunks::makeRegion(model, cells, region_, job);
-    std::erase_if(made.chunks,
-                  [&](const chunks::MadeChunk& chunk) { return !isAskedFor(chunk.chunk.index); });
-    return made;
-  }
-
-  void handOut(Region&& region, const ChunkIndex& index) {
-    report_.surfaceCells += region.surfaceCells;
-    report_.openEdges += region.openEdges;
-    for (chunks::MadeChunk& made : region.chunks) {
-      ChunkEntry entry = entryOf(made);
-      for (const ChunkLevelEntry& level : entry.levels) {
-        report_.intersectionsLeft += level.intersectionsLeft;
-      }
-      base::runIsolated([&] { sink_(index, std::move(made.chunk)); });
-      entries_.push_back(std::move(entry));
+  void makeLevels(const chunks::CutMesh& cut, const refine::SurfaceModel& model,
+                  const octree::CutRule& rule, bool isSingle,
+                  const std::vector<double>& tolerances) {
+    chunks::ChunkChain chain(cut, model, rule, options_.chunkSize, isSingle, job_);
+    for (std::size_t i = 0; i < tolerances.size(); ++i) {
+      const double share = static_cast<double>(i + 1) / static_cast<double>(tolerances.size());
+      job_.beginStage("level " + std::to_string(i),
+                      kFirstLevelEnd + (kLevelsEnd - kFirstLevelEnd) * share,
+                      base::Length::Unknown);
+      chunks::ChainLevel level =
+          chain.next(tolerances[i], levels_.empty() ? nullptr : &levels_.back());
+      levels_.push_back(std::move(level));
     }
   }
 
-  // Counts what lies in the region itself: the margin belongs to other regions too, and where it
-  // ends the surface is open.
-  static void countOwn(const uniform::SurfaceView& base, const ChunkCells& cells, Region& made) {
-    for (std::size_t i = 0; i < base.topology.blocks.size(); ++i) {
-      const uniform::SurfaceBlock& block = base.topology.blocks[i];
-      if (!cells.own.contains(cells.chunkOf(base.origin(i)))) continue;
-      made.surfaceCells += block.cellCount;
-      if (block.special < 0) continue;
-      for (const grid::BlockBits& cut : base.topology.specials[block.special].cut) {
-        for (const std::uint64_t slab : cut.slabs) {
-          made.openEdges += static_cast<std::size_t>(base::countBits(slab));
-        }
-      }
+  void handOut(const chunks::CutMesh& cut, ChunkIndex& index) {
+    std::vector<std::vector<ChunkLevel>> levels;
+    std::vector<std::vector<std::size_t>> pairs;
+    for (chunks::ChainLevel& level : levels_) {
+      levels.push_back(chunks::splitLevel(cut, level, job_));
+      pairs.push_back(countPairs(cut, level, job_));
+      level = {};
     }
+    std::vector<ChunkEntry> entries;
+    for (std::size_t c = 0; c < cut.chunks.size(); ++c) {
+      if (!isAskedFor(cut.chunks[c])) continue;
+      Chunk chunk;
+      ChunkEntry entry;
+      chunk.index = entry.index = cut.chunks[c];
+      for (std::size_t i = 0; i < levels.size(); ++i) {
+        entry.levels.push_back(entryOf(levels[i][c], pairs[i][c]));
+        report_.intersectionsLeft += pairs[i][c];
+        chunk.levels.push_back(std::move(levels[i][c]));
+      }
+      job_.checkCancelled(c, cut.chunks.size());
+      base::runIsolated([&] { sink_(index, std::move(chunk)); });
+      entries.push_back(std::move(entry));
+    }
+    index.chunks = std::move(entries);
   }
 
   [[nodiscard]] bool isAskedFor(const Coord& chunk) const {
@@ -245,9 +217,7 @@ class ChunkBuilder {
   const ChunkSink& sink_;
   ContourReport& report_;
   base::Job& job_;
-  int chunkLevel_ = 0;  ///< log2 of a chunk's size
-  chunks::RegionOptions region_;
-  std::vector<ChunkEntry> entries_;
+  std::vector<chunks::ChainLevel> levels_;
 };
 
 }  // namespace

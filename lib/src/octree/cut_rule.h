@@ -14,9 +14,6 @@ struct CutRule {
   double maxAngle = kAnyAngle;  ///< radians; bound on the angle between two normals of a cluster
   int minLevel = 0;             ///< cells up to this level need not keep the bounds above
   int maxLevel = 31;            ///< no cell above this level
-  /// Level of the chunks, 3 or more: leaves in different chunks may differ by more than one level.
-  int chunkLevel = kNoChunks;
-  static constexpr int kNoChunks = 31;
   static constexpr double kAnyAngle = 4;
   /// Multiplies the tolerance at a lattice point; empty: 1 everywhere.
   std::function<double(const Vec3&)> scale;

@@ -87,20 +87,11 @@ class Merger {
       const Coord lower = at.offsetBy(-1) >> 1;
       for (int i = 0; i < 8; ++i) {
         const Coord above = lower.offsetBy(i >> 2, (i >> 1) & 1, i & 1);
-        if (areApart(above, at, level)) continue;
         const std::uint32_t touched = forest_.find(level + 1, above);
         if (touched == kNone) continue;
         std::atomic_ref<std::uint8_t>(blocked[touched]).store(1, std::memory_order_relaxed);
       }
     });
-  }
-
-  // Whether a cell of the level above is in another chunk than one of this level. Chunks need no
-  // balance between them, as their boundary polylines do not depend on the octree.
-  [[nodiscard]] bool areApart(const Coord& above, const Coord& cell, int level) const {
-    if (rule_.chunkLevel >= CutRule::kNoChunks) return false;
-    const int shift = rule_.chunkLevel - level;
-    return ((above << 1) >> shift) != (cell >> shift);
   }
 
   const ClusterForest& forest_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "reduce/overlay_path.h"
@@ -105,12 +106,52 @@ class Halving {
   float expected_;
 };
 
+// The largest values of regions, from several threads.
+class RegionMaxima {
+ public:
+  explicit RegionMaxima(const Surface& s)
+      : s_(s),
+        largest_(s.region.empty() ? 0 : 1 + *std::max_element(s.region.begin(), s.region.end())) {}
+
+  void see(Index triangle, float value) {
+    if (!largest_.empty()) raise(largest_[s_.region[triangle]], value);
+  }
+
+  // A way over the triangles around some owners.
+  void seeAround(const std::array<Index, 3>& owners, const CornersOfVertices& corners,
+                 float value) {
+    if (largest_.empty()) return;
+    for (const Index owner : owners) {
+      see(owner, value);
+      for (const Index v : s_.triangles[owner].vertices) {
+        if (!s_.isOnLine(v)) continue;
+        for (const Index c : corners.of(v)) see(c / 3, value);
+      }
+    }
+  }
+
+  std::vector<float> take() { return std::move(largest_); }
+
+ private:
+  static void raise(float& largest, float value) {
+    const std::atomic_ref<float> shared(largest);
+    float was = shared.load(std::memory_order_relaxed);
+    while (value > was && !shared.compare_exchange_weak(was, value, std::memory_order_relaxed)) {
+    }
+  }
+
+  const Surface& s_;
+  std::vector<float> largest_;
+};
+
 class Measure {
  public:
-  Measure(const Surface& s, const ReferenceMesh& reference, float expected, base::Job& job)
+  Measure(const Surface& s, const ReferenceMesh& reference, float expected, RegionMaxima& regions,
+          base::Job& job)
       : s_(s),
         reference_(reference),
         expected_(expected),
+        regions_(regions),
         opposite_(oppositeCorners(s.position.size(), s.triangles, job)),
         corners_(s.position.size(), s.triangles) {}
 
@@ -119,6 +160,7 @@ class Measure {
       if (s_.owner[r] == kNone) continue;
       const float d = distance(reference_.positions()[r], s_.owner[r]);
       measured.sum += static_cast<double>(d);
+      regions_.see(s_.owner[r], d);
       measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, expected_);
     }
   }
@@ -129,8 +171,10 @@ class Measure {
       const OwnedFace face{
           reference_.cornersOf(f), v, {s_.owner[v[0]], s_.owner[v[1]], s_.owner[v[2]]}};
       if (face.hasOneOwner()) continue;
-      const float way = std::sqrt(overlayBound2(*this, face, expected_ * expected_));
-      measured.see(way > expected_ ? halve(f, face, measured) : way, f, expected_);
+      float way = std::sqrt(overlayBound2(*this, face, expected_ * expected_));
+      if (way > expected_) way = halve(f, face, measured);
+      regions_.seeAround(face.owners, corners_, way);
+      measured.see(way, f, expected_);
     }
   }
 
@@ -179,7 +223,9 @@ class Measure {
     const auto toFace = [&](Vec3f q, Index f) { return reference_.distance(f, q); };
     const Index t = gap.triangle;
     const Corners p{s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2)};
-    measured.see(Halving(toFace, about, expected_).bound(p, candidates), gap.face, expected_);
+    const float back = Halving(toFace, about, expected_).bound(p, candidates);
+    regions_.see(t, back);
+    measured.see(back, gap.face, expected_);
   }
 
   // The way from a face to the triangles around its owners. Notes where the map may jump.
@@ -227,6 +273,7 @@ class Measure {
   const Surface& s_;
   const ReferenceMesh& reference_;
   float expected_;
+  RegionMaxima& regions_;
   std::vector<Index> opposite_;
   CornersOfVertices corners_;
 };
@@ -235,7 +282,8 @@ class Measure {
 
 Certificate certify(const Surface& s, const ReferenceMesh& reference, float expected,
                     base::Job& job) {
-  const Measure measure(s, reference, expected, job);
+  RegionMaxima regions(s);
+  const Measure measure(s, reference, expected, regions, job);
   const std::size_t vertices = s.owner.size(), faces = reference.faces().size();
   const std::size_t a = (vertices + kGrain - 1) / kGrain, b = (faces + kGrain - 1) / kGrain;
   std::vector<Measured> parts(a + b);  // their limits, and so the sums, do not depend on threads
@@ -282,6 +330,7 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     all.beyond.insert(all.beyond.end(), p.beyond.begin(), p.beyond.end());
   }
   sortUnique(all.beyond);
+  all.ofRegion = regions.take();
   all.mean = vertices == 0 ? 0 : static_cast<float>(sum / static_cast<double>(vertices));
   return all;
 }

@@ -16,6 +16,8 @@ struct Certificate {
   Index worst = kNone;  ///< a face of the reference at the largest distance
   /// The faces of the reference where it is more than expected, in rising order.
   std::vector<Index> beyond;
+  /// For each region the largest distance at its triangles; empty without regions.
+  std::vector<float> ofRegion;
 };
 
 /// Measures a surface.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "reduce/corners.h"
+#include "reduce/lines.h"
 
 namespace tufa::reduce {
 
@@ -53,6 +54,8 @@ struct PhaseLimits {
   float sliverShare = 0;     ///< of a part's triangles that may become slivers nevertheless
   float turnCosine = 0.5f;   ///< least cosine between a triangle's normal before and after
   bool flips = true;
+  int mostValence = 16;  ///< of a new star, unless it was higher
+  LineMode lines = LineMode::Free;
   bool isLoose = false;    ///< edges need not end where their vertices are, see Part::edgeNear()
   bool allPlaces = false;  ///< tries the ends of an edge also where the best place is too far
   Index quota = kNone;     ///< most collapses of a part

@@ -30,6 +30,7 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   }
   loadTables(surface, partition.triangles(number));
   loadSamples(surface);
+  loadLines(surface);
   lowest_ = kBuckets;
   hasBoxList_ = false;
   boxList_.clear();
@@ -81,7 +82,8 @@ void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) const {
     if (inner_[i] != 0) surface.axis[v] = axis_[i], surface.flags[v] = flags_[i];
     if (moved_[i] == 0) continue;
     surface.position[v] = position_[i], surface.quadric[v] = quadric_[i];
-    surface.face[v] = face_[i], surface.source[v] = kNone;
+    surface.face[v] = face_[i];
+    if (!isOnLine(i)) surface.source[v] = kNone;
   }
   for (Index t = 0; t < triangleCount_; ++t) {
     const Index own = triangles[t];
@@ -96,6 +98,7 @@ void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) const {
       surface.owner[sampleIds_[s]] = own;
     }
   }
+  storeLines(surface);
 }
 
 void Part::push(float cost, const Candidate& candidate) {

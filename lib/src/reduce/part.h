@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reduce/box_list.h"
+#include "reduce/lines.h"
 #include "reduce/operations.h"
 #include "reduce/partition.h"
 #include "reduce/reference_mesh.h"
@@ -37,7 +38,6 @@ class Part {
   void clearCounts() { counts_ = {}; }
 
  private:
-  static constexpr int kMostValence = 16;  ///< of a new star, unless it was higher
   static constexpr Index kBuckets = 512;
   struct Candidate {
     Index a, b, versionA, versionB;
@@ -92,6 +92,20 @@ class Part {
   bool gatherRing(Index a, Index b);
   bool addToRing(Index corner);
   void apply(Index a, Index b);
+
+  // part_line.cpp.
+  void loadLines(const Surface& surface);
+  void storeLines(Surface& surface) const;
+  [[nodiscard]] bool isOnLine(Index v) const { return hasLines_ && line_[v].kind != LineKind::Off; }
+  [[nodiscard]] bool isLineEdge(Index corner) const;
+  [[nodiscard]] std::array<Index, 2> keptAtLine(Index a, Index b) const;
+  [[nodiscard]] float errorAtLine(Index a, Index b, Vec3f place, const LocalQuadric& sum) const;
+  Outcome tryCollapseAtLine(Index a, Index b);
+  Outcome tryInto(Index kept, Index gone);
+  [[nodiscard]] bool mayHold(Index a, Index b) const;
+  [[nodiscard]] bool makesChord() const;
+  void lockBeside(Index gone);
+  [[nodiscard]] bool mayFlipAtLine(const Index* v) const;
 
   // part_star.cpp.
   Outcome shapeGuard(Index a, Index b);
@@ -156,6 +170,10 @@ class Part {
   std::vector<LocalQuadric> quadric_;
   std::vector<std::uint8_t> flags_, inner_, moved_;
   std::vector<Index> face_, corner_, version_, stamp_;
+  bool hasLines_ = false;
+  std::vector<LineVertex> line_;
+  std::vector<Index> region_;                   ///< of each triangle
+  std::vector<std::array<Index, 2>> wentInto_;  ///< vertices of the input, from and to
   // For each corner; for each triangle its first sample; for each sample.
   std::vector<Index> vertex_, opposite_, firstSample_;
   std::vector<Sample> samples_;

@@ -60,7 +60,12 @@ void Part::propose(Index a, Index b) {
   if (inner_[a] == 0 || inner_[b] == 0) return;
   Vec3f place;
   LocalQuadric sum;
-  const float error = solve(a, b, place, sum);
+  float error = solve(a, b, place, sum);
+  if (isOnLine(a) || isOnLine(b)) {
+    error = errorAtLine(a, b, place, sum);
+  } else if (limits_.lines == LineMode::Alone) {
+    return;
+  }
   const float most = limits_.errorShare * limits_.distance;
   if (!(error <= most * most * sum.weight)) return;
   // Among edges of flat surface the short ones come first.
@@ -72,6 +77,7 @@ void Part::propose(Index a, Index b) {
 // The place of least quadric error first. Beside creases and slivers that can fold a triangle where
 // one of the two old places does not: those are next.
 Outcome Part::tryCollapse(Index a, Index b) {
+  if (isOnLine(a) || isOnLine(b)) return tryCollapseAtLine(a, b);
   Vec3f exact;
   solve(a, b, exact, sum_);
   if (!gatherRing(a, b)) return Outcome::Link;
@@ -98,6 +104,7 @@ Outcome Part::tryPlace(Index a, Index b, Vec3f place) {
   place_ = place;
   ++now_;  // samples taken in an attempt before are not taken
   if (!box_.hasInside(place_)) return Outcome::Place;
+  if (hasLines_ && !mayHold(a, b)) return Outcome::Place;
   if (const Outcome o = shapeGuard(a, b); o != Outcome::Done) return o;
   if (isOn(Outcome::Fold) && !foldGuard(a, b)) return Outcome::Fold;
   if (!ringGuard(a, b) && isOn(Outcome::Star)) return Outcome::Star;
@@ -138,7 +145,7 @@ bool Part::gatherRing(Index a, Index b) {
   }
   ring_[size_] = ring_[0];
   return size_ >= 3 && split_ > 0 && split_ < size_ &&
-         size_ <= std::max({kMostValence, valenceA + 1, valenceB + 2});
+         size_ <= std::max({limits_.mostValence, valenceA + 1, valenceB + 2});
 }
 
 void Part::apply(Index a, Index b) {

@@ -37,6 +37,7 @@ Outcome Part::tryFlip(Index c) {
   for (const Index i : v) {
     if (inner_[i] == 0) return Outcome::Place;
   }
+  if (hasLines_ && (isLineEdge(c) || !mayFlipAtLine(v))) return Outcome::Place;
   const Vec3f y = position_[v[0]], u = position_[v[1]], w = position_[v[2]], x = position_[v[3]];
   const float before = std::min(leastSine2(y, u, w), leastSine2(x, w, u));
   if (before > kFlipSine2) return Outcome::Worthless;
@@ -73,7 +74,7 @@ bool Part::flipStars(const Index* v, const Vec3f* n) {
     } while (at != corner_[v[k]]);
   }
   if (valence[1] <= 3 || valence[2] <= 3) return false;
-  if (std::max(valence[0], valence[3]) >= kMostValence) return false;
+  if (std::max(valence[0], valence[3]) >= limits_.mostValence) return false;
   const Index c = flip_[0], d = flip_[1];
   // Edges (v0, v1) and (v1, v3) of the first new triangle, (v2, v0) and (v3, v2) of the second.
   const Index outer[4] = {previousCorner(c), nextCorner(d), nextCorner(c), previousCorner(d)};
@@ -135,7 +136,8 @@ bool Part::flipDistance(const Index* v) {
   if (face_[v[0]] == kNone) return false;
   const Index start = reference_->locate(face_[v[0]], y, n_);
   if (start == kNone) return false;
-  if (isOn(Outcome::Crossing) && !edgeNear(start, {y, x - y, n_}, v[3])) return false;
+  if (isOn(Outcome::Crossing) && !edgeNear(start, {y, x - y, n_, false, hasLines_}, v[3]))
+    return false;
   return !isOn(Outcome::Face) || facesNear();
 }
 

@@ -21,6 +21,9 @@ constexpr float kRampEnd = 0.09f;
 constexpr int kRampPhases = 2;
 // Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
 constexpr int kMostPhases = 24;
+// Where lines alone are reduced, triangles beside them get longer and thinner than they will be.
+constexpr float kLeastAngleAtLines = 2;
+constexpr int kMostValenceAtLines = 40;
 // Phases end once one has removed less than this share of the triangles.
 constexpr Index kLittle = 16;
 // For a number of triangles: the first tolerance, and the factors by which it grows.
@@ -66,12 +69,13 @@ Reduction::~Reduction() = default;
 
 // Where the certificate is beyond the tolerance, the mesh is reduced again, and left as it was
 // around there. Smaller tolerances there instead take more attempts, and hardly fewer triangles.
-void Reduction::toTolerance(float tolerance) {
+void Reduction::toTolerance(float tolerance, LineMode lines) {
+  if (lines == LineMode::Alone) beginLines();
   if (tolerance < kLeastTolerance) return;
+  lines_ = lines;
   const std::vector<float> scales = reference_.scales();
-  const bool wasReference = isReference_;
   std::optional<Surface> before;
-  if (!wasReference) before = surface_;
+  if (!isReference_ || surface_.hasLines()) before = surface_;
   trees_.clear();
   for (attempt_ = 0;; ++attempt_) {
     nextTree_ = 0;
@@ -88,6 +92,17 @@ void Reduction::toTolerance(float tolerance) {
   attempt_ = 0;
   reference_.releaseAll();
   reference_.setScales(scales);
+}
+
+void Reduction::setRegions(const Regions& regions) { reduce::setRegions(surface_, regions); }
+
+// Forgets what went where in the step before, and which vertices it locked.
+void Reduction::beginLines() {
+  for (Index v = 0; v < surface_.line.size(); ++v) {
+    const Index source = surface_.source[v];
+    surface_.line[v].isLocked = !stay_.empty() && source != kNone && stay_[source] != 0;
+  }
+  for (Index i = 0; i < surface_.into.size(); ++i) surface_.into[i] = i;
 }
 
 // Large tolerances by way of smaller ones: most collapses are cheap there, as little surface is
@@ -108,7 +123,13 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   limits.leastSine2 = sine * sine;
   limits.sliverShare = options_.sliverShare;
   limits.turnCosine = std::cos(options_.mostTurn * kRadians);
-  limits.flips = options_.flips;
+  limits.flips = options_.flips && lines_ != LineMode::Alone;
+  limits.lines = lines_;
+  if (lines_ == LineMode::Alone) {
+    const float least = std::sin(kLeastAngleAtLines * kRadians);
+    limits.leastSine2 = least * least;
+    limits.mostValence = kMostValenceAtLines;
+  }
   limits.isLoose = tolerance > kLooseTolerance && attempt_ == 0;
   limits.switchedOff = options_.switchedOff;
   for (int i = 0, left = phases; left > 0 && triangleCount() > count; ++i, --left) {
@@ -223,7 +244,7 @@ void Reduction::measure(float expected) {
 }
 
 ReducedMesh Reduction::mesh() const {
-  return {surface_.position, surface_.triangles, surface_.source, surface_.face};
+  return {surface_.position, surface_.triangles, surface_.source, surface_.face, surface_.region};
 }
 
 }  // namespace tufa::reduce

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/job.h"
@@ -35,6 +36,7 @@ struct ReducedMesh {
   std::vector<Index> sources;
   /// For each position the face of the reference below it.
   std::vector<Index> faces;
+  std::vector<Index> regions;  ///< of each triangle; empty without regions
 };
 
 struct Options {
@@ -83,9 +85,15 @@ class Reduction {
   Reduction(const Reduction&) = delete;
   Reduction& operator=(const Reduction&) = delete;
 
+  /// Divides the input into regions, whose lines are kept from then on. To be called first.
+  void setRegions(const Regions& regions);
+
   /// As few triangles as can be found within `tolerance` voxels of the reference. Below
   /// kLeastTolerance nothing is done.
-  void toTolerance(float tolerance);
+  void toTolerance(float tolerance, LineMode lines = LineMode::Free);
+
+  /// In steps of LineMode::Alone the vertices of the input that are marked stay. Empty: none.
+  void lockLines(std::vector<std::uint8_t> stay) { stay_ = std::move(stay); }
 
   /// At most `count` triangles and few less, within the least tolerance that reaches it among a
   /// sequence of growing ones, up to `mostTolerance` voxels. Returns that tolerance. Where the
@@ -101,14 +109,20 @@ class Reduction {
   /// What was measured last. A mesh that is still the reference has a certificate of 0.
   [[nodiscard]] const Certificate& certificate() const { return certificate_; }
   [[nodiscard]] ReducedMesh mesh() const;
+  /// For each vertex of the input where it has gone along lines in the last step of LineMode::Alone
+  /// or LineMode::Free, at once: a vertex that may have gone on in turn. Itself if it has not.
+  [[nodiscard]] const std::vector<Index>& wentInto() const { return surface_.into; }
+  /// The state between two steps, and back to one.
+  [[nodiscard]] Surface surface() const { return surface_; }
+  void restore(Surface surface) { surface_ = std::move(surface); }
   /// What was tried and made since the beginning.
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
 
  private:
   void descendTo(float tolerance);
   void buildParts();
+  void beginLines();
   void reduce(float tolerance, Index count, int phases);
-  [[nodiscard]] Surface surfaceNow() const;
   void runPhase(const PhaseLimits& limits, Index count);
   [[nodiscard]] std::vector<Index> quotas(Index count) const;
   std::unique_ptr<Part> takePart();
@@ -127,6 +141,8 @@ class Reduction {
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance
   std::size_t nextTree_ = 0;
   int attempt_ = 0;  ///< at the present tolerance
+  LineMode lines_ = LineMode::Free;
+  std::vector<std::uint8_t> stay_;  ///< see lockLines()
   int phaseNumber_ = 0;
   float tolerance_ = 0;
 };

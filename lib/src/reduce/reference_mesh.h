@@ -89,6 +89,9 @@ class ReferenceMesh {
     /// Whether the end is a plane across `along`, not one that holds the axis: where the surface
     /// may stand upright, as beside a star that is no graph.
     bool steep = false;
+    /// Whether a start at a vertex may be left into any face there, not only the first one: needed
+    /// along lines, whose edges run over edges of the reference.
+    bool anyFace = false;
   };
 
   /// Follows the section of the mesh with the plane through `start` that `along` and `axis` span,
@@ -107,17 +110,31 @@ class ReferenceMesh {
     const float end = dot(forward, section.along);
     Vec3f q[3];
     float s[3];
-    for (int i = 0; i < 3; ++i) {
-      q[i] = corner(first, static_cast<std::size_t>(i)) - section.start, s[i] = dot(q[i], side);
-    }
     int out = -1;  // the section leaves through the edge opposite this corner
-    for (int i = 0; i < 3; ++i) {
-      if (s[(i + 1) % 3] <= 0 && s[(i + 2) % 3] > 0) out = i;
+    const auto enter = [&](Index f) {
+      for (int i = 0; i < 3; ++i) {
+        q[i] = corner(f, static_cast<std::size_t>(i)) - section.start, s[i] = dot(q[i], side);
+      }
+      for (int i = 0; i < 3; ++i) {
+        if (s[(i + 1) % 3] <= 0 && s[(i + 2) % 3] > 0) out = i;
+      }
+      return out >= 0;
+    };
+    Index face = first;
+    if (!enter(first) && section.anyFace) {
+      // A section that starts at a vertex may begin in another face there.
+      for (int i = 0; i < 3; ++i) {
+        if (squaredLength(q[i]) != 0) continue;
+        (void)allAround(faces_[first].vertex[static_cast<std::size_t>(i)], [&](Index f) {
+          face = f;
+          return !enter(f);
+        });
+        break;
+      }
     }
     if (out < 0) return false;
     Vec3f right = q[(out + 1) % 3], left = q[(out + 2) % 3];
     float sr = s[(out + 1) % 3], sl = s[(out + 2) % 3];
-    Index face = first;
     for (int step = 0; step < kMostSteps; ++step) {
       const float share = sr / (sr - sl);
       const Vec3f m = right + (left - right) * share;

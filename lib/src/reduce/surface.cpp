@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <limits>
+#include <utility>
 
 #include "reduce/star.h"
 
@@ -64,6 +65,24 @@ void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index
   });
 }
 
+void findChords(Surface& s) {
+  s.chords.clear();
+  std::vector<std::pair<std::uint64_t, Index>> edges;  // with their triangles' regions
+  for (Index t = 0; t < s.triangles.size(); ++t) {
+    const auto& v = s.triangles[t].vertices;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = v[i], b = v[(i + 1) % 3];
+      if (s.isOnLine(a) && s.isOnLine(b) && s.line[a].commonPlanes(s.line[b]) > 0) {
+        edges.emplace_back(Surface::chordKey(a, b), s.region[t]);
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    if (edges[i] == edges[i + 1]) s.chords.push_back(edges[i].first);
+  }
+}
+
 }  // namespace
 
 Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
@@ -108,6 +127,35 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
   findFaces(s, reference, standsFor, job);
 }
 
+void setRegions(Surface& s, const Regions& regions) {
+  const Index count = static_cast<Index>(s.position.size());
+  s.region = regions.ofTriangle;
+  s.mayHold = regions.mayHold;
+  s.line.assign(count, {});
+  s.into.resize(count);
+  for (Index v = 0; v < count; ++v) s.into[v] = v;
+  const CornersOfVertices corners(count, s.triangles);
+  for (Index v = 0; v < count; ++v) {
+    // Each line edge at the vertex is met twice, once in each of its triangles, where its region is
+    // not that of the other one: so count the changes of region around the vertex by neighbours.
+    int lines = 0;
+    const auto around = corners.of(v);
+    for (const Index c : around) {
+      const Index next = s.triangles[c / 3].vertices[nextCorner(c) % 3];
+      for (const Index d : around) {
+        const Index before = s.triangles[d / 3].vertices[previousCorner(d) % 3];
+        lines += before == next && s.region[c / 3] != s.region[d / 3];
+      }
+    }
+    if (lines == 0) continue;
+    LineVertex& line = s.line[v];
+    line.planes = regions.planes[v];
+    const bool isSimple = lines == 2 && line.planes[1] == kNone && (s.flags[v] & kBorder) == 0;
+    line.kind = isSimple ? LineKind::On : LineKind::End;
+  }
+  findChords(s);
+}
+
 void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
   std::vector<Index> vertexNumber(s.position.size(), kNone), triangleNumber(s.triangles.size());
   Index triangles = 0, vertices = 0;
@@ -115,6 +163,7 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
     if (dead[t] != 0) continue;
     for (const Index v : s.triangles[t].vertices) vertexNumber[v] = 0;
     triangleNumber[t] = triangles;
+    if (s.hasLines()) s.region[triangles] = s.region[t];
     s.triangles[triangles++] = s.triangles[t];
   }
   for (Index v = 0; v < vertexNumber.size(); ++v) {
@@ -122,6 +171,7 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
     const Index n = vertexNumber[v] = vertices++;
     s.position[n] = s.position[v], s.axis[n] = s.axis[v], s.quadric[n] = s.quadric[v];
     s.flags[n] = s.flags[v], s.source[n] = s.source[v], s.face[n] = s.face[v];
+    if (s.hasLines()) s.line[n] = s.line[v];
   }
   s.triangles.resize(triangles);
   for (Triangle& t : s.triangles) {
@@ -129,6 +179,7 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
   }
   s.position.resize(vertices), s.axis.resize(vertices), s.quadric.resize(vertices);
   s.flags.resize(vertices), s.source.resize(vertices), s.face.resize(vertices);
+  if (s.hasLines()) s.region.resize(triangles), s.line.resize(vertices);
   for (Index& t : s.owner) {
     if (t != kNone) t = triangleNumber[t];
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include "base/job.h"
 #include "reduce/corners.h"
+#include "reduce/lines.h"
 #include "reduce/local_quadric.h"
 #include "reduce/reference_mesh.h"
 
@@ -32,9 +34,27 @@ struct Surface {
   /// faces.
   std::vector<Index> owner;
 
+  // Empty without regions: for each triangle, for each vertex, and for each vertex of the input
+  // that has gone into a neighbour on its line where, else itself.
+  std::vector<Index> region;
+  std::vector<LineVertex> line;
+  std::vector<Index> into;
+  /// Edges of the input inside a region between vertices of lines in one plane, as keys of
+  /// chordKey(), sorted: they may never become edges of lines.
+  std::vector<std::uint64_t> chords;
+  std::function<bool(Index region, Vec3f place, Vec3f a, Vec3f b)> mayHold;  ///< see Regions
+
   /// A place as it will be written, which is what the guards judge; empty: as it is.
   std::function<Vec3f(const Vec3f&)> rounded;
 
+  [[nodiscard]] static std::uint64_t chordKey(Index a, Index b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  }
+  [[nodiscard]] bool isChord(Index a, Index b) const {
+    return std::binary_search(chords.begin(), chords.end(), chordKey(a, b));
+  }
+  [[nodiscard]] bool hasLines() const { return !line.empty(); }
+  [[nodiscard]] bool isOnLine(Index v) const { return hasLines() && line[v].kind != LineKind::Off; }
   [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis[v]) != 0; }
   [[nodiscard]] Vec3f roundedPlace(Vec3f p) const { return rounded ? rounded(p) : p; }
   [[nodiscard]] const Vec3f& corner(Index triangle, std::size_t i) const {
@@ -52,6 +72,10 @@ struct Surface {
 /// the same.
 void locateAll(Surface& surface, const ReferenceMesh& reference, std::span<const Index> standsFor,
                base::Job& job);
+
+/// Divides a surface that is as it came in into regions, see Regions. Borders' ends are ends of
+/// lines.
+void setRegions(Surface& surface, const Regions& regions);
 
 /// Removes the triangles marked in `dead` and the vertices without triangles; the others keep their
 /// order.

@@ -12,10 +12,6 @@ SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
     : repairs_(options.repair),
       surface_(uniform::makeUniformSurface(std::move(volume), options, ends, job)),
       report_(uniform::reportOf(surface_)) {
-  if (surface_.volume.blocks.isPart()) {
-    before_.positions = surface_.mesh.positions;
-    before_.quads = surface_.mesh.quads;
-  }
   job.beginStage("repair", ends.repair);
   if (repairs_) candidates_ = repairUniform(surface_, report_, job);
 }

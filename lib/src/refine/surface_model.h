@@ -33,9 +33,6 @@ class SurfaceModel {
   [[nodiscard]] uniform::SurfaceView view() const { return surface_.view(); }
   [[nodiscard]] const Mesh& mesh() const { return surface_.mesh; }
   [[nodiscard]] const grid::Affine& affine() const { return surface_.affine(); }
-  /// The uniform mesh before its repair, without normals; of a part of a grid only. Repair may
-  /// reach far, whereas these vertices depend on what is near them alone.
-  [[nodiscard]] const Mesh& meshBeforeRepair() const { return before_; }
   /// Candidates of the uniform mesh: each pair of its quads that intersects, even after rounding,
   /// contains one. Sorted.
   [[nodiscard]] const std::vector<std::uint32_t>& candidates() const { return candidates_; }
@@ -51,7 +48,6 @@ class SurfaceModel {
  private:
   bool repairs_;
   uniform::UniformSurface surface_;
-  Mesh before_;
   std::vector<std::uint32_t> candidates_;
   ContourReport report_;
   octree::ClusterForest forest_;

@@ -9,8 +9,27 @@ namespace tufa::test {
 
 // Chunks made by hand, small enough to see that they are right. Chunks have 8 voxels.
 
-/// One seam of one level by numbers: which vertex each arc has on either side.
-using ArcGroups = std::vector<int>;
+/// Where the surface passes a face, in arcs: for each the vertex inside the chunk and the one on
+/// the face that stand for it.
+struct HandSeam {
+  static constexpr VertexIndex kNone = ~VertexIndex{0};
+  std::vector<VertexIndex> tiles, polyline;
+  VertexIndex begin = kNone, end = kNone;  ///< on a chunk edge, before and behind the arcs
+  bool closed = false;
+
+  /// Its vertices on the face, as they run around the triangles of the strip.
+  [[nodiscard]] ChunkSeam curve() const {
+    ChunkSeam seam;
+    seam.closed = closed;
+    std::vector<VertexIndex>& v = seam.vertices;
+    v = polyline;
+    if (begin != kNone) v.insert(v.begin(), begin);
+    if (end != kNone) v.push_back(end);
+    v.erase(std::unique(v.begin(), v.end()), v.end());
+    std::reverse(v.begin(), v.end());
+    return seam;
+  }
+};
 
 /// Adds vertices and strips to a level.
 class LevelMaker {
@@ -28,7 +47,7 @@ class LevelMaker {
   }
 
   /// The strip between the tiles of a seam and a line, its quads cut from the line to the tiles.
-  void addStrip(const ChunkSeam& seam, const std::vector<VertexIndex>& line,
+  void addStrip(const HandSeam& seam, const std::vector<VertexIndex>& line,
                 std::vector<Triangle>& out) {
     const std::size_t arcs = seam.tiles.size();
     for (std::size_t i = 0; i + (seam.closed ? 0 : 1) < arcs; ++i) {
@@ -36,8 +55,8 @@ class LevelMaker {
       addTriangle(line[i], seam.tiles[i], seam.tiles[next], out);
       addTriangle(line[i], seam.tiles[next], line[next], out);
     }
-    if (seam.begin != ChunkSeam::kNone) addTriangle(seam.begin, seam.tiles[0], line[0], out);
-    if (seam.end != ChunkSeam::kNone) {
+    if (seam.begin != HandSeam::kNone) addTriangle(seam.begin, seam.tiles[0], line[0], out);
+    if (seam.end != HandSeam::kNone) {
       addTriangle(line[arcs - 1], seam.tiles[arcs - 1], seam.end, out);
     }
   }
@@ -64,7 +83,7 @@ inline std::vector<Chunk> makeDrum() {
                                                          {1, -4},
                                                          {2, -3}}};
   constexpr std::array<int, 3> kTileArcs{1, 2, 4};  // arcs that share a tile
-  constexpr std::array<int, 3> kLineArcs{1, 3, 4};
+  constexpr std::array<int, 3> kLineArcs{1, 2, 4};
   std::vector<Chunk> chunks(2);
   for (int side = 0; side < 2; ++side) {
     Chunk& chunk = chunks[static_cast<std::size_t>(side)];
@@ -89,7 +108,7 @@ inline std::vector<Chunk> makeDrum() {
         if (side == 1) std::reverse(vertices.begin(), vertices.end());
         return vertices;
       };
-      ChunkSeam seam;
+      HandSeam seam;
       seam.closed = true;
       seam.tiles = seamOf(8 + direction, kTileArcs[k]);
       seam.polyline = seamOf(8, kLineArcs[k]);
@@ -100,7 +119,7 @@ inline std::vector<Chunk> makeDrum() {
       }
       maker.addStrip(seam, seam.polyline, level.regular[face]);
       if (k < 2) maker.addStrip(seam, seamOf(8, kLineArcs[k + 1]), level.transition[face]);
-      level.seams[face].push_back(std::move(seam));
+      level.seams[face].push_back(seam.curve());
     }
   }
   return chunks;
@@ -147,7 +166,7 @@ inline std::vector<Chunk> makeSheet() {
         if (alongX) std::reverse(line.begin(), line.end());
         return line;
       };
-      ChunkSeam right, top;  // before it is turned: on +x running down, on +y running right
+      HandSeam right, top;  // before it is turned: on +x running down, on +y running right
       for (std::size_t i = 0; i < kArcs; ++i) {
         const int group = tileGroups[k][i];
         const bool first = i == 0 || group != tileGroups[k][i - 1];
@@ -165,11 +184,11 @@ inline std::vector<Chunk> makeSheet() {
         }
       }
       for (const bool alongX : {false, true}) {
-        ChunkSeam& seam = alongX ? top : right;
+        const HandSeam& seam = alongX ? top : right;
         const std::size_t face = kTurned[(turn + (alongX ? 1 : 0)) % 4];
         maker.addStrip(seam, seam.polyline, level.regular[face]);
         if (k < 2) maker.addStrip(seam, lineOf(k + 1, alongX), level.transition[face]);
-        level.seams[face].push_back(std::move(seam));
+        level.seams[face].push_back(seam.curve());
       }
     }
   }

@@ -30,7 +30,6 @@ TEST(CutRule, OfTheDefaultsBoundsTheToleranceAlone) {
   EXPECT_FALSE(rule.boundsAngle());
   EXPECT_EQ(rule.minLevel, 0);
   EXPECT_EQ(1 << rule.maxLevel, ContourOptions().maxCell);
-  EXPECT_EQ(rule.chunkLevel, CutRule::kNoChunks);
   EXPECT_EQ(rule.toleranceAt(Vec3(1, 2, 3)), rule.tolerance);
 }
 

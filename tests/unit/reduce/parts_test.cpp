@@ -253,5 +253,29 @@ TEST(Clearance, MarksSurfaceThatOtherSurfaceIsNear) {
   EXPECT_EQ(marksOfPlate(6, 0.4f), 0U);
 }
 
+// A section that starts at a vertex may begin in any face there, not only in one that it passes.
+TEST(Sections, StartAtAVertexInWhateverFaceIsGiven) {
+  test::FineMesh ball = test::subdivided(test::octahedron(8), 3);
+  for (Vec3f& p : ball.positions) p = unit(p) * 8;
+  base::Job job(1, {});
+  const ReferenceMesh reference(ball.positions, ball.triangles, {}, job);
+  for (Index v = 0; v < ball.positions.size(); ++v) {
+    const Vec3f from = ball.positions[v];
+    reference.allAround(v, [&](Index towards) {
+      for (const Index w : reference.faces()[towards].vertex) {
+        if (w == v) continue;
+        reference.allAround(v, [&](Index first) {
+          const auto anywhere = [](Index, Vec3f, Vec3f, Vec3f) { return true; };
+          EXPECT_TRUE(reference.follow(
+              first, {from, ball.positions[w] - from, unit(from), false, true}, anywhere))
+              << v << " to " << w << " from face " << first;
+          return true;
+        });
+      }
+      return true;
+    });
+  }
+}
+
 }  // namespace
 }  // namespace tufa::reduce

@@ -2,10 +2,12 @@
 #include <tufa/error.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <set>
 
+#include "base/vec3.h"
 #include "base/vertex_welder.h"
-#include "chunks/seams/stitch.h"
 
 namespace tufa {
 namespace {
@@ -26,6 +28,8 @@ const ChunkLevel& levelOf(const Chunk& chunk, std::size_t level) {
                                               std::to_string(chunk.levels.size()) +
                                               " levels and no level " + std::to_string(level));
 }
+
+constexpr VertexIndex kNone = std::numeric_limits<VertexIndex>::max();
 
 /// Several meshes while they are welded to one.
 class Weld {
@@ -55,11 +59,11 @@ class Weld {
 class LevelVertices {
  public:
   LevelVertices(const ChunkLevel& level, Weld& weld)
-      : level_(level), weld_(weld), places_(level.positions.size(), ChunkSeam::kNone) {}
+      : level_(level), weld_(weld), places_(level.positions.size(), kNone) {}
 
   VertexIndex operator[](VertexIndex vertex) {
     VertexIndex& place = places_[vertex];
-    if (place == ChunkSeam::kNone) {
+    if (place == kNone) {
       place = weld_.add(level_.positions[vertex], level_.normals[vertex]);
     }
     return place;
@@ -77,54 +81,73 @@ class LevelVertices {
   std::vector<VertexIndex> places_;
 };
 
-/// Whether a vertex occurs again after others.
-bool comesAgain(const ChunkSeam& seam) {
-  std::vector<VertexIndex> runs = seam.tiles;
-  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
-  if (seam.closed && runs.size() > 1 && runs.front() == runs.back()) runs.pop_back();
-  std::sort(runs.begin(), runs.end());
-  return std::adjacent_find(runs.begin(), runs.end()) != runs.end();
-}
+/// The surface in a face between the curve of one LOD and that of a coarser one, both of one chunk
+/// and as seen from it: a polygon for each edge of the coarser one. Those of more than three
+/// corners get a vertex in the middle, as a diagonal may be an edge of the chunk already.
+class FaceFiller {
+ public:
+  FaceFiller(LevelVertices& fine, LevelVertices& coarse, Weld& weld)
+      : fine_(fine), coarse_(coarse), weld_(weld) {}
 
-/// Adds the strip between the tiles of one LOD and the polyline of another.
-void addStrip(const ChunkSeam& seam, LevelVertices& tiles, const ChunkSeam& coarse,
-              LevelVertices& line, Weld& weld) {
-  if (seam.tiles.empty()) return;
-  ChunkSeam both;
-  both.closed = seam.closed;
-  for (const VertexIndex tile : seam.tiles) both.tiles.push_back(tiles[tile]);
-  for (const VertexIndex vertex : coarse.polyline) both.polyline.push_back(line[vertex]);
-  if (seam.begin != ChunkSeam::kNone) both.begin = tiles[seam.begin];
-  if (seam.end != ChunkSeam::kNone) both.end = tiles[seam.end];
-  const Mesh& mesh = weld.mesh();
-  for (const chunks::StripTriangle& strip :
-       chunks::stitch(both, comesAgain(both), mesh.positions, mesh.normals)) {
-    const auto& v = strip.triangle.vertices;
-    weld.addTriangle(v[0], v[1], v[2]);
+  void add(const std::vector<ChunkSeam>& fine, const std::vector<ChunkSeam>& coarse) {
+    std::set<VertexIndex> kept;
+    for (const ChunkSeam& seam : coarse) {
+      for (const VertexIndex v : seam.vertices) kept.insert(coarse_[v]);
+    }
+    for (const ChunkSeam& seam : fine) {
+      std::vector<VertexIndex> line;
+      for (const VertexIndex v : seam.vertices) line.push_back(fine_[v]);
+      const auto isKept = [&](VertexIndex v) { return kept.contains(v); };
+      if (seam.closed) {
+        std::rotate(line.begin(), std::find_if(line.begin(), line.end(), isKept), line.end());
+        line.push_back(line.front());
+      }
+      std::vector<VertexIndex> polygon;
+      for (const VertexIndex v : line) {
+        polygon.push_back(v);
+        if (polygon.size() == 1 || !isKept(v)) continue;
+        fill(polygon);
+        polygon.assign(1, v);
+      }
+    }
   }
-}
 
-/// Adds the strip on `face` of a chunk at LOD `lod` towards a neighbour at LOD `coarse`, from the
-/// chunk's own seams: the polyline is the same for both chunks.
+ private:
+  // From the last corner back along the finer curve.
+  void fill(const std::vector<VertexIndex>& p) {
+    if (p.size() < 3) return;
+    if (p.size() == 3) return weld_.addTriangle(p[0], p[2], p[1]);
+    Vec3 middle(0.0), normal(0.0);
+    for (const VertexIndex v : p) {
+      middle += Vec3(weld_.mesh().positions[v]);
+      normal += Vec3(weld_.mesh().normals[v]);
+    }
+    const VertexIndex centre =
+        weld_.add(middle / static_cast<double>(p.size()), Normal(normal.unitOrX()));
+    weld_.addTriangle(p.front(), p.back(), centre);
+    for (std::size_t i = p.size() - 1; i > 0; --i) weld_.addTriangle(p[i], p[i - 1], centre);
+  }
+
+  LevelVertices& fine_;
+  LevelVertices& coarse_;
+  Weld& weld_;
+};
+
+/// Adds the strip on `face` of a chunk at LOD `lod` towards a neighbour at LOD `coarse`: that to
+/// the next LOD, and what lies in the face between the curves of that and of the neighbour.
 void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, std::size_t face,
-                     LevelVertices& tiles, Weld& weld) {
-  const ChunkLevel& own = chunk.levels[lod];
+                     LevelVertices& own, Weld& weld) {
+  const ChunkLevel& next = levelOf(chunk, lod + 1);
   const ChunkLevel& other = levelOf(chunk, coarse);
-  const auto& seams = own.seams[face];
-  const auto& lines = other.seams[face];
-  const auto fits = [](const ChunkSeam& a, const ChunkSeam& b) {
-    return a.tiles.size() == b.polyline.size() && a.closed == b.closed;
-  };
-  if ((seams.empty() && !(own.regular[face].empty() && own.transition[face].empty())) ||
-      !std::equal(seams.begin(), seams.end(), lines.begin(), lines.end(), fits)) {
+  own.add(chunk.levels[lod].transition[face]);
+  const bool hasStrips = !next.regular[face].empty() || !next.transition[face].empty();
+  if (next.seams[face].empty() ? hasStrips : next.seams[face].size() != other.seams[face].size()) {
     throw Error(ErrorCode::InvalidArgument,
                 nameOf(chunk.index) + " has no seams: it cannot be drawn at level " +
                     std::to_string(lod) + " beside a chunk at level " + std::to_string(coarse));
   }
-  LevelVertices line(other, weld);
-  for (std::size_t i = 0; i < seams.size(); ++i) {
-    addStrip(seams[i], tiles, lines[i], line, weld);
-  }
+  LevelVertices fine(next, weld), line(other, weld);
+  FaceFiller(fine, line, weld).add(next.seams[face], other.seams[face]);
 }
 
 }  // namespace
@@ -153,11 +176,11 @@ Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask) {
     const auto& strip = (mask >> face & 1u) != 0 ? own.transition[face] : own.regular[face];
     mesh.triangles.insert(mesh.triangles.end(), strip.begin(), strip.end());
   }
-  std::vector<VertexIndex> places(own.positions.size(), ChunkSeam::kNone);
+  std::vector<VertexIndex> places(own.positions.size(), kNone);
   for (Triangle& triangle : mesh.triangles) {
     for (VertexIndex& vertex : triangle.vertices) {
       VertexIndex& place = places[vertex];
-      if (place == ChunkSeam::kNone) {
+      if (place == kNone) {
         place = static_cast<VertexIndex>(mesh.positions.size());
         mesh.positions.push_back(own.positions[vertex]);
         mesh.normals.push_back(own.normals[vertex]);

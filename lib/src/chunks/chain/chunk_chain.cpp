@@ -1,0 +1,212 @@
+#include "chunks/chain/chunk_chain.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "base/box.h"
+#include "base/single_precision.h"
+#include "chunks/chain/mixed_forms.h"
+#include "distance/certifier.h"
+
+namespace tufa::chunks {
+namespace {
+
+using base::Vec3f;
+
+constexpr std::size_t kGrain = 16384;
+// Voxels that vertices inside a chunk keep from its faces, unless they were nearer before.
+constexpr double kDepth = 2e-3;
+// How often curves are reduced less where forms intersect; then they are not reduced there at all.
+constexpr int kMostAttempts = 12;
+
+std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
+                            const octree::CutRule& rule, base::Job& job) {
+  if (!rule.scale) return {};
+  octree::CutRule one = rule;
+  one.tolerance = 1;
+  std::vector<float> scales(mesh.positions.size());
+  job.forRanges(scales.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double scale = distance::toleranceAt(one, affine, Vec3(mesh.positions[i]));
+      scales[i] = static_cast<float>(std::max(0.0, scale));
+    }
+  });
+  return scales;
+}
+
+}  // namespace
+
+ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
+                       const octree::CutRule& rule, int chunkSize, bool singlePrecision,
+                       base::Job& job)
+    : cut_(cut),
+      model_(model),
+      chunkSize_(chunkSize),
+      singlePrecision_(singlePrecision),
+      job_(job) {
+  base::Box box = base::Box::empty();
+  for (const Position& p : cut.mesh.positions) box.add(Vec3(p));
+  middle_ = box.centre();
+  const double perVoxel = 1 / model.affine().voxelSize();
+  const auto localOf = [&](const std::vector<Position>& from) {
+    std::vector<Vec3f> local(from.size());
+    job.forRanges(local.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        local[i] = Vec3f((Vec3(from[i]) - middle_) * perVoxel);
+    });
+    return local;
+  };
+  const std::vector<Vec3f> positions = localOf(cut.mesh.positions);
+  const std::vector<Vec3f> reference = localOf(cut.reference);
+  const reduce::MeshView view{positions, cut.mesh.triangles};
+  const reduce::MeshView before{reference, cut.mesh.triangles};
+  std::vector<reduce::Index> same(reference.size());
+  std::iota(same.begin(), same.end(), 0);
+  reduction_.emplace(view, reference.empty() ? view : before, same,
+                     scalesOf(cut.mesh, model.affine(), rule, job), reduce::Options(), job);
+  reduction_->setRegions(regionsOf());
+  const reduce::Surface surface = reduction_->surface();
+  kinds_.reserve(positions.size());
+  for (const reduce::LineVertex& line : surface.line) kinds_.push_back(line.kind);
+}
+
+reduce::Regions ChunkChain::regionsOf() const {
+  reduce::Regions regions;
+  regions.ofTriangle = cut_.chunkOf;
+  regions.planes = cut_.planesOf;
+  const grid::Affine& affine = model_.affine();
+  regions.mayHold = [this, &affine](reduce::Index region, Vec3f place, Vec3f a, Vec3f b) {
+    const Coord& chunk = cut_.chunks[region];
+    const auto latticeOf = [&](Vec3f p) { return affine.latticePoint(positionOf(p), Coord(0)); };
+    const Vec3 at = latticeOf(place);
+    bool isDeep = true;
+    double depth[6];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double low = double(chunk[axis]) * chunkSize_;
+      depth[2 * axis] = at[axis] - low;
+      depth[2 * axis + 1] = low + chunkSize_ - at[axis];
+      isDeep &= depth[2 * axis] >= kDepth && depth[2 * axis + 1] >= kDepth;
+    }
+    if (isDeep) return true;
+    const Vec3 from = latticeOf(a), to = latticeOf(b);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double low = double(chunk[axis]) * chunkSize_, high = low + chunkSize_;
+      const double before[2] = {std::min(from[axis], to[axis]) - low,
+                                high - std::max(from[axis], to[axis])};
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (depth[2 * axis + side] < std::min(kDepth, before[side])) return false;
+      }
+    }
+    return true;
+  };
+  return regions;
+}
+
+Position ChunkChain::positionOf(const Vec3f& local) const {
+  const Vec3 p = middle_ + Vec3(local) * model_.affine().voxelSize();
+  return {p[0], p[1], p[2]};
+}
+
+ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
+  const float kept = static_cast<float>(std::max(0.0, tolerance - cut_.moved));
+  if (before != nullptr) reduceCurves(kept, *before);
+  reduction_->toTolerance(kept,
+                          before == nullptr ? reduce::LineMode::Free : reduce::LineMode::Held);
+  ChainLevel level = extract();
+  level.errors = errorsOf(reduction_->certificate());
+  return level;
+}
+
+void ChunkChain::reduceCurves(float tolerance, ChainLevel& before) {
+  const reduce::Surface surface = reduction_->surface();
+  std::vector<std::uint8_t> stay(cut_.mesh.positions.size(), 0);
+  for (int attempt = 0;; ++attempt) {
+    reduction_->lockLines(stay);
+    reduction_->toTolerance(tolerance, reduce::LineMode::Alone);
+    setInto(before);
+    const std::vector<std::uint32_t> bad = findMixedForms(cut_, before, job_);
+    if (bad.empty()) break;
+    for (const std::uint32_t t : bad) {
+      for (const VertexIndex v : before.triangles[t].vertices) {
+        if (before.into[v] == v && attempt < kMostAttempts) continue;
+        if (before.cutVertex[v] != ChainLevel::kNone) stay[before.cutVertex[v]] = 1;
+      }
+    }
+    reduction_->restore(surface);
+  }
+  before.transitionErrors = errorsOf(reduction_->certificate());
+}
+
+// What each vertex has gone into at last.
+void ChunkChain::setInto(ChainLevel& level) const {
+  const std::vector<reduce::Index>& went = reduction_->wentInto();
+  std::vector<VertexIndex> vertexOf(cut_.mesh.positions.size(), ChainLevel::kNone);
+  for (VertexIndex v = 0; v < level.positions.size(); ++v) {
+    if (level.cutVertex[v] != ChainLevel::kNone) vertexOf[level.cutVertex[v]] = v;
+  }
+  level.into.resize(level.positions.size());
+  for (VertexIndex v = 0; v < level.positions.size(); ++v) {
+    level.into[v] = v;
+    if (level.cutVertex[v] == ChainLevel::kNone) continue;
+    VertexIndex last = level.cutVertex[v];
+    while (went[last] != last) last = went[last];
+    level.into[v] = vertexOf[last];
+  }
+}
+
+std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate) const {
+  std::vector<double> errors(cut_.chunks.size(), cut_.moved);
+  for (std::size_t i = 0; i < certificate.ofRegion.size(); ++i) {
+    errors[i] += static_cast<double>(certificate.ofRegion[i]);
+  }
+  return errors;
+}
+
+Normal ChunkChain::normalOn(const Triangle& face, const Vec3& p) const {
+  const Mesh& mesh = cut_.mesh;
+  const Vec3 a(mesh.positions[face.vertices[0]]), b(mesh.positions[face.vertices[1]]),
+      c(mesh.positions[face.vertices[2]]);
+  const Vec3 normal = (b - a).cross(c - a);
+  const double weights[3] = {(c - b).cross(p - b).dot(normal), (a - c).cross(p - c).dot(normal),
+                             (b - a).cross(p - a).dot(normal)};
+  Vec3 sum(0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum += Vec3(mesh.normals[face.vertices[i]]) * std::max(0.0, weights[i]);
+  }
+  if (!(sum.squaredLength() > 0)) return mesh.normals[face.vertices[0]];
+  return Normal(sum.unitOrX());
+}
+
+ChainLevel ChunkChain::extract() const {
+  reduce::ReducedMesh reduced = reduction_->mesh();
+  ChainLevel level;
+  const std::size_t count = reduced.positions.size();
+  level.positions.resize(count);
+  level.normals.resize(count);
+  level.cutVertex.assign(count, ChainLevel::kNone);
+  level.into.resize(count);
+  level.isEnd.resize(count);
+  for (VertexIndex v = 0; v < count; ++v) {
+    const reduce::Index source = reduced.sources[v];
+    Position p;
+    if (source != reduce::kNone) {
+      p = cut_.mesh.positions[source];
+      level.normals[v] = cut_.mesh.normals[source];
+      if (kinds_[source] != reduce::LineKind::Off) level.cutVertex[v] = source;
+      level.isEnd[v] = kinds_[source] == reduce::LineKind::End ? 1 : 0;
+    } else {
+      p = positionOf(reduced.positions[v]);
+      level.normals[v] = normalOn(cut_.mesh.triangles[reduced.faces[v]], Vec3(p));
+    }
+    p = model_.affine().toWorld(p);
+    level.positions[v] = singlePrecision_ ? base::toSingle(p) : p;
+    level.into[v] = v;
+  }
+  level.triangles = std::move(reduced.triangles);
+  level.chunkOf = std::move(reduced.regions);
+  level.transitionErrors.assign(cut_.chunks.size(), 0);
+  return level;
+}
+
+}  // namespace tufa::chunks

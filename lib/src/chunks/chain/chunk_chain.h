@@ -1,0 +1,70 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/job.h"
+#include "base/vec3f.h"
+#include "chunks/cut/cut_mesh.h"
+#include "octree/cut_rule.h"
+#include "reduce/reduction.h"
+#include "refine/surface_model.h"
+
+namespace tufa::chunks {
+
+/// One LOD of the whole surface, and what its chunks need to meet those of the next one.
+struct ChainLevel {
+  std::vector<Position> positions;  ///< as they are written
+  std::vector<Normal> normals;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> chunkOf;  ///< of each triangle, a place in CutMesh::chunks
+  /// For each vertex its number in the cut mesh if it is on a plane's curve, else kNone.
+  std::vector<VertexIndex> cutVertex;
+  std::vector<std::uint8_t> isEnd;  ///< of a curve
+  /// For each vertex the one of this LOD that stands for it beside the next LOD.
+  std::vector<VertexIndex> into;
+  std::vector<double> errors;            ///< of each chunk, voxels
+  std::vector<double> transitionErrors;  ///< with all curves as the next LOD has them
+  static constexpr VertexIndex kNone = ~VertexIndex{0};
+};
+
+/// LODs of a cut mesh. Each is reduced from the one before in two steps: its curves on planes
+/// first, and then all else, with the curves as they are.
+///
+/// What comes of the first step is a whole mesh that has passed all guards: the finer LOD with the
+/// coarser one's curves. So the strips between LODs are triangles of that mesh. No triangle changes
+/// in two planes at a time; where a triangle in its new form and another one in its old form, which
+/// belongs to another plane, would intersect, the first step is made again without what brought
+/// them together.
+class ChunkChain {
+ public:
+  /// All arguments must outlive this.
+  ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model, const octree::CutRule& rule,
+             int chunkSize, bool singlePrecision, base::Job& job);
+
+  /// Makes the next LOD, and completes the one before with what stands for its vertices.
+  [[nodiscard]] ChainLevel next(double tolerance, ChainLevel* before);
+
+ private:
+  [[nodiscard]] reduce::Regions regionsOf() const;
+  [[nodiscard]] ChainLevel extract() const;
+  [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
+  [[nodiscard]] Normal normalOn(const Triangle& face, const Vec3& p) const;
+  void reduceCurves(float tolerance, ChainLevel& before);
+  void setInto(ChainLevel& level) const;
+  [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
+
+  const CutMesh& cut_;
+  const refine::SurfaceModel& model_;
+  int chunkSize_;
+  bool singlePrecision_;
+  base::Job& job_;
+  Vec3 middle_{0.0};
+  std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
+  std::optional<reduce::Reduction> reduction_;
+};
+
+}  // namespace tufa::chunks

@@ -1,0 +1,71 @@
+#include "chunks/chain/mixed_forms.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "base/box.h"
+#include "base/bvh.h"
+#include "intersect/triangle_pair.h"
+
+namespace tufa::chunks {
+namespace {
+
+base::Box boxOf(const ChainLevel& level, const Triangle& t) {
+  base::Box box = base::Box::empty();
+  for (const VertexIndex v : t.vertices) box.add(Vec3(level.positions[v]));
+  return box;
+}
+
+}  // namespace
+
+std::uint32_t changingPlane(const CutMesh& cut, const ChainLevel& level, const Triangle& triangle,
+                            bool& isMixed) {
+  std::uint32_t plane = ChunkPlane::kNone;
+  isMixed = false;
+  for (const VertexIndex v : triangle.vertices) {
+    if (level.into[v] == v) continue;
+    const std::uint32_t own = cut.planesOf[level.cutVertex[v]][0];
+    isMixed |= plane != ChunkPlane::kNone && plane != own;
+    plane = own;
+  }
+  return plane;
+}
+
+std::vector<std::uint32_t> findMixedForms(const CutMesh& cut, const ChainLevel& level,
+                                          base::Job& job) {
+  std::vector<std::uint32_t> bad, changing, planes;
+  for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
+    bool isMixed = false;
+    const std::uint32_t plane = changingPlane(cut, level, level.triangles[t], isMixed);
+    if (plane == ChunkPlane::kNone) continue;
+    if (isMixed) bad.push_back(t);
+    changing.push_back(t), planes.push_back(plane);
+  }
+  std::vector<base::Box> boxes;
+  boxes.reserve(changing.size());
+  for (const std::uint32_t t : changing) boxes.push_back(boxOf(level, level.triangles[t]));
+  const base::Bvh own(std::move(boxes), job);
+  std::mutex mutex;
+  job.forRanges(changing.size(), 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Triangle t = changed(level, level.triangles[changing[i]]);
+      if (isGone(t)) continue;
+      own.itemsMeeting(boxOf(level, t), [&](std::uint32_t j, const base::Box&) {
+        if (planes[j] == planes[i] || level.chunkOf[changing[i]] != level.chunkOf[changing[j]] ||
+            !intersect::intersectElsewhere(level.positions, t, level.triangles[changing[j]])) {
+          return;
+        }
+        found.push_back(changing[i]);
+        found.push_back(changing[j]);
+      });
+    }
+    const std::scoped_lock lock(mutex);
+    bad.insert(bad.end(), found.begin(), found.end());
+  });
+  std::sort(bad.begin(), bad.end());
+  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  return bad;
+}
+
+}  // namespace tufa::chunks

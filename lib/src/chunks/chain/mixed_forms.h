@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/job.h"
+#include "chunks/chain/chunk_chain.h"
+#include "chunks/cut/cut_mesh.h"
+
+namespace tufa::chunks {
+
+/// Finds the triangles of a level that, in the form beside the next level, intersect a triangle of
+/// the same chunk in its own form that would change in another plane, or that change in two
+/// planes: places in `level.triangles`, sorted. The level must have its `into`.
+[[nodiscard]] std::vector<std::uint32_t> findMixedForms(const CutMesh& cut, const ChainLevel& level,
+                                                        base::Job& job);
+
+/// The plane in which a triangle changes beside the next level, ChunkPlane::kNone if it does not.
+/// `isMixed` is set where there are several.
+[[nodiscard]] std::uint32_t changingPlane(const CutMesh& cut, const ChainLevel& level,
+                                          const Triangle& triangle, bool& isMixed);
+
+/// A triangle beside the next level.
+[[nodiscard]] inline Triangle changed(const ChainLevel& level, const Triangle& t) {
+  return {level.into[t.vertices[0]], level.into[t.vertices[1]], level.into[t.vertices[2]]};
+}
+
+/// Whether two of its corners are one.
+[[nodiscard]] inline bool isGone(const Triangle& t) {
+  const auto& v = t.vertices;
+  return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+}
+
+}  // namespace tufa::chunks

@@ -1,0 +1,373 @@
+#include "chunks/cut/cut_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "base/vec3.h"
+#include "chunks/cut/flip_caps.h"
+#include "chunks/cut/join_vertices.h"
+#include "intersect/surface.h"
+
+namespace tufa::chunks {
+namespace {
+
+// Which vertices are moved to planes.
+struct Move {
+  double distance;    ///< along an axis within which they are, voxels
+  double turnCosine;  ///< unless a triangle turns by more than the angle of this cosine,
+  double leastShare;  ///< or shrinks to less than this share
+};
+
+// Those that are very near also where slivers turn: otherwise edges around them would be cut in
+// places that single precision does not tell apart.
+constexpr Move kMoves[] = {{5e-3, 0.9, 0.25}, {5e-4, 0.05, 0.02}, {2e-5, -2, 0}};
+
+// Voxels; shorter edges are collapsed once they are cut. Slivers are cut in places that single
+// precision does not tell apart.
+constexpr double kLeastEdge = 1e-3;
+// Voxels; lower caps are flipped.
+constexpr double kLeastHeight = 1e-4;
+
+// Where a coordinate lies among the planes across an axis: 2n on plane n, 2n + 1 between planes n
+// and n + 1.
+using Place = std::int64_t;
+
+class Cutter {
+ public:
+  Cutter(const Mesh& uniform, const grid::Affine& affine, int size, base::Job& job)
+      : uniform_(uniform), affine_(affine), size_(size), job_(job) {}
+
+  CutMesh run() {
+    load();
+    flipCaps(at_, kLeastHeight, out_.mesh.triangles);
+    for (int axis = 0; axis < 3; ++axis) {
+      setPlaces(axis);
+      for (const Move& move : kMoves) moveToPlanes(axis, move);
+      cut(axis);
+      joined_ += joinNearVertices(
+                     at_, kLeastEdge,
+                     [this](VertexIndex v, VertexIndex into) { return mayGoInto(v, into); },
+                     out_.mesh.triangles) *
+                 voxelsOfStep();
+      flipCaps(at_, kLeastHeight, out_.mesh.triangles);
+    }
+    out_.moved += joined_ + kLeastHeight * voxelsOfStep();
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  // The plane's coordinate, counted from the origin of positions.
+  [[nodiscard]] double coordinateOf(int axis, std::int64_t plane) const {
+    return static_cast<double>(plane * size_ - affine_.origin()[axis]);
+  }
+
+  [[nodiscard]] Place placeOf(int axis, double x) const {
+    const double voxel = x + static_cast<double>(affine_.origin()[axis]);
+    const auto n = static_cast<std::int64_t>(std::floor(voxel / static_cast<double>(size_)));
+    return x == coordinateOf(axis, n) ? 2 * n : 2 * n + 1;
+  }
+
+  // Whether all triangles at a vertex stay on their sides of the planes if it goes into another.
+  [[nodiscard]] bool mayGoInto(VertexIndex v, VertexIndex into) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Place from = place_[v][axis], to = place_[into][axis];
+      if (from != to && ((to & 1) != 0 || std::abs(from - to) > 1)) return false;
+    }
+    return true;
+  }
+
+  // Of a step of length 1 in the lattice, at most.
+  [[nodiscard]] double voxelsOfStep() const {
+    double most = 0;
+    for (int axis = 0; axis < 3; ++axis) most = std::max(most, affine_.axis(axis).length());
+    return std::sqrt(3.0) * most / affine_.voxelSize();
+  }
+
+  void load() {
+    out_.mesh.triangles = triangulate(uniform_);
+    out_.mesh.normals = uniform_.normals;
+    at_.resize(uniform_.positions.size());
+    job_.forRanges(at_.size(), 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        at_[v] = affine_.latticePoint(uniform_.positions[v], affine_.origin());
+      }
+    });
+    moved_.assign(at_.size(), 0);
+    place_.resize(at_.size());
+  }
+
+  // Of all vertices: those that were made on planes of other axes too.
+  void setPlaces(int axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    for (std::size_t v = 0; v < at_.size(); ++v) place_[v][a] = placeOf(axis, at_[v][axis]);
+  }
+
+  void moveToPlanes(int axis, const Move& move) {
+    constexpr double kStays = std::numeric_limits<double>::infinity();
+    std::vector<double> target(at_.size(), kStays);
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      const double voxel = at_[v][axis] + static_cast<double>(affine_.origin()[axis]);
+      const double plane = coordinateOf(axis, std::llround(voxel / static_cast<double>(size_)));
+      if (plane != at_[v][axis] && std::abs(plane - at_[v][axis]) < move.distance)
+        target[v] = plane;
+    }
+    std::vector<std::uint32_t> touched;
+    for (std::uint32_t t = 0; t < out_.mesh.triangles.size(); ++t) {
+      const auto& v = out_.mesh.triangles[t].vertices;
+      if (std::any_of(v.begin(), v.end(), [&](VertexIndex i) { return target[i] != kStays; })) {
+        touched.push_back(t);
+      }
+    }
+    const auto turns = [&](std::uint32_t t) {
+      Vec3 before[3], after[3];
+      bool isTouched = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const VertexIndex v = out_.mesh.triangles[t].vertices[i];
+        before[i] = after[i] = at_[v];
+        if (target[v] != kStays) after[i][axis] = target[v], isTouched = true;
+      }
+      if (!isTouched) return false;
+      const Vec3 m = (before[1] - before[0]).cross(before[2] - before[0]);
+      const Vec3 n = (after[1] - after[0]).cross(after[2] - after[0]);
+      return !(n.dot(m) >= move.turnCosine * n.length() * m.length() &&
+               n.length() >= move.leastShare * m.length());
+    };
+    for (bool isAny = true; isAny;) {
+      isAny = false;
+      for (const std::uint32_t t : touched) {
+        if (!turns(t)) continue;
+        for (const VertexIndex v : out_.mesh.triangles[t].vertices) target[v] = kStays;
+        isAny = true;
+      }
+    }
+    const double perVoxel = affine_.axis(axis).length() / affine_.voxelSize();
+    std::vector<double> before(at_.size(), kStays);
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      if (target[v] == kStays) continue;
+      before[v] = std::exchange(at_[v][axis], target[v]);
+    }
+    returnIntersecting(axis, touched, before);
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      if (before[v] == kStays) continue;
+      moved_[v] += std::abs(at_[v][axis] - before[v]) * perVoxel;
+      out_.moved = std::max(out_.moved, moved_[v]);
+      place_[v][static_cast<std::size_t>(axis)] = placeOf(axis, at_[v][axis]);
+    }
+  }
+
+  // Puts vertices back whose move makes some of the triangles intersect others: where sheets nearly
+  // touch, moves as small as these do. `before`: their coordinates, infinite for those not moved.
+  void returnIntersecting(int axis, const std::vector<std::uint32_t>& touched,
+                          const std::vector<double>& before) {
+    if (touched.empty()) return;
+    Mesh moved;
+    moved.triangles = out_.mesh.triangles;
+    moved.positions.resize(at_.size());
+    for (std::size_t v = 0; v < at_.size(); ++v) moved.positions[v] = at_[v];
+    for (bool isAny = true; isAny;) {
+      isAny = false;
+      const intersect::Surface surface(moved, job_);
+      for (const intersect::PolygonPair& pair : intersect::findPairs(surface, touched, job_)) {
+        for (const std::uint32_t t : {pair.a, pair.b}) {
+          for (const VertexIndex v : moved.triangles[t].vertices) {
+            if (std::isinf(before[v]) || at_[v][axis] == before[v]) continue;
+            at_[v][axis] = before[v];
+            moved.positions[v] = at_[v];
+            isAny = true;
+          }
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] Place placeAt(VertexIndex v, int axis) const {
+    return place_[v][static_cast<std::size_t>(axis)];
+  }
+
+  // All triangles at the lowest plane that they pass, and what is made of them again.
+  void cut(int axis) {
+    std::vector<Triangle> rest = std::move(out_.mesh.triangles), done;
+    done.reserve(rest.size() + rest.size() / 8);
+    cuts_.clear();
+    std::vector<Triangle> open;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      job_.pollCancelled(i);
+      open.assign(1, rest[i]);
+      while (!open.empty()) {
+        const Triangle t = open.back();
+        open.pop_back();
+        const auto [low, high] = rangeOf(t, axis);
+        const Place plane = low + 2 - (low & 1);  // the first one above
+        if (plane >= high) {
+          done.push_back(t);
+        } else {
+          divide(t, axis, plane, open);
+        }
+      }
+    }
+    out_.mesh.triangles = std::move(done);
+  }
+
+  [[nodiscard]] std::pair<Place, Place> rangeOf(const Triangle& t, int axis) const {
+    return std::minmax(
+        {placeAt(t.vertices[0], axis), placeAt(t.vertices[1], axis), placeAt(t.vertices[2], axis)});
+  }
+
+  void divide(const Triangle& t, int axis, Place plane, std::vector<Triangle>& out) {
+    const auto side = [&](VertexIndex v) {
+      const Place p = placeAt(v, axis);
+      return p < plane ? -1 : p > plane ? 1 : 0;
+    };
+    // From a corner on the plane, or else the one that is alone on its side.
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int s[3] = {side(t.vertices[i]), side(t.vertices[(i + 1) % 3]),
+                        side(t.vertices[(i + 2) % 3])};
+      if (s[0] == 0 || (s[1] == s[2] && s[0] == -s[1])) first = i;
+    }
+    const VertexIndex a = t.vertices[first], b = t.vertices[(first + 1) % 3],
+                      c = t.vertices[(first + 2) % 3];
+    if (side(a) == 0) {
+      const VertexIndex m = crossing(b, c, axis, plane);
+      out.emplace_back(a, b, m);
+      out.emplace_back(a, m, c);
+      return;
+    }
+    const VertexIndex m = crossing(a, b, axis, plane), k = crossing(a, c, axis, plane);
+    out.emplace_back(a, m, k);
+    if ((at_[m] - at_[c]).squaredLength() <= (at_[b] - at_[k]).squaredLength()) {
+      out.emplace_back(m, b, c);
+      out.emplace_back(m, c, k);
+    } else {
+      out.emplace_back(m, b, k);
+      out.emplace_back(b, c, k);
+    }
+  }
+
+  // The vertex where an edge passes a plane.
+  VertexIndex crossing(VertexIndex a, VertexIndex b, int axis, Place plane) {
+    if (placeAt(a, axis) > placeAt(b, axis)) std::swap(a, b);
+    const std::uint64_t key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+    const auto [found, isNew] = cuts_.emplace(key, static_cast<VertexIndex>(at_.size()));
+    if (!isNew) return found->second;
+    const double x = coordinateOf(axis, plane / 2);
+    const double share = (x - at_[a][axis]) / (at_[b][axis] - at_[a][axis]);
+    Vec3 p = at_[a] + (at_[b] - at_[a]) * share;
+    std::array<Place, 3> place{};
+    for (int i = 0; i < 3; ++i) {
+      p[i] = std::clamp(p[i], std::min(at_[a][i], at_[b][i]), std::max(at_[a][i], at_[b][i]));
+      if (i == axis) p[i] = x;
+      place[static_cast<std::size_t>(i)] = placeOf(i, p[i]);
+    }
+    at_.push_back(p);
+    place_.push_back(place);
+    moved_.push_back(std::max(moved_[a], moved_[b]));  // of a point between: no more
+    if (!uniform_.normals.empty()) {
+      const Vec3 m = Vec3(out_.mesh.normals[a]) * (1 - share) + Vec3(out_.mesh.normals[b]) * share;
+      const Vec3 n = m.unitOrX();
+      out_.mesh.normals.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]),
+                                     static_cast<float>(n[2]));
+    }
+    return found->second;
+  }
+
+  void finish() {
+    Mesh& mesh = out_.mesh;
+    mesh.positions = uniform_.positions;
+    mesh.positions.resize(at_.size());
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      if (v < uniform_.positions.size() && moved_[v] == 0) continue;
+      mesh.positions[v] = affine_.position(affine_.origin(), at_[v][0], at_[v][1], at_[v][2]);
+    }
+    std::vector<Coord> chunkOf(mesh.triangles.size());
+    job_.forRanges(chunkOf.size(), 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) chunkOf[t] = chunkAt(mesh.triangles[t]);
+    });
+    out_.chunks = chunkOf;
+    std::sort(out_.chunks.begin(), out_.chunks.end());
+    out_.chunks.erase(std::unique(out_.chunks.begin(), out_.chunks.end()), out_.chunks.end());
+    out_.chunkOf.resize(chunkOf.size());
+    job_.forRanges(chunkOf.size(), 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const auto found = std::lower_bound(out_.chunks.begin(), out_.chunks.end(), chunkOf[t]);
+        out_.chunkOf[t] = static_cast<std::uint32_t>(found - out_.chunks.begin());
+      }
+    });
+    namePlanes();
+  }
+
+  [[nodiscard]] Coord chunkAt(const Triangle& t) const {
+    Coord chunk;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = rangeOf(t, axis);
+      Place n = low >> 1;
+      if (low == high && (low & 1) == 0) {
+        const Vec3 normal = (at_[t.vertices[1]] - at_[t.vertices[0]])
+                                .cross(at_[t.vertices[2]] - at_[t.vertices[0]]);
+        if ((normal[axis] > 0) != affine_.mirrored()) --n;
+      }
+      chunk[axis] = static_cast<std::int32_t>(n);
+    }
+    return chunk;
+  }
+
+  // Those with chunks on both sides at the vertex: a flat face in a plane is all on one side.
+  void namePlanes() {
+    struct Range {
+      std::int32_t least = std::numeric_limits<std::int32_t>::max();
+      std::int32_t greatest = std::numeric_limits<std::int32_t>::min();
+    };
+    std::vector<std::array<Range, 3>> around(at_.size());
+    for (std::size_t t = 0; t < out_.chunkOf.size(); ++t) {
+      const Coord& chunk = out_.chunks[out_.chunkOf[t]];
+      for (const VertexIndex v : out_.mesh.triangles[t].vertices) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          Range& range = around[v][axis];
+          const std::int32_t at = chunk[static_cast<int>(axis)];
+          range.greatest = std::max(range.greatest, at);
+          range.least = std::min(range.least, at);
+        }
+      }
+    }
+    constexpr std::array<std::uint32_t, 3> kNone = {ChunkPlane::kNone, ChunkPlane::kNone,
+                                                    ChunkPlane::kNone};
+    out_.planesOf.assign(at_.size(), kNone);
+    std::unordered_map<std::int64_t, std::uint32_t> numbers;
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      std::size_t count = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const Place place = placeAt(static_cast<VertexIndex>(v), axis);
+        const Range& range = around[v][static_cast<std::size_t>(axis)];
+        if ((place & 1) != 0 || range.least >= range.greatest) continue;
+        const std::int64_t n = place / 2;
+        const auto [found, isNew] =
+            numbers.emplace(3 * n + axis, static_cast<std::uint32_t>(out_.planes.size()));
+        if (isNew) out_.planes.push_back({axis, static_cast<std::int32_t>(n)});
+        out_.planesOf[v][count++] = found->second;
+      }
+    }
+  }
+
+  const Mesh& uniform_;
+  const grid::Affine& affine_;
+  std::int64_t size_;
+  base::Job& job_;
+  CutMesh out_;
+  std::vector<Vec3> at_;  ///< lattice points, counted from the origin of positions
+  std::vector<std::array<Place, 3>> place_;
+  double joined_ = 0;          ///< the longest edges that were collapsed, voxels
+  std::vector<double> moved_;  ///< how far each vertex was moved to planes, voxels
+  std::unordered_map<std::uint64_t, VertexIndex> cuts_;
+};
+
+}  // namespace
+
+CutMesh cutAtChunks(const Mesh& uniform, const grid::Affine& affine, int size, base::Job& job) {
+  return Cutter(uniform, affine, size, job).run();
+}
+
+}  // namespace tufa::chunks

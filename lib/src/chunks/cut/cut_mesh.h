@@ -1,0 +1,45 @@
+#pragma once
+
+#include <tufa/coord.h>
+#include <tufa/mesh.h>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/job.h"
+#include "grid/affine.h"
+
+namespace tufa::chunks {
+
+/// A plane between chunks.
+struct ChunkPlane {
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  int axis = 0;         ///< it stands across
+  std::int32_t at = 0;  ///< in chunks: between those of index at - 1 and at
+};
+
+/// The uniform mesh, divided where it passes the planes between chunks.
+///
+/// Each triangle lies in one chunk, its boundary included. What lies in a plane belongs to the
+/// chunk on the solid's side.
+struct CutMesh {
+  Mesh mesh;  ///< triangles; positions as the uniform mesh's, whose vertices come first
+  std::vector<Coord> chunks;           ///< that have triangles, sorted
+  std::vector<std::uint32_t> chunkOf;  ///< of each triangle, a place in `chunks`
+  std::vector<ChunkPlane> planes;      ///< by number
+  /// For each vertex the numbers of the planes that it lies on, if its triangles lie on both sides.
+  std::vector<std::array<std::uint32_t, 3>> planesOf;
+  /// The positions that distances are measured to, where some are others than the mesh's.
+  std::vector<Position> reference;
+  double moved = 0;  ///< the farthest that a vertex was moved to a plane, voxels
+};
+
+/// Cuts a mesh, positions counted from affine.origin(), into chunks of `size` voxels.
+///
+/// Vertices within half a hundredth of a voxel of a plane are moved to it unless that turns a
+/// triangle: flat faces of parts often lie in such planes but for rounding, and would be shredded.
+/// Cost: linear, some 100 ns a triangle.
+[[nodiscard]] CutMesh cutAtChunks(const Mesh& uniform, const grid::Affine& affine, int size,
+                                  base::Job& job);
+
+}  // namespace tufa::chunks

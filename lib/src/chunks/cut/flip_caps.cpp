@@ -1,0 +1,107 @@
+#include "chunks/cut/flip_caps.h"
+
+#include <cstdint>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace tufa::chunks {
+namespace {
+
+// Rows of vertices need one pass for each vertex between two others.
+constexpr int kMostPasses = 4;
+// The triangle across the edge must be so many times as high.
+constexpr double kHigher = 8;
+
+std::uint64_t keyOf(VertexIndex from, VertexIndex to) { return std::uint64_t{from} << 32 | to; }
+
+class CapFlipper {
+ public:
+  CapFlipper(const std::vector<Vec3>& points, double height, std::vector<Triangle>& triangles)
+      : points_(points), height_(height), triangles_(triangles) {}
+
+  // Whether there were any.
+  bool pass() {
+    std::vector<std::uint32_t> caps;
+    std::unordered_set<VertexIndex> near;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      if (apexOf(triangles_[t]) == kNone) continue;
+      caps.push_back(t);
+      near.insert(triangles_[t].vertices.begin(), triangles_[t].vertices.end());
+    }
+    if (caps.empty()) return false;
+    behind_.clear();
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      const auto& v = triangles_[t].vertices;
+      if (near.contains(v[0]) || near.contains(v[1]) || near.contains(v[2])) note(t);
+    }
+    bool isAny = false;
+    for (const std::uint32_t t : caps) isAny |= flip(t);
+    return isAny;
+  }
+
+ private:
+  static constexpr std::size_t kNone = 3;
+
+  void note(std::uint32_t t) {
+    const auto& v = triangles_[t].vertices;
+    for (std::size_t i = 0; i < 3; ++i) behind_[keyOf(v[i], v[(i + 1) % 3])] = t;
+  }
+
+  [[nodiscard]] double heightOver(VertexIndex p, VertexIndex q, VertexIndex r) const {
+    const Vec3 along = points_[q] - points_[p];
+    const double length = along.length();
+    return length > 0 ? along.cross(points_[r] - points_[p]).length() / length : 0;
+  }
+
+  // The corner of a cap opposite its longest edge, or kNone.
+  [[nodiscard]] std::size_t apexOf(const Triangle& t) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexIndex r = t.vertices[i], p = t.vertices[(i + 1) % 3], q = t.vertices[(i + 2) % 3];
+      const Vec3 along = points_[q] - points_[p], to = points_[r] - points_[p];
+      const double at = along.dot(to), whole = along.squaredLength();
+      if (at > 0 && at < whole && heightOver(p, q, r) < height_) return i;
+    }
+    return kNone;
+  }
+
+  // (r, p, q) and (s, q, p) become (r, p, s) and (r, s, q).
+  bool flip(std::uint32_t t) {
+    const std::size_t i = apexOf(triangles_[t]);
+    if (i == kNone) return false;
+    const VertexIndex r = triangles_[t].vertices[i], p = triangles_[t].vertices[(i + 1) % 3],
+                      q = triangles_[t].vertices[(i + 2) % 3];
+    const auto across = behind_.find(keyOf(q, p));
+    if (across == behind_.end()) return false;
+    const std::uint32_t other = across->second;
+    VertexIndex s = r;
+    for (const VertexIndex v : triangles_[other].vertices) {
+      if (v != p && v != q) s = v;
+    }
+    if (s == r || heightOver(p, q, s) < kHigher * height_ || behind_.contains(keyOf(r, s)) ||
+        behind_.contains(keyOf(s, r))) {
+      return false;
+    }
+    behind_.erase(keyOf(p, q));
+    behind_.erase(keyOf(q, p));
+    triangles_[t] = {r, p, s};
+    triangles_[other] = {r, s, q};
+    note(t);
+    note(other);
+    return true;
+  }
+
+  const std::vector<Vec3>& points_;
+  double height_;
+  std::vector<Triangle>& triangles_;
+  std::unordered_map<std::uint64_t, std::uint32_t> behind_;  ///< the triangle left of an edge
+};
+
+}  // namespace
+
+void flipCaps(const std::vector<Vec3>& points, double height, std::vector<Triangle>& triangles) {
+  CapFlipper flipper(points, height, triangles);
+  for (int i = 0; i < kMostPasses && flipper.pass(); ++i) {
+  }
+}
+
+}  // namespace tufa::chunks

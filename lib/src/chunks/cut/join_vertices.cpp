@@ -1,0 +1,123 @@
+#include "chunks/cut/join_vertices.h"
+
+#include <algorithm>
+#include <iterator>
+#include <unordered_map>
+#include <utility>
+
+namespace tufa::chunks {
+namespace {
+
+using Edge = std::pair<VertexIndex, VertexIndex>;
+
+bool has(const Triangle& t, VertexIndex v) {
+  return t.vertices[0] == v || t.vertices[1] == v || t.vertices[2] == v;
+}
+
+class Joiner {
+ public:
+  Joiner(const std::vector<Vec3>& points, double least,
+         const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
+         std::vector<Triangle>& triangles)
+      : points_(points), least_(least), mayGoInto_(mayGoInto), triangles_(triangles) {}
+
+  double run() {
+    std::vector<Edge> edges;
+    std::unordered_map<VertexIndex, VertexIndex> into;
+    for (const Triangle& t : triangles_) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const VertexIndex a = t.vertices[i], b = t.vertices[(i + 1) % 3];
+        if (a < b && isShort(a, b)) edges.emplace_back(a, b);
+      }
+    }
+    if (edges.empty()) return 0;
+    findTriangles(edges);
+    double longest = 0;
+    for (auto [a, b] : edges) {
+      while (into.contains(a)) a = into.at(a);
+      while (into.contains(b)) b = into.at(b);
+      if (!mayGoInto_(b, a)) std::swap(a, b);
+      if (a == b || !isShort(a, b) || !mayGoInto_(b, a) || !mayJoin(a, b)) continue;
+      longest = std::max(longest, (points_[a] - points_[b]).length());
+      join(a, b);
+      into.emplace(b, a);
+    }
+    std::erase_if(triangles_, [](const Triangle& t) { return has(t, kGone); });
+    return longest;
+  }
+
+ private:
+  static constexpr VertexIndex kGone = ~VertexIndex{0};
+
+  [[nodiscard]] bool isShort(VertexIndex a, VertexIndex b) const {
+    return (points_[a] - points_[b]).squaredLength() < least_ * least_;
+  }
+
+  // Around the ends of short edges.
+  void findTriangles(const std::vector<Edge>& edges) {
+    for (const auto& [a, b] : edges) around_[a], around_[b];
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      for (const VertexIndex v : triangles_[t].vertices) {
+        const auto found = around_.find(v);
+        if (found != around_.end()) found->second.push_back(t);
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<VertexIndex> neighbours(VertexIndex v) const {
+    std::vector<VertexIndex> all;
+    for (const std::uint32_t t : around_.at(v)) {
+      for (const VertexIndex w : triangles_[t].vertices) {
+        if (w != v && w != kGone) all.push_back(w);
+      }
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  // The link condition: the ends have no neighbours in common but those in the edge's two
+  // triangles.
+  [[nodiscard]] bool mayJoin(VertexIndex a, VertexIndex b) const {
+    std::vector<VertexIndex> p = neighbours(a), q = neighbours(b), common;
+    // On an open border a neighbour is met once.
+    const auto isOpen = [](const std::vector<VertexIndex>& all) {
+      for (std::size_t i = 0; i < all.size(); i += 2) {
+        if (i + 1 == all.size() || all[i] != all[i + 1]) return true;
+      }
+      return false;
+    };
+    if (isOpen(p) || isOpen(q) || p.size() <= 6 || q.size() <= 6) return false;
+    std::set_intersection(p.begin(), p.end(), q.begin(), q.end(), std::back_inserter(common));
+    return common.size() == 4;  // each twice
+  }
+
+  void join(VertexIndex a, VertexIndex b) {
+    for (const std::uint32_t t : around_.at(b)) {
+      Triangle& triangle = triangles_[t];
+      if (has(triangle, kGone)) continue;
+      if (has(triangle, a)) {
+        triangle = {kGone, kGone, kGone};
+        continue;
+      }
+      for (VertexIndex& v : triangle.vertices) v = v == b ? a : v;
+      around_.at(a).push_back(t);
+    }
+    around_.at(b).clear();
+  }
+
+  const std::vector<Vec3>& points_;
+  double least_;
+  const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto_;
+  std::vector<Triangle>& triangles_;
+  std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around_;
+};
+
+}  // namespace
+
+double joinNearVertices(const std::vector<Vec3>& points, double least,
+                        const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
+                        std::vector<Triangle>& triangles) {
+  return Joiner(points, least, mayGoInto, triangles).run();
+}
+
+}  // namespace tufa::chunks

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "base/job.h"
+#include "chunks/cut/cut_mesh.h"
+#include "grid/affine.h"
+
+namespace tufa::chunks {
+
+/// Parts triangles of a cut mesh that nearly touch, so that they do not intersect once positions
+/// are rounded as they will be written, to single precision in world space if `singlePrecision`.
+/// Moves vertices that are on no plane a little, and keeps all positions as they were before as
+/// `reference` if there are any.
+void partRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job);
+
+}  // namespace tufa::chunks

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "reduce/corners.h"
+#include "reduce/triangles.h"
+
+namespace tufa::reduce {
+
+/// What a vertex is to the lines of a surface, the edges between triangles of different regions.
+enum class LineKind : std::uint8_t {
+  Off,  ///< on no line: may go anywhere in its region, or into any neighbour
+  On,   ///< inside a line: may go into a neighbour on its line
+  End,  ///< where lines end or meet, or on several planes: stays
+};
+
+/// A vertex as lines see it.
+struct LineVertex {
+  LineKind kind = LineKind::Off;
+  bool isLocked = false;  ///< may not go in a step of LineMode::Alone, see Part::lockBeside()
+  /// The planes of lines that it lies on, kNone where there are fewer than three.
+  std::array<Index, 3> planes{kNone, kNone, kNone};
+
+  [[nodiscard]] int commonPlanes(const LineVertex& other) const {
+    int count = 0;
+    for (const Index plane : planes) {
+      for (const Index p : other.planes) count += plane != kNone && plane == p;
+    }
+    return count;
+  }
+};
+
+/// How lines are reduced. Lines lie in planes. Wherever they are reduced, a vertex of a line goes
+/// into a neighbour on its line under all guards, so that those left keep their places.
+enum class LineMode : std::uint8_t {
+  Free,   ///< together with the rest
+  Alone,  ///< and nothing else
+  Held    ///< not at all
+};
+
+/// A surface that is divided into regions, each on its own side of planes.
+///
+/// Regions meet in planes only, and no edge inside a region is made between two vertices of lines
+/// in one plane. So a region touches the planes around it in its lines alone, and is apart from its
+/// neighbours whatever is done inside.
+struct Regions {
+  std::vector<Index> ofTriangle;
+  Index count = 0;
+  /// For each vertex the planes of LineVertex; to be given for vertices on lines only.
+  std::vector<std::array<Index, 3>> planes;
+  /// Whether a vertex of a region that was at `a` or `b` may be at a place. Called from several
+  /// threads.
+  std::function<bool(Index region, Vec3f place, Vec3f a, Vec3f b)> mayHold;
+};
+
+}  // namespace tufa::reduce

@@ -1,0 +1,140 @@
+// Collapses at lines, the edges between regions: which vertex stays, and what a region may not do.
+//
+// A vertex of a line keeps its place. So the lines of a coarser mesh have a part of the vertices of
+// the finer one, and what a vertex went into is all that is needed to give a region the lines of
+// the coarser mesh: see chunks/chain/chunk_chain.h.
+
+#include <algorithm>
+#include <limits>
+
+#include "reduce/part.h"
+
+namespace tufa::reduce {
+void Part::loadLines(const Surface& surface) {
+  hasLines_ = surface.hasLines();
+  if (!hasLines_) return;
+  const auto vertices = partition_->vertices(number_);
+  const auto triangles = partition_->triangles(number_);
+  line_.resize(vertexCount_), region_.resize(triangleCount_);
+  for (Index i = 0; i < vertexCount_; ++i) line_[i] = surface.line[vertices[i]];
+  for (Index t = 0; t < triangleCount_; ++t) region_[t] = surface.region[triangles[t]];
+  wentInto_.clear();
+}
+
+void Part::storeLines(Surface& surface) const {
+  if (!hasLines_) return;
+  const auto vertices = partition_->vertices(number_);
+  for (Index i = 0; i < vertexCount_; ++i) surface.line[vertices[i]] = line_[i];
+  for (const auto& [from, to] : wentInto_) surface.into[from] = to;
+}
+
+// Whether the edge opposite a corner is between two regions.
+bool Part::isLineEdge(Index c) const {
+  return opposite_[c] != kNone && region_[c / 3] != region_[opposite_[c] / 3];
+}
+
+// Those of two neighbours, at least one of them on a line, that may stay; kNone for none.
+std::array<Index, 2> Part::keptAtLine(Index a, Index b) const {
+  const LineKind p = line_[a].kind, q = line_[b].kind;
+  if (p == LineKind::Off || q == LineKind::Off) {
+    if (limits_.lines == LineMode::Alone) return {kNone, kNone};
+    return {q == LineKind::Off ? a : b, kNone};
+  }
+  if (limits_.lines == LineMode::Held) return {kNone, kNone};
+  const auto mayGo = [&](Index v) { return line_[v].kind == LineKind::On && !line_[v].isLocked; };
+  return {mayGo(b) ? a : kNone, mayGo(a) ? b : kNone};
+}
+
+// The quadric error at the better one of the places that a collapse may have.
+float Part::errorAtLine(Index a, Index b, Vec3f place, const LocalQuadric& sum) const {
+  float least = std::numeric_limits<float>::infinity();
+  for (const Index kept : keptAtLine(a, b)) {
+    if (kept != kNone) least = std::min(least, std::max(0.0f, sum.at(position_[kept] - place)));
+  }
+  return least;
+}
+
+Outcome Part::tryCollapseAtLine(Index a, Index b) {
+  std::array<Index, 2> kept = keptAtLine(a, b);
+  Vec3f exact;
+  solve(a, b, exact, sum_);
+  const auto errorAt = [&](Index v) { return sum_.at(position_[v] - exact); };
+  if (kept[0] != kNone && kept[1] != kNone && errorAt(kept[1]) < errorAt(kept[0])) {
+    std::swap(kept[0], kept[1]);
+  }
+  const float most = limits_.errorShare * limits_.distance;
+  Outcome outcome = Outcome::Place;
+  for (const Index k : kept) {
+    if (k == kNone || !(errorAt(k) <= most * most * sum_.weight)) continue;
+    const Index gone = k == a ? b : a;
+    outcome = tryInto(k, gone);
+    if (outcome != Outcome::Done) continue;
+    sum_.moveBy(place_ - exact);
+    if (isOnLine(gone)) {
+      const auto sourceOf = [&](Index v) {
+        return surface_->source[partition_->vertices(number_)[v]];
+      };
+      wentInto_.push_back({sourceOf(gone), sourceOf(k)});
+      if (limits_.lines == LineMode::Alone) lockBeside(gone);
+    }
+    apply(k, gone);
+    for (int i = 0; i < size_; ++i) propose(k, ring_[i]);
+    return outcome;
+  }
+  return outcome;
+}
+
+Outcome Part::tryInto(Index kept, Index gone) {
+  if (!gatherRing(kept, gone)) return Outcome::Link;
+  if (isOnLine(kept) && isOnLine(gone)) {
+    if (region_[left_ / 3] == region_[right_ / 3]) return Outcome::Link;
+    // Where both other edges of a triangle that vanishes are of lines, it is the last of its
+    // region.
+    const auto isLast = [&](Index c) { return isLineEdge(c) && isLineEdge(nextCorner(c)); };
+    if (isLast(left_) || isLast(previousCorner(right_))) return Outcome::Link;
+  }
+  if (makesChord()) return Outcome::Link;
+  return tryPlace(kept, gone, position_[kept]);
+}
+
+// Whether an edge other than of a line would run from the vertex that stays to another one of a
+// line in the same plane, or one of a line where two planes meet or where such a chord was before.
+bool Part::makesChord() const {
+  const auto sourceOf = [&](Index v) { return surface_->source[partition_->vertices(number_)[v]]; };
+  // In a triangle that vanishes, a chord would become an edge of a line.
+  for (const int i : {0, split_}) {
+    if (isOnLine(ring_[i]) && surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) return true;
+  }
+  for (int i = split_ + 1; i < size_; ++i) {
+    if (!isOnLine(ring_[i]) || line_[kept_].commonPlanes(line_[ring_[i]]) == 0) continue;
+    if (region_[at_[i] / 3] == region_[at_[i - 1] / 3]) return true;
+    if (line_[kept_].commonPlanes(line_[ring_[i]]) > 1 ||
+        surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Triangles at a vertex that goes may not change in a second plane: then each triangle has two
+// forms, and what holds for all triangles in the one and in the other form holds for any mixture.
+// The vertices beside it on other planes are locked. Called while the ring is that of the collapse.
+void Part::lockBeside(Index gone) {
+  for (int i = 0; i < size_; ++i) {
+    if (i > 0 && i < split_) continue;  // beside the one that stays alone
+    LineVertex& line = line_[ring_[i]];
+    if (line.kind == LineKind::On && line.commonPlanes(line_[gone]) == 0) line.isLocked = true;
+  }
+}
+
+// Vertices on no line stay inside their region, the triangles' around them.
+bool Part::mayHold(Index a, Index b) const {
+  return isOnLine(a) || isOnLine(b) || !surface_->mayHold ||
+         surface_->mayHold(region_[left_ / 3], place_, position_[a], position_[b]);
+}
+
+bool Part::mayFlipAtLine(const Index* v) const {
+  return !isOnLine(v[0]) || !isOnLine(v[3]) || line_[v[0]].commonPlanes(line_[v[3]]) == 0;
+}
+
+}  // namespace tufa::reduce

@@ -1,0 +1,144 @@
+// The uniform mesh divided at the planes between chunks.
+
+#include "chunks/cut/cut_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "chunks/cut/flip_caps.h"
+#include "chunks/cut/join_vertices.h"
+#include "support/mesh_oracle.h"
+#include "support/model.h"
+
+namespace tufa::chunks {
+namespace {
+
+constexpr int kSize = 16;
+
+struct Cut {
+  test::ModelOf model;
+  CutMesh mesh;
+
+  explicit Cut(const openvdb::FloatGrid::Ptr& grid)
+      : model(grid), mesh(cutAtChunks(model.mesh(), model.model().affine(), kSize, model.job())) {}
+
+  [[nodiscard]] Vec3 latticeOf(VertexIndex v) const {
+    return model.model().affine().latticePoint(mesh.mesh.positions[v], Coord(0));
+  }
+};
+
+// Each triangle in its chunk, each vertex of two chunks on a plane, the surface as before.
+void expectDivided(const Cut& cut, double uniformArea) {
+  const CutMesh& mesh = cut.mesh;
+  const test::MeshTopology topology = test::inspect(mesh.mesh),
+                           before = test::inspect(cut.model.mesh());
+  EXPECT_TRUE(topology.closed()) << topology;
+  EXPECT_EQ(topology.euler(), before.euler());
+  EXPECT_EQ(topology.nonManifoldEdges + topology.nonManifoldVertices + topology.misorientedEdges,
+            0U);
+  EXPECT_NEAR(test::area(mesh.mesh), uniformArea, 2e-3 * uniformArea);
+  EXPECT_LT(mesh.moved, 0.02);
+  std::vector<std::set<std::uint32_t>> chunksAt(mesh.mesh.positions.size());
+  for (std::size_t t = 0; t < mesh.mesh.triangles.size(); ++t) {
+    const Coord& chunk = mesh.chunks[mesh.chunkOf[t]];
+    for (const VertexIndex v : mesh.mesh.triangles[t].vertices) {
+      chunksAt[v].insert(mesh.chunkOf[t]);
+      const Vec3 at = cut.latticeOf(v);
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(at[axis], kSize * chunk[axis] - 1e-9);
+        EXPECT_LE(at[axis], kSize * (chunk[axis] + 1) + 1e-9);
+      }
+    }
+  }
+  for (VertexIndex v = 0; v < chunksAt.size(); ++v) {
+    if (chunksAt[v].size() < 2) continue;
+    ASSERT_NE(mesh.planesOf[v][0], ChunkPlane::kNone);
+    const ChunkPlane& plane = mesh.planes[mesh.planesOf[v][0]];
+    EXPECT_NEAR(cut.latticeOf(v)[plane.axis], kSize * plane.at, 1e-9);
+  }
+  EXPECT_TRUE(std::is_sorted(mesh.chunks.begin(), mesh.chunks.end()));
+}
+
+TEST(CutMesh, DividesABall) {
+  const Cut cut(test::ballOf(21.3, 0.5));
+  EXPECT_EQ(cut.mesh.chunks.size(), 32U);  // those around the origin and beside them
+  expectDivided(cut, test::area(test::triangulated(cut.model.mesh())));
+}
+
+// Four of its faces lie in planes between chunks but for rounding.
+TEST(CutMesh, LeavesFacesInPlanesWhole) {
+  const Vec3 half(16, 16, 9.4);
+  const Cut cut(test::levelSetOf(24, 0.1, [&](const Vec3& p) {
+    double outside = 0, inside = -1e9;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double d = std::abs(p[axis]) - half[axis];
+      outside += std::max(d, 0.0) * std::max(d, 0.0), inside = std::max(inside, d);
+    }
+    return inside > 0 ? std::sqrt(outside) : inside;
+  }));
+  EXPECT_EQ(cut.mesh.chunks.size(), 8U);
+  expectDivided(cut, test::area(test::triangulated(cut.model.mesh())));
+}
+
+TEST(CutMesh, IsTheSameForAnyNumberOfThreads) {
+  const auto make = [](int threads) {
+    ContourOptions options;
+    base::Job job(threads, {});
+    CutMesh out;
+    job.run([&] {
+      const test::ModelOf model(test::ballOf(21.3, 0.5), options);
+      out = cutAtChunks(model.mesh(), model.model().affine(), kSize, job);
+    });
+    return out;
+  };
+  const CutMesh one = make(1), two = make(2);
+  EXPECT_TRUE(test::sameBytes(one.mesh, two.mesh));
+  EXPECT_EQ(one.chunkOf, two.chunkOf);
+}
+
+// A fan around the origin, of which one vertex is near its neighbour.
+TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
+  const std::vector<Vec3> points = {{0, 0, 1},  {1, 0, 0},     {0, 1, 0}, {-1, 0, 0},
+                                    {0, -1, 0}, {1e-5, -1, 0}, {0, 0, -1}};
+  const auto octahedron = [] {
+    return std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
+                                 {6, 2, 1}, {6, 3, 2}, {6, 4, 3}, {6, 5, 4}, {6, 1, 5}};
+  };
+  std::vector<Triangle> joined = octahedron();
+  const auto always = [](VertexIndex, VertexIndex) { return true; };
+  EXPECT_NEAR(joinNearVertices(points, 1e-3, always, joined), 1e-5, 1e-12);
+  EXPECT_EQ(joined.size(), 8U);
+  Mesh mesh;
+  mesh.positions.assign(points.begin(), points.end());
+  mesh.triangles = joined;
+  EXPECT_TRUE(test::inspect(mesh).closed());
+  EXPECT_EQ(test::inspect(mesh).nonManifoldEdges, 0U);
+  std::vector<Triangle> kept = octahedron();
+  const auto never = [](VertexIndex, VertexIndex) { return false; };
+  EXPECT_EQ(joinNearVertices(points, 1e-3, never, kept), 0);
+  EXPECT_EQ(kept, octahedron());
+  // An edge of a tetrahedron cannot go, however short.
+  const std::vector<Vec3> few = {{0, 0, 0}, {1e-5, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  EXPECT_EQ(joinNearVertices(few, 1e-3, always, tetrahedron), 0);
+  EXPECT_EQ(tetrahedron.size(), 4U);
+}
+
+// The vertex in the middle of an edge of a square's two triangles.
+TEST(FlipCaps, TurnsTheEdgeThatAVertexLiesOn) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, 1e-6, 0}};
+  std::vector<Triangle> triangles = {{0, 1, 2}, {1, 0, 3}};
+  flipCaps(points, 1e-4, triangles);
+  ASSERT_EQ(triangles.size(), 2U);
+  for (const Triangle& t : triangles) {
+    const Vec3 n = (points[t.vertices[1]] - points[t.vertices[0]])
+                       .cross(points[t.vertices[2]] - points[t.vertices[0]]);
+    EXPECT_NEAR(n[2], 2, 1e-4);  // half of what the two were
+  }
+}
+
+}  // namespace
+}  // namespace tufa::chunks

@@ -1,0 +1,197 @@
+// Lines between regions: what they keep while all around them is reduced.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "reduce/reduction.h"
+#include "support/mesh_oracle.h"
+#include "unit/reduce/meshes.h"
+
+namespace tufa::reduce {
+namespace {
+
+constexpr float kMiddle = 8;
+
+// A box that waves along x, with two regions, left and right of its middle plane.
+test::FineMesh wavingBox(float height) {
+  test::FineMesh box = test::subdivided(test::box(16, 16, 16), 5);
+  for (Vec3f& p : box.positions) p.z += height * std::sin(0.7f * p.y) * std::cos(0.5f * p.x);
+  return box;
+}
+
+Regions halvesOf(const test::FineMesh& mesh) {
+  Regions regions;
+  regions.count = 2;
+  for (const Triangle& t : mesh.triangles) {
+    float sum = 0;
+    for (const VertexIndex v : t.vertices) sum += mesh.positions[v].x;
+    regions.ofTriangle.push_back(sum < 3 * kMiddle ? 0 : 1);
+  }
+  for (const Vec3f& p : mesh.positions) {
+    regions.planes.push_back({p.x == kMiddle ? 0 : kNone, kNone, kNone});
+  }
+  regions.mayHold = [](Index region, Vec3f place, Vec3f, Vec3f) {
+    return region == 0 ? place.x < kMiddle : place.x > kMiddle;
+  };
+  return regions;
+}
+
+struct Reducer {
+  test::FineMesh input;
+  base::Job job{1, {}};
+  Reduction reduction;
+
+  explicit Reducer(test::FineMesh mesh)
+      : input(std::move(mesh)), reduction(input.view(), input.view(), {}, {}, {}, job) {
+    reduction.setRegions(halvesOf(input));
+  }
+
+  [[nodiscard]] std::set<Index> lineSources() const {
+    const Surface surface = reduction.surface();
+    std::set<Index> sources;
+    for (Index v = 0; v < surface.line.size(); ++v) {
+      if (surface.line[v].kind != LineKind::Off) sources.insert(surface.source[v]);
+    }
+    return sources;
+  }
+};
+
+void expectWhole(const ReducedMesh& mesh) {
+  const Mesh out = test::toMesh(mesh.positions, mesh.triangles);
+  const test::MeshTopology topology = test::inspect(out);
+  EXPECT_TRUE(topology.closed() && topology.manifold()) << topology;
+  EXPECT_EQ(topology.euler(), 2);
+  EXPECT_EQ(test::intersectingPairs(out), 0U);
+}
+
+// Each triangle on its side, and the line where they meet made of vertices of the input.
+void expectApart(const Reducer& reducer) {
+  const ReducedMesh mesh = reducer.reduction.mesh();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const VertexIndex v : mesh.triangles[t].vertices) {
+      const float x = mesh.positions[v].x;
+      EXPECT_TRUE(mesh.regions[t] == 0 ? x <= kMiddle : x >= kMiddle) << x;
+    }
+  }
+  for (const Index source : reducer.lineSources()) {
+    ASSERT_NE(source, kNone);
+    EXPECT_EQ(reducer.input.positions[source].x, kMiddle);
+  }
+}
+
+TEST(Lines, CoarsenWithTheSurfaceAndStayInTheirPlane) {
+  Reducer box(test::subdivided(test::box(16, 16, 16), 5));
+  const std::size_t before = box.lineSources().size();
+  box.reduction.toTolerance(0.1f);
+  expectWhole(box.reduction.mesh());
+  expectApart(box);
+  EXPECT_GT(before, 60U);
+  EXPECT_LE(box.lineSources().size(), 6U);  // four corners are needed
+  EXPECT_LE(box.reduction.triangleCount(), 28U);
+}
+
+TEST(Lines, FollowTheToleranceOnCurvedSurface) {
+  Reducer box(wavingBox(0.8f));
+  std::size_t vertices = box.lineSources().size();
+  std::set<Index> before = box.lineSources();
+  for (const float tolerance : {0.02f, 0.1f, 0.4f}) {
+    box.reduction.toTolerance(tolerance);
+    EXPECT_LE(box.reduction.certificate().largest, tolerance);
+    expectWhole(box.reduction.mesh());
+    expectApart(box);
+    const std::set<Index> now = box.lineSources();
+    EXPECT_LT(now.size(), vertices);
+    for (const Index source : now) EXPECT_TRUE(before.contains(source));
+    vertices = now.size();
+    before = now;
+  }
+  const std::vector<float>& ofRegion = box.reduction.certificate().ofRegion;
+  ASSERT_EQ(ofRegion.size(), 2U);
+  EXPECT_EQ(std::max(ofRegion[0], ofRegion[1]), box.reduction.certificate().largest);
+}
+
+// What a step of lines alone makes is the mesh before with other vertices on its lines.
+TEST(Lines, ReducedAloneChangeVertexNumbersOnly) {
+  Reducer box(wavingBox(0.8f));
+  box.reduction.toTolerance(0.02f);
+  const ReducedMesh before = box.reduction.mesh();
+  const std::set<Index> lines = box.lineSources();
+  box.reduction.toTolerance(0.3f, LineMode::Alone);
+  const ReducedMesh after = box.reduction.mesh();
+  EXPECT_LT(box.lineSources().size(), lines.size());
+  expectWhole(after);
+  const std::vector<Index>& into = box.reduction.wentInto();
+  const auto placeOf = [](const Vec3f& p) { return std::array{p.x, p.y, p.z}; };
+  const auto keyOf = [&](const std::array<Vec3f, 3>& p) {
+    return std::multiset{placeOf(p[0]), placeOf(p[1]), placeOf(p[2])};
+  };
+  std::multiset<std::multiset<std::array<float, 3>>> expected, found;
+  for (const Triangle& t : before.triangles) {
+    std::array<Vec3f, 3> p;
+    std::set<std::array<float, 3>> different;
+    for (std::size_t i = 0; i < 3; ++i) {
+      p[i] = before.positions[t.vertices[i]];
+      Index source = before.sources[t.vertices[i]];
+      if (source != kNone && lines.contains(source)) {
+        while (into[source] != source) source = into[source];
+        p[i] = box.input.positions[source];
+      }
+      different.insert(placeOf(p[i]));
+    }
+    if (different.size() == 3) expected.insert(keyOf(p));
+  }
+  for (const Triangle& t : after.triangles) {
+    found.insert(keyOf({after.positions[t.vertices[0]], after.positions[t.vertices[1]],
+                        after.positions[t.vertices[2]]}));
+  }
+  EXPECT_EQ(expected, found);
+}
+
+TEST(Lines, AreHeldWhileTheRestIsReduced) {
+  Reducer box(wavingBox(0.8f));
+  box.reduction.toTolerance(0.3f, LineMode::Held);
+  EXPECT_EQ(box.lineSources().size(), Reducer(wavingBox(0.8f)).lineSources().size());
+  EXPECT_LT(box.reduction.triangleCount(), box.input.triangles.size() / 8);
+  expectWhole(box.reduction.mesh());
+}
+
+TEST(Lines, KeepTheVerticesThatAreLocked) {
+  Reducer box(wavingBox(0.2f));
+  const std::set<Index> before = box.lineSources();
+  box.reduction.lockLines(std::vector<std::uint8_t>(box.input.positions.size(), 1));
+  box.reduction.toTolerance(0.3f, LineMode::Alone);
+  EXPECT_EQ(box.lineSources(), before);
+  box.reduction.lockLines({});
+  box.reduction.toTolerance(0.3f, LineMode::Alone);
+  EXPECT_LT(box.lineSources().size(), before.size() / 4);
+}
+
+// The middle region is a cap whose only line has three vertices when it is as coarse as can be.
+TEST(Lines, NeverVanishWithTheirRegion) {
+  test::FineMesh ball = test::subdivided(test::octahedron(8), 4);
+  for (Vec3f& p : ball.positions) p = unit(p) * 8;
+  Regions regions;
+  regions.count = 2;
+  regions.planes.assign(ball.positions.size(), {kNone, kNone, kNone});
+  for (const Triangle& t : ball.triangles) {
+    float sum = 0;
+    for (const VertexIndex v : t.vertices) sum += ball.positions[v].z;
+    regions.ofTriangle.push_back(sum > 3 * 7.2f ? 1 : 0);
+  }
+  base::Job job(1, {});
+  Reduction reduction(ball.view(), ball.view(), {}, {}, {}, job);
+  reduction.setRegions(regions);
+  for (const float tolerance : {0.5f, 2.0f, 6.0f}) {
+    reduction.toTolerance(tolerance, LineMode::Alone);
+    reduction.toTolerance(tolerance, LineMode::Held);
+    const std::vector<Index> left = reduction.mesh().regions;
+    EXPECT_EQ(std::set<Index>(left.begin(), left.end()).size(), 2U) << tolerance;
+  }
+}
+
+}  // namespace
+}  // namespace tufa::reduce
