@@ -65,28 +65,32 @@ class Halving {
     const float size = std::sqrt(
         std::max({squaredLength(p[0] - m), squaredLength(p[1] - m), squaredLength(p[2] - m)}));
     if (length(m - about_.middle) > size + about_.radius) return 0;
-    float best = kFar, low[3] = {kFar, kFar, kFar}, middle = kFar;
     std::vector<float> away(candidates.size());
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
+    for (std::size_t k = 0; k < candidates.size(); ++k) away[k] = distance_(m, candidates[k]);
+    const auto nearest = std::min_element(away.begin(), away.end());
+    if (*nearest + size <= expected_) return *nearest + size;  // no distance grows faster
+    std::vector<Index> close{candidates[static_cast<std::size_t>(nearest - away.begin())]};
+    for (std::size_t k = 0; k < candidates.size(); ++k) {  // others are nowhere the nearest
+      if (away[k] <= *nearest + 2 * size && candidates[k] != close[0]) {
+        close.push_back(candidates[k]);
+      }
+    }
+    const bool isLast = depth >= kDepth;
+    float best = kFar, low[3] = {kFar, kFar, kFar};
+    for (const Index candidate : close) {
       float most = 0;
       for (std::size_t i = 0; i < 3; ++i) {
-        const float at = distance_(p[i], candidates[k]);
+        const float at = distance_(p[i], candidate);
         most = std::max(most, at);
         low[i] = std::min(low[i], at);
       }
       best = std::min(best, most);
-      away[k] = distance_(m, candidates[k]);
-      middle = std::min(middle, away[k]);
+      if (best <= expected_) return best;
     }
+    if (isLast) return best;
     const float lowest = std::max({low[0], low[1], low[2]});
     const bool isInside = length(m - about_.middle) + size <= about_.radius + 1;
-    if (best <= expected_ || depth >= kDepth) return best;
     if (isInside && best <= kTight * lowest + kTightVoxels) return best;
-    if (middle + size <= expected_) return middle + size;  // no distance grows faster than the way
-    std::vector<Index> close;
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-      if (away[k] <= middle + 2 * size) close.push_back(candidates[k]);
-    }
     return std::min(best, worstOfQuarters(p, close, depth + 1));
   }
 

@@ -15,14 +15,14 @@ constexpr float kLeastCell = 2.5f;
 constexpr double kMostCells = 65536;
 // Normals that look so far apart have no common direction.
 constexpr float kOpposite = -0.93f;
-constexpr int kDepth = 24;
 
 using List = std::vector<Index>;
 
 struct Item {
   Vec3f normal;
-  Box3f box;  // grown by the reach
-  Vec3f at;   // a point of the triangle
+  Box3f box;
+  Box3f grown;  // by the reach
+  Vec3f at;     // a point of the triangle
   Index triangle;
 };
 
@@ -39,8 +39,9 @@ class Neighbourhood {
       Box3f box = boxOf(p);
       bounds.add(box);
       sizes += length(box.upper - box.lower);
-      box.growBy(reach_);
-      items_.push_back({unit(cross(p[1] - p[0], p[2] - p[0])), box, p[0], t});
+      Box3f grown = box;
+      grown.growBy(reach_);
+      items_.push_back({unit(cross(p[1] - p[0], p[2] - p[0])), box, grown, p[0], t});
     }
     if (items_.empty()) return;
     bounds.lower = maxVec3f(bounds.lower, within.lower);
@@ -56,7 +57,7 @@ class Neighbourhood {
     int count[3];
   };
 
-  // Into cells of a few triangles' size at once, then by halving where that is not enough.
+  // By cells of a few triangles' size.
   void lookInCells(const Box3f& bounds, float size) {
     const Vec3f d = maxVec3f(bounds.upper - bounds.lower, Vec3f());
     const auto countAlong = [&](int axis) { return static_cast<int>(d[axis] / size) + 1; };
@@ -81,7 +82,7 @@ class Neighbourhood {
       Box3f box;
       box.lower = bounds.lower + at * size;
       box.upper = box.lower + Vec3f(size, size, size);
-      halve(list, box, 0);
+      lookAt(list, box);
     }
   }
 
@@ -90,9 +91,9 @@ class Neighbourhood {
   void forCells(const Cells& cells, const Item& item, F&& f) const {
     int from[3], to[3];
     for (int i = 0; i < 3; ++i) {
-      from[i] = std::max(0, static_cast<int>((item.box.lower[i] - cells.lower[i]) / cells.size));
+      from[i] = std::max(0, static_cast<int>((item.grown.lower[i] - cells.lower[i]) / cells.size));
       to[i] = static_cast<int>(std::min(static_cast<float>(cells.count[i] - 1),
-                                        (item.box.upper[i] - cells.lower[i]) / cells.size));
+                                        (item.grown.upper[i] - cells.lower[i]) / cells.size));
     }
     const Vec3f n = item.normal;
     const float half = 0.5f * cells.size * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) + reach_;
@@ -130,40 +131,18 @@ class Neighbourhood {
     return false;
   }
 
-  void halve(const List& list, const Box3f& box, int depth) {
+  // Marks the triangles that pass a cell and do not make one sheet with those within the reach.
+  void lookAt(const List& list, const Box3f& cell) {
     if (list.size() < 2 || isOneSheet(list)) return;
-    const Vec3f d = box.upper - box.lower;
-    const float longest = std::max({d.x, d.y, d.z});
-    if (longest <= 3 * reach_ || depth >= kDepth) {
-      for (const Index i : list) mark(items_[i].triangle);
-      return;
-    }
-    for (int k = 0; k < 8; ++k) {
-      Box3f child = box;
-      bool isEmpty = false;
-      for (int i = 0; i < 3; ++i) {  // along the longest extents only
-        const float middle = 0.5f * (box.lower[i] + box.upper[i]);
-        const bool isUpper = (k >> i & 1) != 0;
-        if (d[i] > 0.6f * longest) {
-          (isUpper ? child.lower : child.upper)[i] = middle;
-        } else {
-          isEmpty |= isUpper;
-        }
-      }
-      if (!isEmpty) halve(select(list, child), child, depth + 1);
-    }
-  }
-
-  List select(const List& list, const Box3f& box) const {
-    List inside;
-    const Vec3f m = (box.lower + box.upper) * 0.5f, h = (box.upper - box.lower) * 0.5f;
     for (const Index i : list) {
-      const Item& item = items_[i];
-      const Vec3f n = item.normal;
-      const float half = std::abs(n.x) * h.x + std::abs(n.y) * h.y + std::abs(n.z) * h.z + reach_;
-      if (std::abs(dot(n, m - item.at)) <= half && box.meets(item.box)) inside.push_back(i);
+      const Item& own = items_[i];
+      if (!cell.meets(own.box)) continue;
+      near_.assign(1, i);
+      for (const Index k : list) {
+        if (k != i && own.box.meets(items_[k].grown)) near_.push_back(k);
+      }
+      if (!isOneSheet(near_)) mark(own.triangle);
     }
-    return inside;
   }
 
   // Triangles that reach into several parts are marked by several threads.
@@ -176,6 +155,7 @@ class Neighbourhood {
   Surface& surface_;
   float reach_;
   std::vector<Item> items_;
+  List near_;
 };
 
 }  // namespace

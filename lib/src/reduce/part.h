@@ -135,6 +135,7 @@ class Part {
   bool apexNear(Index a, Index b);
   bool crossingsNear();
   bool edgeNear(Index face, const ReferenceMesh::Section& section, Index end);
+  void noteFacesBetween(Index face, Index vertex);
   [[nodiscard]] bool isBelow(Index face, Index vertex, Vec3f axis) const;
   bool facesNear();
   [[nodiscard]] bool faceNear(Index face) const;

@@ -148,11 +148,13 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
   const Vec3f z = section.along;
   const float scale = 1 / squaredLength(z);
   const float close2 = std::min(kArrived * kArrived, 4 * squaredDistance_);
+  const bool isFlip = flip_[0] != kNone;  // of an edge that is nearly flat
   bool hasArrived = false, isFar = false;
   Index last = face;
   const auto isNear = [&](Index crossed, Vec3f m, Vec3f right, Vec3f left) {
     last = crossed;
-    if (reference_->isHeld(crossed)) roughFaces_.push_back(crossed);
+    const bool isLooked = isFlip ? reference_->isHeld(crossed) : reference_->isRoughFace(crossed);
+    if (isLooked) roughFaces_.push_back(crossed);
     const float share = std::clamp(dot(m, z) * scale, 0.0f, 1.0f);
     const bool ok = squaredLength(m - z * share) <= squaredDistance_ ||
                     squaredDistanceOfSegments(right, left, {}, z) <= squaredDistance_;
@@ -160,10 +162,24 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
     hasArrived |= ok && squaredLength(m - z) <= close2;
     return ok;
   };
-  if (!reference_->follow(face, section, isNear) && !hasArrived && (isFar || !limits_.isLoose)) {
-    return false;
+  if (!reference_->follow(face, section, isNear)) {
+    if (!hasArrived && (isFar || !limits_.isLoose)) return false;
+    if (!limits_.isLoose) noteFacesBetween(last, end);
   }
   return (flags_[end] & kNarrow) == 0 || limits_.isLoose || isBelow(last, end, section.axis);
+}
+
+// Where a walk has ended near a vertex but not at it: the faces that it did not pass.
+void Part::noteFacesBetween(Index face, Index vertex) {
+  for (const Index f : {face, face_[vertex]}) {
+    if (f == kNone) continue;
+    for (const Index v : reference_->faces()[f].vertex) {
+      reference_->allAround(v, [&](Index around) {
+        roughFaces_.push_back(around);
+        return true;
+      });
+    }
+  }
 }
 
 // Whether a vertex is over the sheet of the reference that a face is on: a way along an edge may

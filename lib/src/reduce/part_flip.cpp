@@ -13,6 +13,7 @@ constexpr float kBetter = 1.2f;      // by this factor the squared sine must gro
 constexpr float kFlipTurnCosine = 0.9f;
 constexpr float kFlipFoldCosine = -0.5f;
 constexpr float kLeastLength = 1e-6f;
+constexpr float kNoSliver2 = 0.0025f;  // of a cross product, in squared voxels, squared
 
 }  // namespace
 
@@ -47,7 +48,12 @@ Outcome Part::tryFlip(Index c) {
   const float l0 = length(n0), l1 = length(n1);
   if (!(l0 > kLeastLength && l1 > kLeastLength)) return Outcome::Flat;
   const Vec3f n[2] = {n0 * (1 / l0), n1 * (1 / l1)};
-  const Vec3f old = unit(cross(u - y, w - y) + cross(w - x, u - x));
+  const Vec3f o0 = cross(u - y, w - y), o1 = cross(w - x, u - x);
+  // What turns that far at the edge is a shape of the solid, which would be lost.
+  if (dot(o0, o1) < 0 && std::min(squaredLength(o0), squaredLength(o1)) > kNoSliver2) {
+    return Outcome::Turn;
+  }
+  const Vec3f old = unit(o0 + o1);
   if (!(dot(n[0], n[1]) >= kFlipTurnCosine && dot(n[0], old) >= kFlipTurnCosine &&
         dot(n[1], old) >= kFlipTurnCosine)) {
     return Outcome::Turn;

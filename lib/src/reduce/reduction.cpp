@@ -89,7 +89,6 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
       surface_ = surfaceOf(reference_, options_, job_);
     }
   }
-  attempt_ = 0;
   reference_.releaseAll();
   reference_.setScales(scales);
 }
@@ -164,6 +163,7 @@ void Reduction::buildParts() {
 // Growing tolerances, in small steps once the count is near: each is spent before the next one, so
 // the error at the count is at most a step over that of the tolerance that gives as many triangles.
 float Reduction::toCount(Index count, float mostTolerance) {
+  attempt_ = 0;
   float tolerance = std::max(tolerance_, kFirstTolerance);
   trees_.clear(), nextTree_ = 0;
   for (int stuck = 0;;) {

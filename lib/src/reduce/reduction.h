@@ -108,6 +108,8 @@ class Reduction {
   void measure(float expected);
   /// What was measured last. A mesh that is still the reference has a certificate of 0.
   [[nodiscard]] const Certificate& certificate() const { return certificate_; }
+  /// How often the mesh was reduced to the last tolerance.
+  [[nodiscard]] int attempts() const { return attempt_ + 1; }
   [[nodiscard]] ReducedMesh mesh() const;
   /// For each vertex of the input where it has gone along lines in the last step of LineMode::Alone
   /// or LineMode::Free, at once: a vertex that may have gone on in turn. Itself if it has not.
@@ -140,7 +142,7 @@ class Reduction {
   bool isReference_;                                 ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance
   std::size_t nextTree_ = 0;
-  int attempt_ = 0;  ///< at the present tolerance
+  int attempt_ = 0;  ///< at the present tolerance, from 0 on
   LineMode lines_ = LineMode::Free;
   std::vector<std::uint8_t> stay_;  ///< see lockLines()
   int phaseNumber_ = 0;

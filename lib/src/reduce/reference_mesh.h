@@ -44,6 +44,11 @@ class ReferenceMesh {
     const auto& v = faces_[face].vertex;
     return ((rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) & kHeld) != 0;
   }
+  /// Whether a vertex of a face is rough.
+  [[nodiscard]] bool isRoughFace(Index face) const {
+    const auto& v = faces_[face].vertex;
+    return (rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) != 0;
+  }
   /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
   /// what is seen along one axis may not be all.
   [[nodiscard]] bool isRough(Index vertex) const { return rough_[vertex] != 0; }

@@ -133,7 +133,7 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
   const reduce::Certificate certificate = reduction_->certificate();
   adaptive.largestError = static_cast<double>(certificate.largest);
   adaptive.meanError = static_cast<double>(certificate.mean);
-  adaptive.rounds = 1;
+  adaptive.rounds = reduction_->attempts();
   reduce::ReducedMesh reduced = reduction_->mesh();
   ExtractedMesh& extracted = adaptive.extracted;
   Mesh& mesh = extracted.mesh;

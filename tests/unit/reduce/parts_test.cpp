@@ -248,7 +248,8 @@ std::size_t marksOfPlate(float thickness, float reach) {
 }
 
 TEST(Clearance, MarksSurfaceThatOtherSurfaceIsNear) {
-  EXPECT_GT(marksOfPlate(1, 0.8f), 50U);
+  EXPECT_GT(marksOfPlate(1, 1.2f), 50U);
+  EXPECT_EQ(marksOfPlate(1, 0.8f), 0U);
   EXPECT_GT(marksOfPlate(0.05f, 0.4f), 50U);
   EXPECT_EQ(marksOfPlate(6, 0.4f), 0U);
 }
