@@ -135,14 +135,19 @@ class Neighbourhood {
   void lookAt(const List& list, const Box3f& cell) {
     if (list.size() < 2 || isOneSheet(list)) return;
     for (const Index i : list) {
-      const Item& own = items_[i];
-      if (!cell.meets(own.box)) continue;
-      near_.assign(1, i);
-      for (const Index k : list) {
-        if (k != i && own.box.meets(items_[k].grown)) near_.push_back(k);
-      }
-      if (!isOneSheet(near_)) mark(own.triangle);
+      if (cell.meets(items_[i].box) && !isOneSheetAround(i, list)) mark(items_[i].triangle);
     }
+  }
+
+  bool isOneSheetAround(Index i, const List& list) {
+    const Item& own = items_[i];
+    near_.assign(1, i);
+    for (const Index k : list) {
+      if (k == i || !own.box.meets(items_[k].grown)) continue;
+      if (dot(own.normal, items_[k].normal) < kOpposite) return false;
+      near_.push_back(k);
+    }
+    return isOneSheet(near_);
   }
 
   // Triangles that reach into several parts are marked by several threads.

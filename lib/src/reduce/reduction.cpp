@@ -74,6 +74,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   if (tolerance < kLeastTolerance) return;
   lines_ = lines;
   const std::vector<float> scales = reference_.scales();
+  const float toleranceBefore = tolerance_;
   std::optional<Surface> before;
   if (!isReference_ || surface_.hasLines()) before = surface_;
   trees_.clear();
@@ -83,6 +84,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     measure(tolerance_);
     if (certificate_.beyond.empty() || attempt_ == options_.attempts) break;
     reference_.hold(certificate_.beyond, kHeldTolerances * tolerance + kHeldVoxels);
+    tolerance_ = toleranceBefore;
     if (before) {
       surface_ = *before;
     } else {
