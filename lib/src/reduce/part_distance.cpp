@@ -144,6 +144,7 @@ bool Part::crossingsNear() {
 // then is enough that it came near it, as all triangles around the end have that in common. The end
 // is at the vertex `end`.
 bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end) {
+  constexpr float kFarTolerance = 0.25f;  // voxels; with a larger one a walk may stray anywhere
   constexpr float kArrived = 0.5f;  // voxels from the end, and twice the distance allowed
   const Vec3f z = section.along;
   const float scale = 1 / squaredLength(z);
@@ -166,7 +167,8 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
     if (!hasArrived && (isFar || !limits_.isLoose)) return false;
     if (!limits_.isLoose) noteFacesBetween(last, end);
   }
-  return (flags_[end] & kNarrow) == 0 || limits_.isLoose || isBelow(last, end, section.axis);
+  const bool mayStray = (flags_[end] & kNarrow) != 0 || limits_.distance > kFarTolerance;
+  return !mayStray || limits_.isLoose || isBelow(last, end, section.axis);
 }
 
 // Where a walk has ended near a vertex but not at it: the faces that it did not pass.

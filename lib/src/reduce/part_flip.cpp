@@ -13,7 +13,6 @@ constexpr float kBetter = 1.2f;      // by this factor the squared sine must gro
 constexpr float kFlipTurnCosine = 0.9f;
 constexpr float kFlipFoldCosine = -0.5f;
 constexpr float kLeastLength = 1e-6f;
-constexpr float kNoSliver2 = 0.0025f;  // of a cross product, in squared voxels, squared
 
 }  // namespace
 
@@ -50,7 +49,7 @@ Outcome Part::tryFlip(Index c) {
   const Vec3f n[2] = {n0 * (1 / l0), n1 * (1 / l1)};
   const Vec3f o0 = cross(u - y, w - y), o1 = cross(w - x, u - x);
   // What turns that far at the edge is a shape of the solid, which would be lost.
-  if (dot(o0, o1) < 0 && std::min(squaredLength(o0), squaredLength(o1)) > kNoSliver2) {
+  if (dot(o0, o1) < 0 && std::min(squaredLength(o0), squaredLength(o1)) > kTinyFace2) {
     return Outcome::Turn;
   }
   const Vec3f old = unit(o0 + o1);
@@ -86,7 +85,9 @@ bool Part::flipStars(const Index* v, const Vec3f* n) {
   const Index outer[4] = {previousCorner(c), nextCorner(d), nextCorner(c), previousCorner(d)};
   for (int k = 0; k < 4; ++k) {
     const Vec3f m = outerNormal(outer[k]);
-    if (dot(n[k / 2], m) < kFlipFoldCosine * length(m)) return false;
+    if (squaredLength(m) > kTinyFace2 && dot(n[k / 2], m) < kFlipFoldCosine * length(m)) {
+      return false;
+    }
   }
   newAxes_ = 0;
   for (int k = 0; k < 4; ++k) {

@@ -77,7 +77,7 @@ Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
         leastSine2(area2Was, squaredLength(x - old), squaredLength(y - old), squaredLength(y - x));
     const bool keeps =
         turn > 0 && turn * turn >= limits_.turnCosine * limits_.turnCosine * area2Was;
-    if (!keeps && then > kNoNormal && !(isGraph_ && wasFolded(was, area2Was)) &&
+    if (!keeps && then > kNoNormal && area2Was > kTinyFace2 && !(isGraph_ && wasFolded(was, area2Was)) &&
         isOn(Outcome::Turn)) {
       return Outcome::Turn;
     }
@@ -94,6 +94,7 @@ Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
     newSlivers_ -= then < limit;
   }
   if (after >= std::min(limit, before) || !isOn(Outcome::Round)) return Outcome::Done;
+  if (newSlivers_ < 0 && after >= kWorstSine2) return Outcome::Done;
   const bool isFew = static_cast<float>(sliverCount_ + newSlivers_) <=
                      limits_.sliverShare * static_cast<float>(alive_);
   return isFew && after >= kWorstSine2 ? Outcome::Done : Outcome::Round;
@@ -108,16 +109,23 @@ Vec3f Part::outerNormal(Index c) const {
 }
 
 // The edges of the new star: the spokes and the ring. A sharper turn than kFoldCosine passes only
-// where the old star had one as sharp, which it has on a wedge of the solid.
+// where the old star had one as sharp, which it has on a wedge of the solid. Faces without area to
+// speak of, as between vertices that stand close together on a crease, make no fold that shows;
+// what would cross is the business of the star guards.
 bool Part::foldGuard(Index a, Index b) const {
   constexpr float kFoldCosine2 = 0.6f;  // less than the square, so that the root is seldom taken
   constexpr float kSlack = 0.01f;
   float sharpest = 1;
+  const auto isTiny = [&](int i) {
+    return squaredLength(cross(spoke_[i], spoke_[i + 1])) <= kTinyFace2;
+  };
   for (int i = 0; i < size_; ++i) {
-    sharpest = std::min(sharpest, dot(normal_[i], normal_[i == 0 ? size_ - 1 : i - 1]));
+    if (isTiny(i)) continue;
+    const int last = i == 0 ? size_ - 1 : i - 1;
+    if (!isTiny(last)) sharpest = std::min(sharpest, dot(normal_[i], normal_[last]));
     const Vec3f outer = outerNormal(at_[i]);
-    const float cosine = dot(normal_[i], outer);
-    if (cosine < 0 && cosine * cosine > kFoldCosine2 * squaredLength(outer)) {
+    const float cosine = dot(normal_[i], outer), outer2 = squaredLength(outer);
+    if (cosine < 0 && outer2 > kTinyFace2 && cosine * cosine > kFoldCosine2 * outer2) {
       sharpest = std::min(sharpest, cosine / length(outer));
     }
   }

@@ -19,6 +19,8 @@ inline constexpr float kLeastCosine = 0.2f;
 inline constexpr float kFoldCosine = -0.8f;
 /// And by less than this, 170 degrees, where the star was as sharp before, as on a thin wedge.
 inline constexpr float kSharpestCosine = -0.985f;
+/// Square of a cross product of two edges: faces of less than 0.02 square voxels make no fold.
+inline constexpr float kTinyFace2 = 0.0016f;
 /// Most corners of a link that is looked at.
 inline constexpr int kMostRing = 48;
 

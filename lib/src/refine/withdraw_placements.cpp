@@ -70,7 +70,10 @@ class PlacementGuard {
   Withdrawal run() {
     steps_.assign(mesh_.positions.size(), 0);
     moved_.assign(mesh_.positions.size(), 0);
-    if (withdrawFrom(findCoincident())) splitAgain();
+    if (withdrawFrom(findCoincident())) {
+      splitAgain();
+      findTouched();
+    }
     for (int round = 0; round < kMostRounds; ++round) {
       const std::vector<Conflict> conflicts = findConflicts(round == 0);
       std::fill(moved_.begin(), moved_.end(), 0);
