@@ -42,6 +42,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addLodCommand(app, chosen);
   addChunksCommand(app, chosen);
   addCheckCommand(app, chosen);
+  addRepairCommand(app, chosen);
   addHelpCommand(app, chosen);
 }
 

@@ -24,6 +24,7 @@ void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);
 void addChunksCommand(CLI::App& app, Command& chosen);
 void addCheckCommand(CLI::App& app, Command& chosen);
+void addRepairCommand(CLI::App& app, Command& chosen);
 void addHelpCommand(CLI::App& app, Command& chosen);
 
 /// Declares `--threads`, which all of them have.

@@ -2,6 +2,7 @@
 #include <tufa/check.h>
 
 #include <tufa/error.h>
+#include <tufa/repair.h>
 
 #include "checker.h"
 
@@ -26,6 +27,10 @@ DistanceReport checkAgainst(const Mesh& /*mesh*/, const openvdb::GridBase& /*gri
 
 std::vector<double> distancesTo(const Mesh& /*mesh*/, const std::vector<Position>& /*points*/,
                                 const DistanceOptions& /*options*/) {
+  refuse();
+}
+
+Mesh repair(const Mesh& /*mesh*/, const RepairOptions& /*options*/, RepairReport* /*report*/) {
   refuse();
 }
 

@@ -258,5 +258,21 @@ TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
   EXPECT_EQ(run("mesh s.vdb -o m.ply --method mc --ambiguity original --quiet").exitCode, 0);
 }
 
+TEST_F(Usage, RepairMakesASoupWatertightOrSaysWhatIsLeft) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o m.stl --quiet").exitCode, 0);  // a format without shared vertices
+  const Outcome whole = run("repair m.stl -o r.ply --json");
+  EXPECT_EQ(whole.exitCode, 0) << whole.err;
+  const Json json = Json::parse(whole.out);
+  EXPECT_EQ(json["after"]["watertight"], true);
+  EXPECT_EQ(json["kept_input"], false);
+  writeBytes(folder / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome open = run("repair t.obj -o r.ply");
+  EXPECT_EQ(open.exitCode, 1);
+  EXPECT_NE(open.out.find("3 boundary edges"), std::string::npos) << open.out;
+  expectFailure("repair m.stl -o m.stl", 2, "m.stl");
+  expectFailure("repair m.stl -o n.ply --fill -1", 2, "holes");
+}
+
 }  // namespace
 }  // namespace tufa

@@ -1,0 +1,74 @@
+#include <tufa/repair.h>
+
+#include <tufa/error.h>
+#include <cmath>
+#include <string>
+
+#include "check/mend.h"
+
+namespace tufa {
+namespace {
+
+// Shares of the call's progress.
+constexpr double kBeforeEnd = 0.3, kMendEnd = 0.7;
+
+void requireOptions(const RepairOptions& options) {
+  if (!(options.mergeDistance >= 0) || !std::isfinite(options.mergeDistance)) {
+    throw Error(ErrorCode::InvalidArgument, "the merge distance is " +
+                                                std::to_string(options.mergeDistance) +
+                                                ", must be 0 or a finite number above it");
+  }
+  if (options.fillEdges < 0) {
+    throw Error(ErrorCode::InvalidArgument, "the edges of holes to fill are " +
+                                                std::to_string(options.fillEdges) +
+                                                ", must be 0 or more");
+  }
+}
+
+/// A part of the progress of the call.
+Progress partOf(const Progress& progress, double begin, double end) {
+  if (!progress) return nullptr;
+  return [&progress, begin, end](std::string_view stage, double fraction) {
+    return progress(stage, begin + (end - begin) * fraction);
+  };
+}
+
+std::size_t faultsOf(const CheckReport& report) {
+  return report.boundaryEdges + report.nonManifoldEdges + report.nonManifoldVertices +
+         report.misorientedEdges + report.invalidFaces + report.collapsedFaces +
+         report.duplicateFaces;
+}
+
+CheckReport checked(const Mesh& mesh, const RepairOptions& options, double begin, double end) {
+  CheckOptions checks;
+  checks.threads = options.threads;
+  checks.progress = partOf(options.progress, begin, end);
+  return check(mesh, checks);
+}
+
+}  // namespace
+
+Mesh repair(const Mesh& mesh, const RepairOptions& options, RepairReport* report) {
+  requireOptions(options);
+  RepairReport own;
+  RepairReport& out = report != nullptr ? *report : own;
+  out = {};
+  out.before = checked(mesh, options, 0, kBeforeEnd);
+  const Progress mending = partOf(options.progress, kBeforeEnd, kMendEnd);
+  Mesh mended = checks::mend(mesh, options, out, [&](double done) {
+    if (mending && !mending("repair", done))
+      throw Error(ErrorCode::Cancelled, "cancelled by the caller");
+  });
+  out.after = checked(mended, options, kMendEnd, 1);
+  // Never a worse mesh than the input; nor an empty one in place of faces.
+  const bool worse = faultsOf(out.after) > faultsOf(out.before) ||
+                     (mended.triangles.empty() && mesh.triangleCount() > 0);
+  if (!worse) return mended;
+  const CheckReport before = out.before;
+  out = {};
+  out.before = out.after = before;
+  out.keptInput = true;
+  return mesh;
+}
+
+}  // namespace tufa

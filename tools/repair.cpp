@@ -1,0 +1,105 @@
+#include <CLI/CLI.hpp>
+
+#include <tufa/io.h>
+#include <tufa/repair.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "checker.h"
+#include "commands.h"
+#include "console.h"
+#include "paths.h"
+#include "progress_bar.h"
+#include "report.h"
+#include "volume.h"
+
+namespace tufa::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct RepairArguments {
+  std::string input;
+  std::string output;
+  RepairOptions options;
+  bool json = false;
+  bool quiet = false;
+};
+
+Json toJson(const RepairReport& report) {
+  return {{"merged_vertices", report.mergedVertices}, {"degenerate_faces", report.degenerateFaces},
+          {"duplicate_faces", report.duplicateFaces}, {"split_vertices", report.splitVertices},
+          {"filled_holes", report.filledHoles},       {"dropped_parts", report.droppedParts},
+          {"kept_input", report.keptInput},           {"before", tools::toJson(report.before)},
+          {"after", tools::toJson(report.after)}};
+}
+
+std::string describe(const RepairReport& report) {
+  if (report.keptInput) {
+    return "no repair makes this mesh better: it was written as it is\n" +
+           tools::describe(report.after);
+  }
+  return "merged " + formatCount(report.mergedVertices) + " vertices, dropped " +
+         formatCount(report.degenerateFaces) + " degenerate and " +
+         formatCount(report.duplicateFaces) + " duplicate faces and " +
+         formatCount(report.droppedParts) + " parts, split " + formatCount(report.splitVertices) +
+         " vertices, filled " + formatCount(report.filledHoles) + " holes\n" +
+         tools::describe(report.after);
+}
+
+int runRepair(const RepairArguments& arguments) {
+  requireChecker();
+  requireMeshEnding(arguments.output);
+  requireDistinct(arguments.output, {arguments.input});
+  requireWritable(arguments.output);
+  const Mesh mesh = readMesh(arguments.input);
+  RepairReport report;
+  Mesh repaired;
+  {
+    ProgressBar bar(arguments.quiet);
+    RepairOptions options = arguments.options;
+    options.progress = bar.callback();
+    repaired = repair(mesh, options, &report);
+  }
+  const double seconds = timed([&] { write(repaired, arguments.output); });
+  if (arguments.json) {
+    Json json = {{"file", arguments.input}, {"output", arguments.output}};
+    json.update(toJson(report));
+    print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  } else if (!arguments.quiet) {
+    print(describe(report) + describeWritten({arguments.output}, seconds));
+  }
+  return report.after.watertight() ? kDone : kPromiseBroken;
+}
+
+}  // namespace
+
+void addRepairCommand(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<RepairArguments>();
+  CLI::App* const repair = app.add_subcommand(
+      "repair",
+      checkerHelp("Make a mesh of another program watertight; exit code 1 if it is not then"));
+  RepairOptions& options = arguments->options;
+  repair->add_option("MESH", arguments->input, "a .ply, .obj, .stl, .off or .glb file")->required();
+  repair
+      ->add_option("-o,--output", arguments->output,
+                   "the mesh to write: .ply (binary), .obj, .stl, .off or .glb")
+      ->required();
+  repair
+      ->add_option("--merge", options.mergeDistance,
+                   "vertices nearer than this, in the mesh's units, become one; 0: those at the "
+                   "same place")
+      ->capture_default_str();
+  repair->add_option("--fill", options.fillEdges, "fill holes of up to that many edges; 0: none")
+      ->capture_default_str();
+  repair->add_flag("--drop-open", options.dropOpen,
+                   "drop parts that are still open, if others are closed");
+  addThreadsOption(*repair, options.threads);
+  repair->add_flag("--json", arguments->json, "one JSON object on standard output");
+  repair->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
+  repair->callback(
+      [arguments, &chosen] { chosen = [arguments] { return runRepair(*arguments); }; });
+}
+
+}  // namespace tufa::tools
