@@ -145,7 +145,7 @@ bool Part::crossingsNear() {
 // is at the vertex `end`.
 bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end) {
   constexpr float kFarTolerance = 0.25f;  // voxels; with a larger one a walk may stray anywhere
-  constexpr float kArrived = 0.5f;  // voxels from the end, and twice the distance allowed
+  constexpr float kArrived = 0.5f;        // voxels from the end, and twice the distance allowed
   const Vec3f z = section.along;
   const float scale = 1 / squaredLength(z);
   const float close2 = std::min(kArrived * kArrived, 4 * squaredDistance_);

@@ -77,8 +77,8 @@ Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
         leastSine2(area2Was, squaredLength(x - old), squaredLength(y - old), squaredLength(y - x));
     const bool keeps =
         turn > 0 && turn * turn >= limits_.turnCosine * limits_.turnCosine * area2Was;
-    if (!keeps && then > kNoNormal && area2Was > kTinyFace2 && !(isGraph_ && wasFolded(was, area2Was)) &&
-        isOn(Outcome::Turn)) {
+    if (!keeps && then > kNoNormal && area2Was > kTinyFace2 &&
+        !(isGraph_ && wasFolded(was, area2Was)) && isOn(Outcome::Turn)) {
       return Outcome::Turn;
     }
     const float now = leastSine2(squaredLength(cross(x, y)), squaredLength(x), squaredLength(y),
