@@ -243,7 +243,8 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
               0.1 * static_cast<double>(nearby.triangles.size()));
 }
 
-// Parts of the surface are reduced at the same time, and chunks come in the same order all the same.
+// Parts of the surface are reduced at the same time, and chunks come in the same order all the
+// same.
 TEST(ChunkThreads, GiveTheSameBytes) {
   const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.025);
   ChunkOptions options;
