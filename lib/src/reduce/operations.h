@@ -23,7 +23,7 @@ enum class Outcome : std::uint8_t {
   Crossing,      ///< an edge would be too far from an edge of the reference that it crosses
   Face,          ///< a face of the reference at a rough vertex would be too far
   Intersection,  ///< a new triangle would come too close to one with which it shares no vertex
-  Side,          ///< a small component would be turned inside out
+  Side,          ///< a small component would be turned inside out, or passed over
   Worthless      ///< a flip would not make the smaller angle larger
 };
 inline constexpr std::size_t kOutcomes = 15;

@@ -144,6 +144,7 @@ class Part {
   // part_intersect.cpp.
   bool intersects(const NewTriangles& made, Index gone, Index gone2);
   bool starIntersects(Index a, Index b);
+  bool passesOver(Index a, Index b);
   void makeBoxList();
   void renewBox(Index t);
   [[nodiscard]] bool isNarrow(Index t) const;

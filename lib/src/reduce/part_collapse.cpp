@@ -110,7 +110,7 @@ Outcome Part::tryPlace(Index a, Index b, Vec3f place) {
   if (!ringGuard(a, b) && isOn(Outcome::Star)) return Outcome::Star;
   if (const Outcome o = distanceGuard(a, b); o != Outcome::Done) return o;
   if (isOn(Outcome::Intersection) && starIntersects(a, b)) return Outcome::Intersection;
-  if (isOn(Outcome::Side) && !sideGuard(a, b)) return Outcome::Side;
+  if (isOn(Outcome::Side) && (!sideGuard(a, b) || passesOver(a, b))) return Outcome::Side;
   return Outcome::Done;
 }
 
