@@ -161,7 +161,7 @@ test::FineMesh noise(unsigned seed) { return test::noiseSolid(12, 4, seed + 1); 
 
 // Each guard switched off in turn does harm on one of some meshes. What another guard refuses in
 // its place differs from mesh to mesh. Link and Place have no switch: without them the tables
-// themselves would break.
+// themselves would break. What Star refuses others refuse on most meshes, see star_test.cpp for it.
 TEST(Guards, AreFoundMissingByAnAudit) {
   struct Case {
     Outcome guard;
@@ -170,11 +170,11 @@ TEST(Guards, AreFoundMissingByAnAudit) {
     unsigned first;  // where harm was seen last: tried first
   };
   const Case cases[] = {
-      {Outcome::Sample, sphere, 0.3f, 0},      {Outcome::Apex, sphere, 0.2f, 0},
-      {Outcome::Crossing, noise, 0.2f, 0},     {Outcome::Face, noise, 0.2f, 1},
-      {Outcome::Flat, plate, 0.3f, 7},         {Outcome::Turn, plate, 0.2f, 7},
-      {Outcome::Fold, plate, 0.3f, 0},         {Outcome::Star, noise, 0.3f, 9},
-      {Outcome::Intersection, plate, 0.3f, 0}, {Outcome::Round, noise, 0.05f, 4},
+      {Outcome::Sample, sphere, 0.3f, 0},  {Outcome::Apex, sphere, 0.2f, 0},
+      {Outcome::Crossing, noise, 0.2f, 0}, {Outcome::Face, noise, 0.2f, 1},
+      {Outcome::Flat, plate, 0.3f, 7},     {Outcome::Turn, plate, 0.2f, 7},
+      {Outcome::Fold, plate, 0.3f, 0},     {Outcome::Intersection, plate, 0.3f, 0},
+      {Outcome::Round, noise, 0.05f, 4},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(static_cast<int>(c.guard));
