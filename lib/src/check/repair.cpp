@@ -4,13 +4,13 @@
 #include <cmath>
 #include <string>
 
-#include "check/mend.h"
+#include "check/repair_steps.h"
 
 namespace tufa {
 namespace {
 
 // Shares of the call's progress.
-constexpr double kBeforeEnd = 0.3, kMendEnd = 0.7;
+constexpr double kBeforeEnd = 0.3, kStepsEnd = 0.7;
 
 void requireOptions(const RepairOptions& options) {
   if (!(options.mergeDistance >= 0) || !std::isfinite(options.mergeDistance)) {
@@ -54,16 +54,15 @@ Mesh repair(const Mesh& mesh, const RepairOptions& options, RepairReport* report
   RepairReport& out = report != nullptr ? *report : own;
   out = {};
   out.before = checked(mesh, options, 0, kBeforeEnd);
-  const Progress mending = partOf(options.progress, kBeforeEnd, kMendEnd);
-  Mesh mended = checks::mend(mesh, options, out, [&](double done) {
-    if (mending && !mending("repair", done))
-      throw Error(ErrorCode::Cancelled, "cancelled by the caller");
+  const Progress tell = partOf(options.progress, kBeforeEnd, kStepsEnd);
+  Mesh repaired = checks::runRepairSteps(mesh, options, out, [&](double done) {
+    if (tell && !tell("repair", done)) throw Error(ErrorCode::Cancelled, "cancelled by the caller");
   });
-  out.after = checked(mended, options, kMendEnd, 1);
+  out.after = checked(repaired, options, kStepsEnd, 1);
   // Never a worse mesh than the input; nor an empty one in place of faces.
   const bool worse = faultsOf(out.after) > faultsOf(out.before) ||
-                     (mended.triangles.empty() && mesh.triangleCount() > 0);
-  if (!worse) return mended;
+                     (repaired.triangles.empty() && mesh.triangleCount() > 0);
+  if (!worse) return repaired;
   const CheckReport before = out.before;
   out = {};
   out.before = out.after = before;

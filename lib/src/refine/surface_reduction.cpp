@@ -29,22 +29,6 @@ std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
   return faces;
 }
 
-// What the rule multiplies the tolerance with at each vertex; none if that is 1 everywhere.
-std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
-                            const octree::CutRule& rule, base::Job& job) {
-  if (!rule.scale) return {};
-  octree::CutRule one = rule;
-  one.tolerance = 1;
-  std::vector<float> scales(mesh.positions.size());
-  job.forRanges(scales.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double scale = distance::toleranceAt(one, affine, Vec3(mesh.positions[i]));
-      scales[i] = static_cast<float>(std::max(0.0, scale));
-    }
-  });
-  return scales;
-}
-
 // The normal of the uniform mesh at the point of a face next to p.
 Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
   const Vec3 a(mesh.positions[face.vertices[0]]), b(mesh.positions[face.vertices[1]]),
@@ -62,6 +46,21 @@ Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
 }
 
 }  // namespace
+
+std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
+                            const octree::CutRule& rule, base::Job& job) {
+  if (!rule.scale) return {};
+  octree::CutRule one = rule;
+  one.tolerance = 1;
+  std::vector<float> scales(mesh.positions.size());
+  job.forRanges(scales.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double scale = distance::toleranceAt(one, affine, Vec3(mesh.positions[i]));
+      scales[i] = static_cast<float>(std::max(0.0, scale));
+    }
+  });
+  return scales;
+}
 
 SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutRule& rule,
                                    base::Job& job)

@@ -7,7 +7,7 @@
 #include "base/box.h"
 #include "base/single_precision.h"
 #include "chunks/chain/mixed_forms.h"
-#include "distance/certifier.h"
+#include "refine/surface_reduction.h"
 
 namespace tufa::chunks {
 namespace {
@@ -19,21 +19,6 @@ constexpr std::size_t kGrain = 16384;
 constexpr double kDepth = 2e-3;
 // How often curves are reduced less where forms intersect; then they are not reduced there at all.
 constexpr int kMostAttempts = 12;
-
-std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
-                            const octree::CutRule& rule, base::Job& job) {
-  if (!rule.scale) return {};
-  octree::CutRule one = rule;
-  one.tolerance = 1;
-  std::vector<float> scales(mesh.positions.size());
-  job.forRanges(scales.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double scale = distance::toleranceAt(one, affine, Vec3(mesh.positions[i]));
-      scales[i] = static_cast<float>(std::max(0.0, scale));
-    }
-  });
-  return scales;
-}
 
 }  // namespace
 
@@ -64,7 +49,7 @@ ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
   std::vector<reduce::Index> same(reference.size());
   std::iota(same.begin(), same.end(), 0);
   reduction_.emplace(view, reference.empty() ? view : before, same,
-                     scalesOf(cut.mesh, model.affine(), rule, job), reduce::Options(), job);
+                     refine::scalesOf(cut.mesh, model.affine(), rule, job), reduce::Options(), job);
   reduction_->setRegions(regionsOf());
   const reduce::Surface surface = reduction_->surface();
   kinds_.reserve(positions.size());

@@ -1,4 +1,4 @@
-#include "check/mend.h"
+#include "check/repair_steps.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Fuzzy_sphere.h>
@@ -154,8 +154,8 @@ Mesh meshOf(const SurfaceMesh& surface) {
 
 }  // namespace
 
-Mesh mend(const Mesh& mesh, const RepairOptions& options, RepairReport& report,
-          const std::function<void(double)>& step) {
+Mesh runRepairSteps(const Mesh& mesh, const RepairOptions& options, RepairReport& report,
+                    const std::function<void(double)>& step) {
   step(0);
   Soup soup = soupOf(mesh, report);
   if (options.mergeDistance > 0) mergeNear(soup, options.mergeDistance);
