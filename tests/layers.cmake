@@ -21,12 +21,14 @@ set(sees_reduce base reduce)
 set(sees_extract base grid uniform refine extract)
 list(REMOVE_ITEM sees_lod extract)
 list(REMOVE_ITEM sees_chunks extract)
+list(APPEND sees_chunks shading)
 # Folders beside the pipeline, and all that each of them sees.
 set(sees_shapes base shapes)
 set(sees_voxelize base grid voxelize)
 set(sees_filter base grid filter)
 set(sees_attributes base attributes)
-set(sees_io base io)
+set(sees_shading base shading)
+set(sees_io base shading io)
 set(sees_check base grid check)
 
 # OpenVDB's headers cost seconds in each file. Only these files may include them; <openvdb/version.h>

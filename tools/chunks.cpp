@@ -94,6 +94,8 @@ void keepOthers(ChunkIndex& index, const std::string& folder) {
   const ChunkIndex before = readChunkIndex(folder);
   if (before.grid != index.grid || before.chunkSize != index.chunkSize ||
       before.tolerances != index.tolerances || before.transform != index.transform ||
+      before.creaseAngle != index.creaseAngle || before.compression != index.compression ||
+      before.step != index.step || before.up != index.up || before.scale != index.scale ||
       !(before.origin == index.origin)) {
     throw Error(ErrorCode::InvalidArgument,
                 folder + " holds chunks of another volume or of other options");
@@ -140,6 +142,7 @@ ChunksRun build(const ChunksArguments& arguments) {
     if (!arguments.grid) noteChoice(arguments.input, run.index.grid);
   }
   noteMissing(run.index, options.only);
+  if (options.compression != run.index.compression) noteFloats("every level");
   for (ChunkEntry& chunk : run.index.chunks) {
     const std::vector<ChunkFile>& made = files.at(chunk.index);
     for (std::size_t i = 0; i < made.size(); ++i) {
@@ -193,6 +196,7 @@ Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
   json["non_finite_values"] = run.contour.nonFiniteValues;
   json["voxel_size"] = run.index.voxelSize;
   json["chunk_size"] = run.index.chunkSize;
+  json["step"] = run.index.step;
   json["chunks"] = run.index.chunks.size();
   json["levels"] = Json::array();
   for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
@@ -255,13 +259,19 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
                 assembling ? "--assemble takes no volume" : "FILE or --assemble DIR is needed");
   }
   const std::vector<const char*> others =
-      assembling ? std::vector<const char*>{"--grid",   "--chunk",  "--levels", "--tolerance",
-                                            "--factor", "--format", "--only",   "--iso"}
+      assembling ? std::vector<const char*>{"--grid",    "--chunk",  "--levels", "--tolerance",
+                                            "--factor",  "--format", "--only",   "--iso",
+                                            "--crease",  "--up",     "--scale",  "--quantize",
+                                            "--compress"}
                  : std::vector<const char*>{"--lods", "--pixel-error", "--check"};
   for (const char* option : others) {
     if (command.count(option) == 0) continue;
     throw Error(ErrorCode::InvalidArgument,
                 std::string(option) + " is " + (assembling ? "not " : "only ") + "for --assemble");
+  }
+  for (const char* option : {"--quantize", "--compress", "--up", "--scale"}) {
+    if (command.count(option) == 0 || arguments.format == "glb") continue;
+    throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for --format glb only");
   }
   if (command.count("--normals") != 0) {
     throw Error(ErrorCode::InvalidArgument, "--normals is not for chunks");
@@ -289,6 +299,12 @@ void addBuildOptions(CLI::App& app, ChunksArguments& arguments) {
   app.add_option("--format", arguments.format, "of the meshes: glb or ply")
       ->check(CLI::IsMember({"glb", "ply"}))
       ->capture_default_str();
+  app.add_option("--crease", options.creaseAngle,
+                 "normals are split where faces differ by more, in degrees")
+      ->check(CLI::Range(0.0, 180.0))
+      ->capture_default_str();
+  addFrameOptions(app, options.up, options.scale);
+  addCompressionOptions(app, options.compression);
   app.add_option("--only", arguments.only,
                  "indices of the chunks to make, such as 0,-1,2; default: all");
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <tufa/version.h>
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -86,6 +87,20 @@ void addFrameOptions(CLI::App& app, UpAxis& up, double& scale) {
   app.add_option("--scale", scale, ".glb and .usda: metres in a world unit")
       ->check(above0())
       ->capture_default_str();
+}
+
+void addCompressionOptions(CLI::App& app, GlbCompression& compression) {
+  app.add_flag_callback(
+      "--quantize",
+      [&compression] { compression = std::max(compression, GlbCompression::Quantized); },
+      ".glb: positions in 16 bits, normals in 8 (KHR_mesh_quantization)");
+  app.add_flag_callback(
+      "--compress", [&compression] { compression = GlbCompression::Meshopt; },
+      ".glb: the same and packed (EXT_meshopt_compression)");
+}
+
+void noteFloats(const std::string& what) {
+  printNote("note: " + what + " is stored in floats: 16 bits do not tell all its vertices apart");
 }
 
 void addContourOptions(CLI::App& app, ContourOptions& options,

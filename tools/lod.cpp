@@ -29,8 +29,7 @@ int judge(const LodRun& run) {
   noteData(run.contour);
   if (!run.chain.stopped.empty()) printNote("note: " + run.chain.stopped);
   for (const std::size_t level : run.written.floatLevels) {
-    printNote("note: level " + std::to_string(level) +
-              " is stored in floats: 16 bits do not tell all its vertices apart");
+    noteFloats("level " + std::to_string(level));
   }
   int exitCode = kDone;
   for (std::size_t level = 0; level < run.checks.size(); ++level) {
@@ -110,8 +109,6 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   if (arguments.report) requireWritable(*arguments.report);
   arguments.writing.name = assetName(arguments.output);
   arguments.writing.allLevelsScene = arguments.scenes == "many";
-  if (arguments.quantize) arguments.writing.compression = LodCompression::Quantized;
-  if (arguments.compress) arguments.writing.compression = LodCompression::Meshopt;
 }
 
 int runLod(const LodArguments& arguments) {
@@ -165,9 +162,7 @@ void addGlbOptions(CLI::App& app, LodArguments& arguments) {
       ->check(CLI::IsMember({"one", "many"}))
       ->capture_default_str();
   addFrameOptions(app, arguments.writing.up, arguments.writing.scale);
-  app.add_flag("--quantize", arguments.quantize,
-               "positions in 16 bits, normals in 8 (KHR_mesh_quantization)");
-  app.add_flag("--compress", arguments.compress, "the same and packed (EXT_meshopt_compression)");
+  addCompressionOptions(app, arguments.writing.compression);
   app.add_flag("--separate", arguments.separate, "one file a level: OUT_LOD0, OUT_LOD1, ...");
 }
 

@@ -26,8 +26,6 @@ struct LodArguments {
   std::vector<std::string> tolerances;
   LodWriteOptions writing;
   std::string scenes = "one";
-  bool quantize = false;
-  bool compress = false;
   bool separate = false;
   bool allowEmpty = false;
   std::optional<std::string> report;

@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 /// Prints in what meshes are not as they should be; returns the exit code.
 int judge(const MeshRun& run) {
   int exitCode = kDone;
+  for (const std::string& name : run.written.floatMeshes) noteFloats("mesh \"" + name + "\"");
   for (const GridRun& grid : run.grids) {
     noteData(grid.contour);
     if (!grid.check || grid.check->watertight()) continue;
@@ -146,6 +147,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
           "default: 40 if the field is a distance field, else 180: nowhere")
       ->check(CLI::Range(0.0, 180.0));
   addFrameOptions(*mesh, arguments->up, arguments->scale);
+  addCompressionOptions(*mesh, arguments->compression);
   mesh->add_flag("--allow-empty", arguments->allowEmpty,
                  "write an empty mesh where the grid has no surface");
   mesh->add_flag("--check", arguments->check,

@@ -88,6 +88,7 @@ WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, Pr
       arguments.creaseAngle.value_or(run.contour.distanceField ? kCreaseAngle : kNoCreases);
   options.up = arguments.up;
   options.scale = arguments.scale;
+  options.compression = arguments.compression;
   options.threads = arguments.contour.threads;
   options.progress = bar.callback();
   return options;
@@ -99,10 +100,14 @@ void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
   if (run.grids.size() == 1 || hasBraces(arguments.output)) {
     for (const GridRun& grid : run.grids) {
       const WriteOptions options = writeOptions(arguments, grid, bar);
+      WriteReport written;
       if (standard) {
-        write(grid.mesh, standardOutput(), meshFormat("-", arguments.format), options);
+        write(grid.mesh, standardOutput(), meshFormat("-", arguments.format), options, &written);
       } else {
-        write(grid.mesh, grid.output, options);
+        write(grid.mesh, grid.output, options, &written);
+      }
+      for (std::string& name : written.floatMeshes) {
+        run.written.floatMeshes.push_back(std::move(name));
       }
     }
     return;
@@ -111,9 +116,9 @@ void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
   for (GridRun& grid : run.grids) meshes.push_back({grid.grid, std::move(grid.mesh)});
   const WriteOptions options = writeOptions(arguments, run.grids.front(), bar);
   if (standard) {
-    writeMeshes(meshes, standardOutput(), meshFormat("-", arguments.format), options);
+    writeMeshes(meshes, standardOutput(), meshFormat("-", arguments.format), options, &run.written);
   } else {
-    writeMeshes(meshes, arguments.output, options);
+    writeMeshes(meshes, arguments.output, options, &run.written);
   }
   for (std::size_t i = 0; i < meshes.size(); ++i) run.grids[i].mesh = std::move(meshes[i].mesh);
 }
@@ -158,6 +163,10 @@ void requireFeasible(const MeshArguments& arguments) {
     if (format != MeshFormat::Glb && format != MeshFormat::Usda) {
       throw Error(ErrorCode::InvalidArgument, "--up and --scale are for .glb and .usda only");
     }
+  }
+  if (arguments.compression != GlbCompression::None &&
+      meshFormat(arguments.output, arguments.format) != MeshFormat::Glb) {
+    throw Error(ErrorCode::InvalidArgument, "--quantize and --compress are for .glb only");
   }
 }
 

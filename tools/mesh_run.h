@@ -31,6 +31,7 @@ struct MeshArguments {
   std::optional<double> creaseAngle;  ///< degrees; unset: 40 where the field is a distance field
   UpAxis up = UpAxis::Y;
   double scale = 1;  ///< metres in a world unit
+  GlbCompression compression = GlbCompression::None;
   bool allowEmpty = false;
   bool check = false;
   bool json = false;
@@ -54,6 +55,7 @@ struct GridRun {
 /// The meshes of one file.
 struct MeshRun {
   std::vector<GridRun> grids;
+  WriteReport written;
   double writeSeconds = 0;
 };
 

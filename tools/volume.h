@@ -27,6 +27,12 @@ void addContourOptions(CLI::App& app, ContourOptions& options,
 /// Declares `--up` and `--scale`, for formats that say what is up and how long a metre is.
 void addFrameOptions(CLI::App& app, UpAxis& up, double& scale);
 
+/// Declares `--quantize` and `--compress`, for .glb.
+void addCompressionOptions(CLI::App& app, GlbCompression& compression);
+
+/// Says on standard error that something could not be quantized.
+void noteFloats(const std::string& what);
+
 /// Declares `--iso` alone.
 CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isovalue);
 

@@ -158,7 +158,7 @@ TEST_F(CancelledGroup, ChangesNoFile) {
   const LodChain chain = buildLods(*grid);
   expectNoWrongResult([&](const Progress& progress) {
     LodWriteOptions options;
-    options.compression = LodCompression::Meshopt;
+    options.compression = GlbCompression::Meshopt;
     options.progress = progress;
     writeLods(chain, folder / "m.glb", options);
     return test::readBytes(folder / "m.glb");

@@ -12,6 +12,7 @@
 #include <random>
 #include <set>
 
+#include "base/vec3.h"
 #include "support/expect_error.h"
 #include "support/mesh_oracle.h"
 #include "support/print.h"
@@ -90,8 +91,9 @@ void expectWhole(const Mesh& mesh, const test::MeshTopology& uniform, const std:
 }
 
 /// Draws `rounds` mixtures of levels, and as many that are not restricted. Gives the masks drawn.
-std::set<unsigned> expectMixturesToClose(const openvdb::GridBase& grid, const ChunkOptions& options,
+std::set<unsigned> expectMixturesToClose(const openvdb::GridBase& grid, ChunkOptions options,
                                          int rounds) {
+  options.creaseAngle = 180;  // one normal a vertex, and the same for all that meet in it
   const Made made = makeChunks(grid, options);
   const test::MeshTopology uniform = test::inspect(test::uniformMesh(grid));
   std::set<unsigned> masks;
@@ -216,6 +218,109 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ChunkMixtures,
 INSTANTIATE_TEST_SUITE_P(Noise, ChunkMixtures,
                          ::testing::Combine(::testing::Values(Shape::Noise),
                                             ::testing::Values(0.08), ::testing::Values(16, 32)));
+
+// On one lattice for all chunks: what meets in a face has the same bits as before.
+TEST(ChunkMixturesOnALattice, AreClosed) {
+  ChunkOptions options;
+  options.chunkSize = 32;
+  options.compression = GlbCompression::Quantized;
+  options.scale = 0.01;
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
+  expectMixturesToClose(*grid, options, 5);
+  const Made made = makeChunks(*grid, options);
+  ASSERT_GT(made.index.step, 0);
+  for (const Chunk& chunk : made.chunks) {
+    for (const ChunkLevel& level : chunk.levels) {
+      for (const Position& p : level.positions) {
+        EXPECT_EQ(std::round(p.x / made.index.step) * made.index.step, p.x);
+      }
+    }
+  }
+}
+
+Vec3 normalOf(const Mesh& mesh, const Triangle& t) {
+  const Vec3 a(mesh.positions[t.vertices[0]]);
+  return (Vec3(mesh.positions[t.vertices[1]]) - a).cross(Vec3(mesh.positions[t.vertices[2]]) - a);
+}
+
+// The share of the surface where a corner's normal is off its face's by more than 30 degrees: as
+// with one normal a vertex on creases.
+double smearedShare(const std::vector<Mesh>& meshes) {
+  double smeared = 0, whole = 0;
+  for (const Mesh& mesh : meshes) {
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 face = normalOf(mesh, t);
+      whole += face.length();
+      const bool isOff = std::any_of(t.vertices.begin(), t.vertices.end(), [&](VertexIndex v) {
+        return Vec3(mesh.normals[v]).dot(face) < std::sqrt(0.75) * face.length();
+      });
+      smeared += isOff ? face.length() : 0;
+    }
+  }
+  return smeared / whole;
+}
+
+// What chunks are drawn as at an LOD.
+std::vector<Mesh> meshesAt(const Made& made, std::size_t level) {
+  std::vector<Mesh> meshes;
+  for (const Chunk& chunk : made.chunks) meshes.push_back(meshForMask(chunk, level, 0));
+  return meshes;
+}
+
+// Of edges between two chunks where the surface turns by less than 20 degrees, those whose ends do
+// not have the same normals on both sides.
+std::size_t countSeams(const std::vector<Mesh>& meshes, std::size_t& edges) {
+  struct End {
+    std::array<double, 3> place;
+    Normal normal;
+  };
+  struct Side {
+    std::size_t mesh;
+    Vec3 face;
+    Normal from, to;
+  };
+  std::map<std::array<std::array<double, 3>, 2>, Side> sides;
+  std::size_t seams = 0;
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const Mesh& mesh = meshes[m];
+    for (const Triangle& t : mesh.triangles) {
+      const Vec3 face = normalOf(mesh, t).unitOrX();
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto endOf = [&](VertexIndex v) {
+          const Position& p = mesh.positions[v];
+          return End{{p.x, p.y, p.z}, mesh.normals[v]};
+        };
+        const End a = endOf(t.vertices[i]), b = endOf(t.vertices[(i + 1) % 3]);
+        const auto other = sides.find({b.place, a.place});
+        if (other == sides.end()) {
+          sides.emplace(std::array{a.place, b.place}, Side{m, face, a.normal, b.normal});
+        } else if (other->second.mesh != m && other->second.face.dot(face) > 0.94) {
+          ++edges;
+          seams += other->second.from == b.normal && other->second.to == a.normal ? 0 : 1;
+        }
+      }
+    }
+  }
+  return seams;
+}
+
+TEST(ChunkNormals, AreSplitAtCreasesAndTheSameOnBothSidesOfAFace) {
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
+  ChunkOptions options;
+  options.chunkSize = 32;
+  const Made made = makeChunks(*grid, options);
+  for (std::size_t level = 0; level < 3; ++level) {
+    std::size_t edges = 0;
+    // Where a triangle lies half way between two sides of a crease, either may be taken.
+    EXPECT_LE(countSeams(meshesAt(made, level), edges), level == 0 ? 0U : 1 + edges / 50) << level;
+    EXPECT_GT(edges, 30U) << level;
+  }
+  const double split = smearedShare(meshesAt(made, 0));
+  options.creaseAngle = 180;
+  const double unsplit = smearedShare(meshesAt(makeChunks(*grid, options), 0));
+  EXPECT_GT(unsplit, 0.5);
+  EXPECT_LT(split, 0.02);  // of the whole LOD: 0.011
+}
 
 TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
   const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);

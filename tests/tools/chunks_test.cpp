@@ -68,7 +68,7 @@ TEST_F(ChunksCommand, GivesTheKeysOfItsReport) {
 }
 
 TEST_F(ChunksCommand, AssemblesClosedMeshesOfAnyLevels) {
-  for (const char* format : {"glb", "ply"}) {
+  for (const char* format : {"glb", "ply", "glb --compress --up z --scale 0.01"}) {
     makeChunks(std::string("--quiet --format ") + format);
     for (const char* lods : {"all:0", "all:2", "random", "random:7", "random:8", "random:9",
                              "camera:5,-3,1", "camera:0.6,0.6,0.6"}) {

@@ -149,6 +149,9 @@ TEST_F(Command, LodRefusesWhatItCannotDo) {
   expectFailure("lod s.vdb -o s.glb --factor 1", 2, "factor");
   expectFailure("lod s.vdb -o s.glb --scale 0", 2, "--scale");
   expectFailure("lod s.vdb -o s.glb --up x", 2, "--up");
+  expectFailure("mesh s.vdb -o s.ply --compress", 2, "--compress are for .glb only");
+  expectFailure("chunks s.vdb -o d --format ply --quantize", 2, "--quantize is for --format glb");
+  expectFailure("chunks --assemble d --lods all:0 -o s.ply --crease 30", 2, "--crease is not for");
   expectFailure("lod s.vdb -o s.glb --tolerances 0.2,0.1", 2, "rise");
   expectFailure("lod s.vdb -o s.glb --tolerances 0.2,b", 2, "--tolerances");
   expectFailure("lod s.vdb -o s.glb --tolerances 0.2 --levels 2", 2, "--levels");

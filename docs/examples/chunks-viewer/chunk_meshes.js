@@ -1,15 +1,36 @@
 import * as THREE from "three";
+import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 const kFaces = ["face-x", "face+x", "face-y", "face+y", "face-z", "face+z"];
 const kParallelLoads = 16;
+
+/// Positions and normals of a file as floats of world space, counted from the index's origin. What
+/// two chunks share has the same numbers in both, whatever each file counts from.
+function worldAttributes(index, { geometry, matrixWorld }) {
+  const { position, normal } = geometry.attributes;
+  const { origin, up = "y", metres_per_unit: metres = 1 } = index;
+  const back = ({ x, y, z }) => (up === "z" ? [x, -z, y] : [x, y, z]);
+  const positions = new Float32Array(3 * position.count);
+  const normals = new Float32Array(3 * position.count);
+  const point = new THREE.Vector3();
+  for (let i = 0; i < position.count; ++i) {
+    point.fromBufferAttribute(position, i).applyMatrix4(matrixWorld);
+    back(point).forEach((x, axis) => (positions[3 * i + axis] = x / metres - origin[axis]));
+    normals.set(back(point.fromBufferAttribute(normal, i)), 3 * i);
+  }
+  return {
+    position: new THREE.BufferAttribute(positions, 3),
+    normal: new THREE.BufferAttribute(normals, 3),
+  };
+}
 
 /// The meshes of chunks, loaded as they are asked for.
 export class ChunkMeshes {
   constructor(index, url) {
     this.index = index;
     this.url = url;
-    this.loader = new GLTFLoader();
+    this.loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
     this.levels = new Map(); // "chunk/level" -> null while it is on its way
     this.queue = [];
     this.loading = 0;
@@ -62,10 +83,11 @@ export class ChunkMeshes {
     const gltf = await this.loader.parseAsync(await response.arrayBuffer(), "");
     let attributes = null;
     const parts = {};
-    gltf.scene.traverse(({ geometry }) => {
-      if (!geometry) return;
-      attributes ??= geometry.attributes; // all primitives share them
-      parts[geometry.userData.name] = geometry.index.array;
+    gltf.scene.updateMatrixWorld();
+    gltf.scene.traverse((object) => {
+      if (!object.geometry) return;
+      attributes ??= worldAttributes(this.index, object); // all primitives share them
+      parts[object.geometry.userData.name] = object.geometry.index.array;
     });
     return { attributes, parts };
   }

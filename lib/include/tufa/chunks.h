@@ -3,6 +3,7 @@
 #include <tufa/contour.h>
 #include <tufa/coord.h>
 #include <tufa/export.h>
+#include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/mesh.h>
 #include <tufa/openvdb_fwd.h>
@@ -27,6 +28,15 @@ struct ChunkOptions {
   int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
   int levels = 4;      ///< LODs of each chunk, 1 to 16
   double factor = 4;   ///< each LOD's tolerance over that of the LOD before; above 1, to 10^6
+  /// Normals are split where those of two faces at an edge differ by more than this angle, so that
+  /// a position on a crease has several vertices: degrees, 0 to 180; 180 splits none. On faces of
+  /// chunks those of LOD 0 count, so that normals there are the same for all LODs.
+  double creaseAngle = 40;
+  /// How files of .glb are to be stored. If not as floats, all positions are moved to one lattice,
+  /// see ChunkIndex::step.
+  GlbCompression compression = GlbCompression::None;
+  UpAxis up = UpAxis::Y;  ///< .glb: of the volume
+  double scale = 1;       ///< .glb: metres in a world unit; above 0
   /// The chunks to make; empty: all. A chunk has the same bytes whichever are made with it.
   std::vector<Coord> only;
 };
@@ -92,6 +102,13 @@ struct ChunkIndex {
   std::array<std::array<double, 4>, 4> transform{};
   /// World point, the same for all chunks, that files of single precision count positions from.
   Position origin{0, 0, 0};
+  double creaseAngle = 40;                            ///< as in ChunkOptions
+  GlbCompression compression = GlbCompression::None;  ///< None if 16 bits cannot hold the chunks
+  /// If compressed: world units between neighbouring places of the lattice that all positions are
+  /// on. Times `scale` a power of two, so that no program that computes in floats moves a vertex.
+  double step = 0;
+  UpAxis up = UpAxis::Y;           ///< as in ChunkOptions
+  double scale = 1;                ///< as in ChunkOptions
   std::vector<ChunkEntry> chunks;  ///< sorted by index
 
   /// The place of a chunk in `chunks`, or -1.
@@ -154,7 +171,9 @@ struct ChunkFile {
 };
 
 /// Writes the meshes of a chunk into a folder and returns the files, one for each LOD. Each appears
-/// whole or not at all. Throws Error(UnwritableFile).
+/// whole or not at all. The index says how a .glb is stored; a .ply is in world units,
+/// uncompressed. Throws Error: UnwritableFile, InvalidArgument for compressed chunks off the
+/// index's lattice.
 TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
                                            const std::string& folder, ChunkFormat format);
 

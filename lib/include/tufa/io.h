@@ -32,6 +32,13 @@ enum class UpAxis {
   Z,  ///< as in Blender
 };
 
+/// How a .glb stores vertices and indices.
+enum class GlbCompression {
+  None,       ///< positions and normals as floats: every program reads that
+  Quantized,  ///< positions in 16 bits, normals in 8: KHR_mesh_quantization
+  Meshopt,    ///< the same, and packed: EXT_meshopt_compression
+};
+
 /// The names of the formats in the order of MeshFormat: "ply", "obj", and so on.
 [[nodiscard]] TUFA_API std::span<const std::string_view> meshFormatNames();
 
@@ -49,8 +56,16 @@ struct WriteOptions {
   double creaseAngle = 40;
   UpAxis up = UpAxis::Y;  ///< .glb and .usda: of the volume
   double scale = 1;       ///< .glb and .usda: metres in a world unit; above 0
+  /// .glb: all meshes of a file in one grid. No vertices are joined: a mesh in which rounding to 16
+  /// bits would bring two to one place, or three on a line, is stored in floats.
+  GlbCompression compression = GlbCompression::None;
   int threads = 0;    ///< most threads; 0: as many as the TBB arena allows. Never changes the file.
   Progress progress;  ///< called from the calling thread; may cancel
+};
+
+/// What write() and writeMeshes() wrote.
+struct WriteReport {
+  std::vector<std::string> floatMeshes;  ///< names of those that could not be quantized
 };
 
 /// A mesh and its name in a file.
@@ -72,13 +87,13 @@ struct NamedMesh {
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending, an option out of its range),
 /// LimitExceeded (more than the format can hold), Cancelled.
 TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
-                    const WriteOptions& options = {});
+                    const WriteOptions& options = {}, WriteReport* report = nullptr);
 
 /// Writes several meshes to one file: .glb, a node each, .obj, an object each, or .usda, a prim
 /// each. Their names are used in place of WriteOptions::name. Otherwise as write(); throws
 /// Error(InvalidArgument) for formats that hold one mesh only.
 TUFA_API void writeMeshes(const std::vector<NamedMesh>& meshes, const std::filesystem::path& path,
-                          const WriteOptions& options = {});
+                          const WriteOptions& options = {}, WriteReport* report = nullptr);
 
 /// Throws Error(InvalidArgument) if write() knows no format of this ending.
 TUFA_API void requireMeshEnding(const std::filesystem::path& path);

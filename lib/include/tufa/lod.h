@@ -88,13 +88,6 @@ struct Camera {
 [[nodiscard]] TUFA_API std::size_t selectLod(const LodChain& chain, const Camera& camera,
                                              double pixelError = 1);
 
-/// How a .glb stores vertices and indices.
-enum class LodCompression {
-  None,       ///< positions and normals as floats: every program reads that
-  Quantized,  ///< positions in 16 bits, normals in 8: KHR_mesh_quantization
-  Meshopt,    ///< the same, and packed: EXT_meshopt_compression
-};
-
 /// Options of writeLods(). `allLevelsScene` and `compression` are for .glb only, `up` and `scale`
 /// for .glb and .usda.
 struct LodWriteOptions {
@@ -109,7 +102,7 @@ struct LodWriteOptions {
   double scale = 1;       ///< metres in a world unit; above 0
   /// No vertices are joined: an LOD in which rounding to 16 bits would bring two to one place, or
   /// three on a line, is stored in floats.
-  LodCompression compression = LodCompression::None;
+  GlbCompression compression = GlbCompression::None;
   int threads = 0;    ///< most threads; 0: as many as the TBB arena allows. Never changes the file.
   Progress progress;  ///< called from the calling thread; may cancel
 };

@@ -41,11 +41,12 @@ struct FileBytes {
 /// throws; what the stream itself throws passes through. On failure part of the mesh may have been
 /// written.
 TUFA_API void write(const Mesh& mesh, std::ostream& stream, MeshFormat format,
-                    const WriteOptions& options = {});
+                    const WriteOptions& options = {}, WriteReport* report = nullptr);
 
 /// Writes several meshes to a stream, as .glb, .obj or .usda: see writeMeshes() for files.
 TUFA_API void writeMeshes(const std::vector<NamedMesh>& meshes, std::ostream& stream,
-                          MeshFormat format, const WriteOptions& options = {});
+                          MeshFormat format, const WriteOptions& options = {},
+                          WriteReport* report = nullptr);
 
 /// Writes all LODs to a stream as one .glb or .usda: see writeLods() for files. The report names no
 /// file.

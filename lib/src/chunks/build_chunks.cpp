@@ -10,9 +10,12 @@
 
 #include "base/box.h"
 #include "base/job.h"
+#include "base/known_enum.h"
 #include "base/run_call.h"
 #include "chunks/chain/chunk_chain.h"
+#include "chunks/chain/lattice.h"
 #include "chunks/chain/mixed_forms.h"
+#include "chunks/chain/shaded_level.h"
 #include "chunks/chain/split_level.h"
 #include "chunks/cut/cut_mesh.h"
 #include "chunks/cut/part_rounded.h"
@@ -50,6 +53,12 @@ void requireOptions(const ChunkOptions& options) {
         "cells");
   }
   octree::requireFactor(options.factor);
+  if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
+    refuse("the crease angle must be between 0 and 180 degrees");
+  }
+  base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
+  base::requireKnown(options.up, UpAxis::Z, "the axis that points up");
+  if (!(options.scale > 0 && std::isfinite(options.scale))) refuse("the scale must be above 0");
 }
 
 // Whether all positions of the grid may be rounded to floats.
@@ -86,6 +95,13 @@ ChunkIndex describe(const grid::Volume& volume, const ChunkOptions& options) {
   }
   index.voxelSize = grid::Affine(volume.transform).voxelSize();
   index.transform = volume.transform.matrix();
+  index.creaseAngle = options.creaseAngle;
+  index.compression = options.compression;
+  if (options.compression != GlbCompression::None) {
+    index.step = chunks::latticeStep(volume.transform, options.chunkSize, options.scale);
+  }
+  index.up = options.up;
+  index.scale = options.scale;
   return index;
 }
 
@@ -159,8 +175,14 @@ class ChunkBuilder {
     chunks::CutMesh cut =
         chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, job_);
     chunks::partRounded(cut, model.affine(), isSingle, job_);
+    // The farthest that a vertex moves to the lattice.
+    cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
     makeLevels(cut, model, rule, isSingle, index.tolerances);
     job_.beginStage("chunks", 1);
+    if (index.step > 0 && !chunks::moveToLattice(levels_, index.step)) {
+      index.step = 0;
+      index.compression = GlbCompression::None;
+    }
     handOut(cut, index);
     return index;
   }
@@ -182,10 +204,13 @@ class ChunkBuilder {
   }
 
   void handOut(const chunks::CutMesh& cut, ChunkIndex& index) {
+    const chunks::CurveNormals curves(levels_.front(), cut.mesh.positions.size(),
+                                      options_.creaseAngle, job_);
     std::vector<std::vector<ChunkLevel>> levels;
     std::vector<std::vector<std::size_t>> pairs;
     for (chunks::ChainLevel& level : levels_) {
-      levels.push_back(chunks::splitLevel(cut, level, job_));
+      const auto shaded = chunks::shade(level, curves, options_.creaseAngle, job_);
+      levels.push_back(chunks::splitLevel(cut, level, shaded, job_));
       pairs.push_back(countPairs(cut, level, job_));
       level = {};
     }

@@ -262,7 +262,7 @@ TEST(Attributes, AreInEveryLod) {
   const Glb glb(plain.str());
   for (std::size_t level = 0; level < chain.levels.size(); ++level) expectValues(glb, level);
   LodWriteOptions compress;
-  compress.compression = LodCompression::Meshopt;
+  compress.compression = GlbCompression::Meshopt;
   writeLods(chain, packed, MeshFormat::Glb, compress);
   EXPECT_LT(packed.str().size(), plain.str().size());
   const std::string bytes = packed.str();

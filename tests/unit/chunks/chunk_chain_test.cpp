@@ -125,7 +125,10 @@ TEST(SplitLevel, GivesEachTriangleToOnePartOfItsChunk) {
   Chain chain;
   for (const double tolerance : {0.05, 0.4}) chain.make(tolerance);
   const ChainLevel& level = chain.levels[0];
-  const std::vector<ChunkLevel> chunks = splitLevel(chain.cut, level, chain.model.job());
+  base::Job& job = chain.model.job();
+  const CurveNormals curves(level, chain.cut.mesh.positions.size(), 180, job);
+  const std::vector<ChunkLevel> chunks =
+      splitLevel(chain.cut, level, shade(level, curves, 180, job), job);
   ASSERT_EQ(chunks.size(), chain.cut.chunks.size());
   std::size_t own = 0, strips = 0, other = 0;
   for (const ChunkLevel& chunk : chunks) {

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <tufa/chunks.h>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 
 #include "support/expect_error.h"
 #include "support/scratch_folder.h"
@@ -136,6 +139,104 @@ INSTANTIATE_TEST_SUITE_P(Chunks, ChunkFormats,
                          ::testing::Values(ChunkFormat::Glb, ChunkFormat::Ply),
                          [](const auto& param) {
                            return param.param == ChunkFormat::Glb ? "Glb" : "Ply";
+                         });
+
+class CompressedChunks : public ChunkFiles, public ::testing::WithParamInterface<GlbCompression> {
+ protected:
+  CompressedChunks() {
+    index.compression = GetParam();
+    index.step = 0.125;  // half a metre's 32nd
+    index.scale = 0.5;
+    index.up = UpAxis::Z;
+    for (Chunk& chunk : chunks) {
+      for (ChunkLevel& level : chunk.levels) {
+        for (Position& p : level.positions) p = {p.x + 1000, p.y - 77.625, p.z};
+      }
+    }
+  }
+
+  /// The corners of all triangles of a part, in any order.
+  static std::multiset<std::array<double, 9>> cornersOf(const ChunkLevel& level,
+                                                        const std::vector<Triangle>& triangles) {
+    std::multiset<std::array<double, 9>> corners;
+    for (const Triangle& t : triangles) {
+      std::array<std::array<double, 3>, 3> own;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Position& p = level.positions[t.vertices[i]];
+        own[i] = {p.x, p.y, p.z};
+      }
+      std::rotate(own.begin(), std::min_element(own.begin(), own.end()), own.end());
+      std::array<double, 9> flat;
+      for (std::size_t i = 0; i < 9; ++i) flat[i] = own[i / 3][i % 3];
+      corners.insert(flat);
+    }
+    return corners;
+  }
+};
+
+TEST_P(CompressedChunks, AreReadBackToTheBit) {
+  write(ChunkFormat::Glb);
+  const ChunkIndex read = readChunkIndex(name);
+  EXPECT_EQ(read.compression, GetParam());
+  EXPECT_EQ(read.step, 0.125);
+  EXPECT_EQ(read.scale, 0.5);
+  EXPECT_EQ(read.up, UpAxis::Z);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const Chunk chunk = readChunk(read, i, name);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ChunkLevel &a = chunk.levels[k], &b = chunks[i].levels[k];
+      EXPECT_EQ(cornersOf(a, a.interior), cornersOf(b, b.interior));
+      for (std::size_t face = 0; face < kChunkFaces; ++face) {
+        EXPECT_EQ(cornersOf(a, a.regular[face]), cornersOf(b, b.regular[face]));
+        EXPECT_EQ(cornersOf(a, a.transition[face]), cornersOf(b, b.transition[face]));
+      }
+      for (const Normal& n : a.normals) EXPECT_EQ(n, Normal(0, 0, 1));
+    }
+  }
+}
+
+// What a program that computes in floats makes of a vertex is exact: numbers times a power of two,
+// from a place that is a multiple of it.
+TEST_P(CompressedChunks, AreExactInFloats) {
+  write(ChunkFormat::Glb);
+  const std::string bytes = readBytes(folder / index.chunks[0].levels[0].file);
+  const auto json = nlohmann::json::parse(bytes.substr(20, bytes.rfind("BIN") - 4 - 20));
+  const nlohmann::json& node = json["nodes"][0];
+  EXPECT_EQ(node["scale"], (std::array{0.0625, 0.0625, 0.0625}));
+  for (const double x : node["translation"].get<std::array<double, 3>>()) {
+    EXPECT_EQ(std::fmod(x, 0.0625), 0);
+    EXPECT_EQ(static_cast<double>(static_cast<float>(x)), x);
+  }
+  const std::size_t positions = json["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
+  EXPECT_EQ(json["accessors"][positions]["componentType"], 5123);
+  EXPECT_FALSE(json["accessors"][positions].contains("normalized"));
+}
+
+TEST_P(CompressedChunks, SurviveDamage) {
+  write(ChunkFormat::Glb);
+  const auto file = folder / index.chunks[0].levels[0].file;
+  const std::string bytes = readBytes(file);
+  std::mt19937 random(6);
+  for (int round = 0; round < 300; ++round) {
+    std::string damaged = bytes;
+    damaged[random() % damaged.size()] = static_cast<char>(random() & 255u);
+    writeBytes(file, damaged);
+    expectReadOrRefused();
+  }
+}
+
+TEST_P(CompressedChunks, AreRefusedOffTheLattice) {
+  chunks[0].levels[0].positions[2].x += 0.01;
+  test::expectError(ErrorCode::InvalidArgument, "not on the lattice",
+                    [&] { write(ChunkFormat::Glb); });
+  chunks[0].levels[0].positions[2].x += 1e4 - 0.01;
+  test::expectError(ErrorCode::InvalidArgument, "16 bits", [&] { write(ChunkFormat::Glb); });
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, CompressedChunks,
+                         ::testing::Values(GlbCompression::Quantized, GlbCompression::Meshopt),
+                         [](const auto& param) {
+                           return param.param == GlbCompression::Meshopt ? "Meshopt" : "Quantized";
                          });
 
 TEST_F(ChunkFiles, KeepPositionsFarFromTheOriginInPly) {

@@ -12,7 +12,7 @@
 #include <random>
 #include <sstream>
 
-#include "io/mesh/mesh_format.h"
+#include "base/require_at_most.h"
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
@@ -136,10 +136,10 @@ TEST(Limits, FlatVoxelsAndFarOriginsAreRefused) {
 }
 
 TEST(Limits, OfFormatsAreNamed) {
-  io::requireAtMost(4294967295u, 4294967295u, "triangles", ".stl");
+  base::requireAtMost(4294967295u, 4294967295u, "triangles", ".stl");
   expectError(ErrorCode::LimitExceeded,
               "4294967296 triangles are more than the 4294967295 that .stl",
-              [] { io::requireAtMost(4294967295u, 4294967296u, "triangles", ".stl"); });
+              [] { base::requireAtMost(4294967295u, 4294967296u, "triangles", ".stl"); });
 }
 
 TEST(Limits, CellsAreAnyPowerOfTwo) {

@@ -120,7 +120,7 @@ TEST_F(Misuse, OfEnums) {
     writing.up = static_cast<UpAxis>(number);
     expectRefused("has no meaning", [&] { writeLods(chain, folder / "m.glb", writing); });
     writing = {};
-    writing.compression = static_cast<LodCompression>(number);
+    writing.compression = static_cast<GlbCompression>(number);
     expectRefused("has no meaning", [&] { writeLods(chain, folder / "m.glb", writing); });
     expectRefused("has no meaning", [&] {
       (void)writeChunk({}, {}, (folder / "").string(), static_cast<ChunkFormat>(number));

@@ -157,11 +157,11 @@ TEST(LodFiles, FloatsKeepEveryLevelAsItIs) {
   EXPECT_EQ(sortedPositions(readMesh(folder / "part.glb")), sortedPositions(chain.levels[0].mesh));
 }
 
-class Compressed : public ::testing::TestWithParam<LodCompression> {};
+class Compressed : public ::testing::TestWithParam<GlbCompression> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, Compressed,
-                         ::testing::Values(LodCompression::Quantized, LodCompression::Meshopt),
+                         ::testing::Values(GlbCompression::Quantized, GlbCompression::Meshopt),
                          [](const auto& test) {
-                           return test.param == LodCompression::Meshopt ? "Meshopt" : "Quantized";
+                           return test.param == GlbCompression::Meshopt ? "Meshopt" : "Quantized";
                          });
 
 TEST_P(Compressed, KeepsTheTopologyOfEveryLevel) {
@@ -197,7 +197,7 @@ TEST_P(Compressed, IsSmaller) {
   writeLods(chain, folder / "plain.glb", options);
   options.compression = GetParam();
   writeLods(chain, folder / "small.glb", options);
-  const double most = GetParam() == LodCompression::Meshopt ? 0.5 : 0.75;
+  const double most = GetParam() == GlbCompression::Meshopt ? 0.5 : 0.75;
   EXPECT_LT(static_cast<double>(std::filesystem::file_size(folder / "small.glb")),
             most * static_cast<double>(std::filesystem::file_size(folder / "plain.glb")));
 }
@@ -224,6 +224,26 @@ TEST_P(Compressed, FallsBackToFloatsWhereVerticesWouldFallTogether) {
   writeLods(tetrahedron(0.1), folder / "t.glb", options, &report);
   EXPECT_TRUE(report.floatLevels.empty());
   EXPECT_EQ(readMesh(folder / "t.glb").positions.size(), 5u);
+}
+
+TEST_P(Compressed, HoldsMeshesOfWriteMeshes) {
+  const ScratchFolder folder;
+  const Mesh torus = chainOf(Shape::Torus, 0.1, 1).levels[0].mesh;
+  WriteOptions options;
+  options.compression = GetParam();
+  options.up = UpAxis::Z;
+  options.scale = 0.5;
+  WriteReport report;
+  writeMeshes({{"fine", tetrahedron(1e-6).levels[0].mesh}, {"torus", torus}}, folder / "m.glb",
+              options, &report);
+  EXPECT_EQ(report.floatMeshes, std::vector<std::string>{"fine"});
+  write(torus, folder / "t.glb", options, &report);
+  EXPECT_TRUE(report.floatMeshes.empty());
+  const CheckReport found = check(readMesh(folder / "t.glb")), wanted = check(torus);
+  EXPECT_TRUE(found.watertight());
+  EXPECT_EQ(found.vertices, wanted.vertices);
+  EXPECT_NEAR(found.volume, wanted.volume / 8, 1e-3 * wanted.volume);
+  EXPECT_EQ(check(readMesh(folder / "m.glb")).triangles, wanted.triangles + 6);
 }
 
 TEST_P(Compressed, RefusesDamage) {
@@ -274,8 +294,8 @@ TEST(LodFiles, TurnsAndScalesTheVolume) {
   LodWriteOptions options;
   options.up = UpAxis::Z;
   options.scale = 10;
-  for (const LodCompression compression :
-       {LodCompression::None, LodCompression::Quantized, LodCompression::Meshopt}) {
+  for (const GlbCompression compression :
+       {GlbCompression::None, GlbCompression::Quantized, GlbCompression::Meshopt}) {
     options.compression = compression;
     writeLods(chain, folder / "t.glb", options);
     const Mesh back = readMesh(folder / "t.glb");
@@ -372,7 +392,7 @@ TEST(LodFiles, VerticesStandInTheOrderOfTheirFirstUse) {
 
 TEST(LodFiles, AreTheSameForAnyNumberOfThreads) {
   const ScratchFolder folder;
-  for (const LodCompression compression : {LodCompression::None, LodCompression::Meshopt}) {
+  for (const GlbCompression compression : {GlbCompression::None, GlbCompression::Meshopt}) {
     for (const int threads : {1, 2}) {
       LodWriteOptions options;
       options.compression = compression;

@@ -17,7 +17,8 @@ struct CurveEdge {
 
 class Splitter {
  public:
-  Splitter(const CutMesh& cut, const ChainLevel& level) : cut_(cut), level_(level) {
+  Splitter(const CutMesh& cut, const ChainLevel& level, const ShadedLevel& shaded)
+      : cut_(cut), level_(level), shaded_(shaded) {
     triangles_.resize(cut.chunks.size());
     edges_.resize(cut.chunks.size());
     for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
@@ -28,12 +29,13 @@ class Splitter {
 
   [[nodiscard]] ChunkLevel make(std::uint32_t chunk) const {
     ChunkLevel out;
-    std::unordered_map<VertexIndex, VertexIndex> places;
+    std::unordered_map<VertexIndex, VertexIndex> places, anyOf;
     const auto local = [&](VertexIndex v) {
       const auto [found, isNew] = places.emplace(v, static_cast<VertexIndex>(out.positions.size()));
       if (isNew) {
-        out.positions.push_back(level_.positions[v]);
-        out.normals.push_back(level_.normals[v]);
+        out.positions.push_back(level_.positions[shaded_.sources[v]]);
+        out.normals.push_back(shaded_.normals[v]);
+        anyOf.emplace(shaded_.sources[v], found->second);
       }
       return found->second;
     };
@@ -46,15 +48,16 @@ class Splitter {
       bool isMixed = false;
       const std::uint32_t plane = changingPlane(cut_, level_, triangle, isMixed);
       if (plane == ChunkPlane::kNone) {
-        out.interior.push_back(localTriangle(triangle));
+        out.interior.push_back(localTriangle(shaded_.triangles[t]));
         continue;
       }
       const std::size_t face = faceOf(chunk, plane);
-      out.regular[face].push_back(localTriangle(triangle));
-      const Triangle other = changed(level_, triangle);
-      if (!isGone(other)) out.transition[face].push_back(localTriangle(other));
+      out.regular[face].push_back(localTriangle(shaded_.triangles[t]));
+      if (isGone(changed(level_, triangle))) continue;
+      out.transition[face].push_back(localTriangle(shaded_.changed[t]));
     }
-    addSeams(chunk, local, out);
+    addSeams(
+        chunk, [&](VertexIndex v) { return anyOf.at(v); }, out);
     out.maxErrorVoxels = level_.errors[chunk];
     out.transitionErrorVoxels = level_.transitionErrors[chunk];
     return out;
@@ -142,14 +145,16 @@ class Splitter {
 
   const CutMesh& cut_;
   const ChainLevel& level_;
+  const ShadedLevel& shaded_;
   std::vector<std::vector<std::uint32_t>> triangles_;  ///< of each chunk
   std::vector<std::vector<CurveEdge>> edges_;          ///< of each chunk
 };
 
 }  // namespace
 
-std::vector<ChunkLevel> splitLevel(const CutMesh& cut, const ChainLevel& level, base::Job& job) {
-  const Splitter splitter(cut, level);
+std::vector<ChunkLevel> splitLevel(const CutMesh& cut, const ChainLevel& level,
+                                   const ShadedLevel& shaded, base::Job& job) {
+  const Splitter splitter(cut, level, shaded);
   std::vector<ChunkLevel> chunks(cut.chunks.size());
   job.forRanges(chunks.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -38,8 +38,17 @@ class Weld {
 
   VertexIndex add(const Position& position, const Normal& normal) {
     const VertexIndex vertex = welder_.indexOf(position);
-    if (vertex == mesh_.normals.size()) mesh_.normals.push_back(normal);
+    if (vertex == mesh_.normals.size()) {
+      mesh_.normals.push_back(normal);
+    } else if (!(mesh_.normals[vertex] == normal)) {
+      sums_.try_emplace(vertex, mesh_.normals[vertex]).first->second += Vec3(normal);
+    }
     return vertex;
+  }
+
+  /// Gives vertices of several normals their mean, at the end.
+  void joinNormals() {
+    for (const auto& [vertex, sum] : sums_) mesh_.normals[vertex] = Normal(sum.unitOrX());
   }
 
   /// Adds a triangle, unless two of its corners became one.
@@ -52,6 +61,7 @@ class Weld {
  private:
   Mesh& mesh_;
   base::VertexWelder welder_;
+  std::map<VertexIndex, Vec3> sums_;  ///< of normals, where there are several
 };
 
 /// The vertices of one LOD of a chunk, as indices in the common mesh, to which they are added when
@@ -219,6 +229,7 @@ Mesh assembleChunks(const std::vector<Chunk>& chunks, const std::vector<std::siz
       }
     }
   }
+  weld.joinNormals();
   return mesh;
 }
 

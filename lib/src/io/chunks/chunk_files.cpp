@@ -4,15 +4,18 @@
 #include <tufa/error.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "base/known_enum.h"
 #include "base/single_precision.h"
 #include "io/checksum.h"
 #include "io/chunks/chunk_parts.h"
-#include "io/gltf/glb.h"
-#include "io/mesh/mesh_format.h"
+#include "io/gltf/glb_document.h"
 #include "io/output_file.h"
 
 namespace tufa {
@@ -34,9 +37,7 @@ class Bytes {
   void add(const Floats& floats) {
     for (const float x : floats) add(x);
   }
-  void pad() { bytes_.resize((bytes_.size() + 3) / 4 * 4); }
   [[nodiscard]] const std::string& text() const { return bytes_; }
-  [[nodiscard]] std::size_t size() const { return bytes_.size(); }
 
  private:
   std::string bytes_;
@@ -68,113 +69,98 @@ std::size_t triangleCount(const ChunkLevel& level) {
   return count;
 }
 
-/// A .glb while it is built: its document and its binary data.
-class GlbBuilder {
- public:
-  GlbBuilder(const ChunkIndex& index, const ChunkLevel& level) : index_(index), level_(level) {}
+/// Whether positions are stored as whole numbers of steps.
+bool isOnLattice(const ChunkIndex& index) { return index.compression != GlbCompression::None; }
 
-  /// One mesh under one node, a primitive for each part that has triangles.
-  void build(const Chunk& chunk, std::size_t number) {
-    const std::string name = io::chunkName(chunk.index, number);
-    const Position& origin = index_.origin;
-    json_["scenes"] = Json::array({{{"nodes", {0}}}});
-    json_["nodes"] = Json::array(
-        {{{"name", name},
-          {"mesh", 0},
-          {"translation", {origin.x, origin.y, origin.z}},
-          {"extras",
-           {{"chunk", {chunk.index[0], chunk.index[1], chunk.index[2]}}, {"level", number}}}}});
-    const Json attributes = {{"POSITION", addPositions()}, {"NORMAL", addNormals()}};
-    json_["meshes"] = Json::array({{{"name", name}, {"primitives", addPrimitives(attributes)}}});
-    json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
+/// All parts of a level as one list of triangles; `parts` gets the numbers of their indices.
+Mesh meshOf(const ChunkLevel& level, std::vector<std::size_t>& parts) {
+  Mesh mesh;
+  mesh.positions = level.positions;
+  mesh.normals = level.normals;
+  for (std::size_t part = 0; part < kChunkParts; ++part) {
+    const std::vector<Triangle>& triangles = io::partOf(level, part);
+    mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+    parts.push_back(3 * triangles.size());
   }
+  return mesh;
+}
 
-  void write(SummedFile& file) const {
-    file.write(io::glb::head(json_, binary_.size()));
-    file.write(binary_.text());
+/// One vertex for each of the level's.
+shading::ShadedMesh shadedOf(const Mesh& mesh) {
+  shading::ShadedMesh shaded;
+  shaded.sources.resize(mesh.positions.size());
+  std::iota(shaded.sources.begin(), shaded.sources.end(), VertexIndex{0});
+  shaded.normals = mesh.normals;
+  for (const Triangle& t : mesh.triangles) {
+    shaded.indices.insert(shaded.indices.end(), t.vertices.begin(), t.vertices.end());
   }
+  return shaded;
+}
 
- private:
-  std::size_t addView(std::size_t begin, int target) {
-    return io::glb::add(json_, "bufferViews",
-                        {{"buffer", 0},
-                         {"byteOffset", begin},
-                         {"byteLength", binary_.size() - begin},
-                         {"target", target}});
+std::array<double, 3> turnedOf(const Position& p, UpAxis up) {
+  return io::turned({p.x, p.y, p.z}, up);
+}
+
+/// How the positions of a level are stored: counted from the index's origin, or, on its lattice,
+/// from a place of it at the level's least corner. Throws Error(InvalidArgument) for positions off
+/// the lattice.
+io::GlbFrame frameOf(const ChunkIndex& index, const ChunkLevel& level,
+                     const io::GlbPacking& packing) {
+  if (!isOnLattice(index)) {
+    return io::floatFrame(turnedOf(index.origin, packing.up), 1, packing);
   }
-
-  std::size_t addPositions() {
-    constexpr float kMost = std::numeric_limits<float>::infinity();
-    Floats least{kMost, kMost, kMost}, greatest{-kMost, -kMost, -kMost};
-    for (const Position& p : level_.positions) {
-      const Floats place{static_cast<float>(p.x - index_.origin.x),
-                         static_cast<float>(p.y - index_.origin.y),
-                         static_cast<float>(p.z - index_.origin.z)};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        least[axis] = std::min(least[axis], place[axis]);
-        greatest[axis] = std::max(greatest[axis], place[axis]);
+  std::array<double, 3> least{}, greatest{};
+  least.fill(std::numeric_limits<double>::infinity());
+  greatest.fill(-std::numeric_limits<double>::infinity());
+  for (const Position& p : level.positions) {
+    const std::array<double, 3> place = turnedOf(p, packing.up);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double steps = std::round(place[axis] / index.step);
+      if (steps * index.step + 0.0 != place[axis] + 0.0) {
+        throw Error(ErrorCode::InvalidArgument,
+                    "a vertex of a chunk is not on the lattice of its index");
       }
-      binary_.add(place);
-    }
-    return io::glb::add(json_, "accessors",
-                        {{"bufferView", addView(0, io::glb::kArrayBuffer)},
-                         {"componentType", io::glb::kFloat},
-                         {"count", level_.positions.size()},
-                         {"type", "VEC3"},
-                         {"min", least},
-                         {"max", greatest}});
-  }
-
-  std::size_t addNormals() {
-    const std::size_t begin = binary_.size();
-    for (const Normal& n : level_.normals) binary_.add(io::glb::unitNormal(n));
-    return io::glb::add(json_, "accessors",
-                        {{"bufferView", addView(begin, io::glb::kArrayBuffer)},
-                         {"componentType", io::glb::kFloat},
-                         {"count", level_.normals.size()},
-                         {"type", "VEC3"}});
-  }
-
-  Json addPrimitives(const Json& attributes) {
-    const bool isShort = level_.positions.size() <= io::glb::kMostShortVertices;
-    const std::size_t begin = binary_.size();
-    Json primitives = Json::array();
-    for (std::size_t part = 0; part < kChunkParts; ++part) {
-      const std::vector<Triangle>& triangles = io::partOf(level_, part);
-      if (triangles.empty()) continue;
-      const std::size_t accessor = io::glb::add(
-          json_, "accessors",
-          {{"bufferView", 2},
-           {"byteOffset", binary_.size() - begin},
-           {"componentType", isShort ? io::glb::kUnsignedShort : io::glb::kUnsignedInt},
-           {"count", 3 * triangles.size()},
-           {"type", "SCALAR"}});
-      for (const Triangle& triangle : triangles) addIndices(triangle, isShort);
-      primitives.push_back({{"attributes", attributes},
-                            {"indices", accessor},
-                            {"mode", 4},
-                            {"extras", {{"name", io::partName(part)}}}});
-    }
-    addView(begin, io::glb::kElementArrayBuffer);
-    binary_.pad();
-    return primitives;
-  }
-
-  void addIndices(const Triangle& triangle, bool isShort) {
-    for (const VertexIndex vertex : triangle.vertices) {
-      if (isShort) {
-        binary_.add(static_cast<std::uint16_t>(vertex));
-      } else {
-        binary_.add(vertex);
-      }
+      least[axis] = std::min(least[axis], steps);
+      greatest[axis] = std::max(greatest[axis], steps);
     }
   }
+  io::GlbFrame frame;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (greatest[axis] - least[axis] > io::kMostShort) {
+      throw Error(ErrorCode::InvalidArgument, "16 bits do not hold a chunk on its lattice");
+    }
+    frame.origin[axis] = least[axis] * index.step;
+    frame.translation[axis] = least[axis] * (index.step * index.scale) + 0.0;
+  }
+  frame.factor = 1 / index.step;
+  frame.nodeScale = index.step * index.scale;
+  frame.quantized = true;
+  return frame;
+}
 
-  const ChunkIndex& index_;
-  const ChunkLevel& level_;
-  Json json_ = io::glb::emptyDocument();
-  Bytes binary_;
-};
+/// One mesh under one node, a primitive for each part that has triangles.
+void writeGlb(const ChunkIndex& index, const Chunk& chunk, std::size_t number, SummedFile& file) {
+  const ChunkLevel& level = chunk.levels[number];
+  const io::GlbPacking packing{index.compression, index.up, index.scale};
+  std::vector<std::size_t> parts;
+  const Mesh mesh = meshOf(level, parts);
+  shading::ShadedMesh shaded = shadedOf(mesh);
+  if (isOnLattice(index)) shading::orderForGraphics(shaded, parts);
+  io::GlbStreams streams = io::encodeIn(frameOf(index, level, packing), mesh, shaded, packing);
+  io::GlbDocument document(index.compression);
+  const Json attributes = document.addVertices(streams, {});
+  Json primitives = document.addParts(attributes, streams.indices, parts);
+  std::size_t part = 0;
+  for (Json& primitive : primitives) {
+    while (parts[part] == 0) ++part;
+    primitive["extras"]["name"] = io::partName(part++);
+  }
+  const std::size_t node = document.addMesh(
+      io::chunkName(chunk.index, number), std::move(primitives), streams.frame,
+      {{"chunk", {chunk.index[0], chunk.index[1], chunk.index[2]}}, {"level", number}});
+  document.json()["scenes"][0]["nodes"].push_back(node);
+  document.write([&](std::string_view bytes) { file.write(bytes); });
+}
 
 std::string plyHeader(const ChunkLevel& level, bool precise) {
   const std::string scalar = precise ? "double" : "float";
@@ -227,9 +213,7 @@ std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
     made.name = io::chunkName(chunk.index, number) + (format == ChunkFormat::Glb ? ".glb" : ".ply");
     SummedFile file(std::filesystem::path(folder) / made.name);
     if (format == ChunkFormat::Glb) {
-      GlbBuilder builder(index, level);
-      builder.build(chunk, number);
-      builder.write(file);
+      writeGlb(index, chunk, number, file);
     } else {
       writePly(level, file);
     }

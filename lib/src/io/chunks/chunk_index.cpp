@@ -3,8 +3,11 @@
 #include <tufa/chunks.h>
 #include <tufa/error.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "io/chunks/chunk_parts.h"
 #include "io/input_bytes.h"
@@ -17,6 +20,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
+/// By the numbers of GlbCompression.
+constexpr std::array<std::string_view, 3> kCompressions{"none", "quantized", "meshopt"};
 
 Json toJson(const Position& p) { return Json::array({p.x, p.y, p.z}); }
 
@@ -47,10 +52,18 @@ Json toJson(const ChunkIndex& index, std::size_t number) {
 
 /// All but the chunks.
 Json headOf(const ChunkIndex& index) {
-  return {{"tufa_chunks", kVersion},       {"grid", index.grid},
-          {"chunk_size", index.chunkSize}, {"tolerances_voxels", index.tolerances},
-          {"voxel_size", index.voxelSize}, {"transform", index.transform},
-          {"origin", toJson(index.origin)}};
+  return {{"tufa_chunks", kVersion},
+          {"grid", index.grid},
+          {"chunk_size", index.chunkSize},
+          {"tolerances_voxels", index.tolerances},
+          {"voxel_size", index.voxelSize},
+          {"transform", index.transform},
+          {"origin", toJson(index.origin)},
+          {"crease_angle", index.creaseAngle},
+          {"compression", kCompressions.at(static_cast<std::size_t>(index.compression))},
+          {"step", index.step},
+          {"up", index.up == UpAxis::Z ? "z" : "y"},
+          {"metres_per_unit", index.scale}};
 }
 
 std::string textOf(const Json& json) {
@@ -86,6 +99,7 @@ class IndexReader {
         index.transform[row][k] = number(json["transform"][row][k]);
     }
     index.origin = position(json.at("origin"));
+    readPacking(json, index);
     for (const Json& chunk : json.at("chunks")) addChunk(chunk, index);
     return index;
   }
@@ -151,6 +165,22 @@ class IndexReader {
     entry.transitionErrorVoxels = error(json.at("transition_error_voxels"));
     entry.intersectionsLeft = count(json.at("pairs_left"));
     return entry;
+  }
+
+  // Where keys are missing: as files were before there were these.
+  void readPacking(const Json& json, ChunkIndex& index) const {
+    index.creaseAngle = json.value("crease_angle", 180.0);
+    const auto known = json.value("compression", std::string(kCompressions.front()));
+    const auto* const found = std::find(kCompressions.begin(), kCompressions.end(), known);
+    require(found != kCompressions.end(), "its compression is unknown");
+    index.compression = static_cast<GlbCompression>(found - kCompressions.begin());
+    index.step = json.value("step", 0.0);
+    require(index.compression == GlbCompression::None || index.step > 0, "it has no step");
+    const auto up = json.value("up", std::string("y"));
+    require(up == "y" || up == "z", "what is up is neither y nor z");
+    index.up = up == "z" ? UpAxis::Z : UpAxis::Y;
+    index.scale = json.value("metres_per_unit", 1.0);
+    require(index.scale > 0, "its metres are not above 0");
   }
 
   void addChunk(const Json& json, ChunkIndex& index) const {

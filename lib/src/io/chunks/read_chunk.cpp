@@ -4,25 +4,59 @@
 #include <tufa/error.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "io/checksum.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb_file.h"
+#include "io/gltf/glb_streams.h"
 #include "io/mesh/mesh_format.h"
 #include "io/mesh/mesh_readers.h"
 
 namespace tufa {
 namespace {
 
+/// Where the positions in a file lie in the world: whole numbers of steps from a place of the
+/// lattice, or world units from the index's origin; y up.
+struct Placement {
+  std::array<double, 3> begin{};  ///< steps or world units
+  double step = 1;
+  UpAxis up = UpAxis::Y;
+
+  [[nodiscard]] Position worldOf(const Vec3& p) const {
+    const std::array<double, 3> place{step * (begin[0] + p[0]), step * (begin[1] + p[1]),
+                                      step * (begin[2] + p[2])};
+    const auto world = io::turnedBack(place, up);
+    return {world[0], world[1], world[2]};
+  }
+};
+
+Placement placementOf(const ChunkIndex& index, const nlohmann::json& node,
+                      const io::InputBytes& input) {
+  const bool isOnLattice = index.compression != GlbCompression::None;
+  Placement placement{{}, isOnLattice ? index.step : 1, index.up};
+  const std::array<double, 3> one{1, 1, 1}, none{0, 0, 0};
+  const auto scale = node.value("scale", one);
+  const auto translation = node.value("translation", none);
+  const double metres = placement.step * index.scale;
+  if (scale != std::array<double, 3>{metres, metres, metres}) {
+    input.fail("its scale is not that of chunks.json");
+  }
+  placement.begin = io::turned({index.origin.x, index.origin.y, index.origin.z}, index.up);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (isOnLattice) placement.begin[axis] = std::round(translation[axis] / metres);
+    if (translation[axis] != metres * placement.begin[axis]) {
+      input.fail("its origin is not that of chunks.json");
+    }
+  }
+  return placement;
+}
+
 void readGlb(const ChunkIndex& index, const io::InputBytes& input, ChunkLevel& level) {
   io::glb::File file(input);
   const nlohmann::json& node = file.document().at("nodes").at(0);
-  const Position& origin = index.origin;
-  if (node.at("translation").get<std::array<double, 3>>() !=
-      std::array<double, 3>{origin.x, origin.y, origin.z}) {
-    input.fail("its origin is not that of chunks.json");
-  }
+  const Placement placement = placementOf(index, node, input);
   const nlohmann::json& primitives = file.document().at("meshes").at(0).at("primitives");
   const nlohmann::json& attributes = primitives.at(0).at("attributes");
   const auto forEachPoint = [&](const char* attribute, const auto& add) {
@@ -33,12 +67,11 @@ void readGlb(const ChunkIndex& index, const io::InputBytes& input, ChunkLevel& l
       add(point);
     }
   };
-  forEachPoint("POSITION", [&](const Vec3& p) {
-    level.positions.emplace_back(origin.x + p[0], origin.y + p[1], origin.z + p[2]);
-  });
+  forEachPoint("POSITION", [&](const Vec3& p) { level.positions.push_back(placement.worldOf(p)); });
   forEachPoint("NORMAL", [&](const Vec3& n) {
-    level.normals.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]),
-                               static_cast<float>(n[2]));
+    const auto normal = io::turnedBack({n[0], n[1], n[2]}, index.up);
+    level.normals.emplace_back(static_cast<float>(normal[0]), static_cast<float>(normal[1]),
+                               static_cast<float>(normal[2]));
   });
   for (const nlohmann::json& primitive : primitives) {
     const auto name = primitive.at("extras").at("name").get<std::string>();

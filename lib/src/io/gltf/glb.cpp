@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/mesh/mesh_format.h"
+#include "base/require_at_most.h"
 
 namespace tufa::io::glb {
 namespace {
@@ -33,7 +33,7 @@ std::string head(const Json& document, std::uint64_t binaryBytes) {
   std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
   while (text.size() % 4 != 0) text += ' ';
   const std::uint64_t total = 12 + 8 + text.size() + (binaryBytes > 0 ? 8 + binaryBytes : 0);
-  requireAtMost(std::numeric_limits<std::uint32_t>::max(), total, "bytes", ".glb");
+  base::requireAtMost(std::numeric_limits<std::uint32_t>::max(), total, "bytes", ".glb");
   std::string bytes;
   for (const std::uint64_t word : {std::uint64_t{kMagic}, std::uint64_t{2}, total,
                                    std::uint64_t{text.size()}, std::uint64_t{kJsonChunk}}) {

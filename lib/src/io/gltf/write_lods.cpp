@@ -7,7 +7,7 @@
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "io/gltf/glb.h"
-#include "io/gltf/lod_streams.h"
+#include "io/gltf/glb_document.h"
 #include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
@@ -22,101 +22,43 @@ void requireInRange(const LodWriteOptions& options) {
     throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
   }
   requireSoundFrame(FileFrame{options.name, options.up, options.scale});
-  base::requireKnown(options.compression, LodCompression::Meshopt, "the compression");
+  base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
 }
 
-/// Builds a .glb of some LODs: the document, and the bytes behind it.
+GlbPacking packingOf(const LodWriteOptions& options) {
+  return {options.compression, options.up, options.scale};
+}
+
+std::vector<const Mesh*> meshesOf(const LodChain& chain) {
+  std::vector<const Mesh*> meshes;
+  for (const Lod& lod : chain.levels) meshes.push_back(&lod.mesh);
+  return meshes;
+}
+
+/// Builds a .glb of some LODs.
 class LodDocument {
  public:
   LodDocument(const LodChain& chain, const LodWriteOptions& options)
-      : chain_(chain), options_(options) {}
+      : chain_(chain), options_(options), document_(options.compression) {}
 
-  void addLevel(std::size_t level, LodStreams streams) {
-    Json accessors = addAccessors(streams, chain_.levels[level].mesh.attributes);
-    const std::string name = options_.name + "_LOD" + std::to_string(level);
+  void addLevel(std::size_t level, GlbStreams streams) {
     const Json extras = extrasOf(level, streams);
-    const std::size_t mesh = glb::add(
-        json_, "meshes",
-        {{"name", name}, {"primitives", Json::array({std::move(accessors)})}, {"extras", extras}});
-    Json node = {{"name", name}, {"mesh", mesh}};
-    const LodFrame& frame = streams.frame;
-    if (frame.translation != std::array<double, 3>{0, 0, 0}) {
-      node["translation"] = frame.translation;
-    }
-    if (frame.nodeScale != 1) {
-      node["scale"] = {frame.nodeScale, frame.nodeScale, frame.nodeScale};
-    }
-    node["extras"] = extras;
-    glb::add(json_, "nodes", std::move(node));
+    const Json attributes = document_.addVertices(streams, chain_.levels[level].mesh.attributes);
+    const std::size_t whole[] = {streams.indices.count};
+    document_.addMesh(options_.name + "_LOD" + std::to_string(level),
+                      document_.addParts(attributes, streams.indices, whole), streams.frame,
+                      extras);
     levels_.push_back(level);
-    blobs_.push_back(std::move(streams.positions.bytes));
-    blobs_.push_back(std::move(streams.normals.bytes));
-    for (LodStream& attribute : streams.attributes) blobs_.push_back(std::move(attribute.bytes));
-    blobs_.push_back(std::move(streams.indices.bytes));
   }
 
   void write(OutputFile& file) {
-    finish();
-    const std::string head = glb::head(json_, binaryBytes_);
-    file.write(head.data(), head.size());
-    const std::uint32_t padding = 0;
-    for (const std::string& blob : blobs_) {
-      file.write(blob.data(), blob.size());
-      file.write(&padding, padded(blob.size()) - blob.size());
-    }
+    if (!levels_.empty()) document_.json()["scenes"] = Json::array({{{"nodes", {0}}}});
+    if (levels_.size() > 1) linkLevels();
+    document_.write([&](std::string_view bytes) { file.write(bytes.data(), bytes.size()); });
   }
 
  private:
-  static std::uint64_t padded(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
-
-  [[nodiscard]] bool packs() const { return options_.compression == LodCompression::Meshopt; }
-
-  /// Adds the view of a stream. A packed one names a buffer without data, which tells the unpacked
-  /// size; its bytes come from the packed data.
-  std::size_t addView(const LodStream& stream, bool vertices) {
-    const std::uint64_t plain = stream.stride * stream.count;
-    Json view = {{"buffer", packs() ? 1 : 0},
-                 {"byteOffset", packs() ? plainBytes_ : binaryBytes_},
-                 {"byteLength", plain}};
-    if (vertices) view["byteStride"] = stream.stride;
-    view["target"] = vertices ? glb::kArrayBuffer : glb::kElementArrayBuffer;
-    if (packs()) {
-      view["extensions"]["EXT_meshopt_compression"] = {
-          {"buffer", 0},
-          {"byteOffset", binaryBytes_},
-          {"byteLength", stream.bytes.size()},
-          {"byteStride", stream.stride},
-          {"count", stream.count},
-          {"mode", vertices ? "ATTRIBUTES" : "TRIANGLES"}};
-    }
-    binaryBytes_ += padded(stream.bytes.size());
-    plainBytes_ += padded(plain);
-    return glb::add(json_, "bufferViews", std::move(view));
-  }
-
-  std::size_t addAccessor(const LodStream& stream, bool vertices) {
-    Json accessor = {{"bufferView", addView(stream, vertices)},
-                     {"componentType", stream.componentType},
-                     {"count", stream.count},
-                     {"type", stream.type}};
-    if (vertices && stream.componentType != glb::kFloat) accessor["normalized"] = true;
-    return glb::add(json_, "accessors", std::move(accessor));
-  }
-
-  /// The primitive of an LOD.
-  Json addAccessors(const LodStreams& streams, const std::vector<Attribute>& attributes) {
-    const std::size_t positions = addAccessor(streams.positions, true);
-    json_["accessors"][positions]["min"] = streams.least;
-    json_["accessors"][positions]["max"] = streams.greatest;
-    Json names = {{"POSITION", positions}, {"NORMAL", addAccessor(streams.normals, true)}};
-    for (std::size_t i = 0; i < attributes.size(); ++i) {
-      names[gltfName(attributes, i)] = addAccessor(streams.attributes[i], true);
-    }
-    const std::size_t indices = addAccessor(streams.indices, false);
-    return {{"attributes", names}, {"indices", indices}, {"mode", 4}};
-  }
-
-  [[nodiscard]] Json extrasOf(std::size_t level, const LodStreams& streams) const {
+  [[nodiscard]] Json extrasOf(std::size_t level, const GlbStreams& streams) const {
     const Lod& lod = chain_.levels[level];
     const double metres = chain_.voxelSize * options_.scale;
     Json extras = {{"level", level},
@@ -136,49 +78,28 @@ class LodDocument {
     return extras;
   }
 
-  void finish() {
-    if (levels_.empty()) return;
-    json_["scenes"] = Json::array({{{"nodes", {0}}}});
-    if (options_.compression != LodCompression::None) require("KHR_mesh_quantization");
-    if (packs()) require("EXT_meshopt_compression");
-    if (levels_.size() > 1) linkLevels();
-    json_["buffers"] = Json::array({{{"byteLength", binaryBytes_}}});
-    if (packs()) {
-      json_["buffers"].push_back(
-          {{"byteLength", plainBytes_},
-           {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
-    }
-  }
-
   /// Programs that know MSFT_lod find the other LODs by it; those that do not show the first one
   /// alone; those that go by names find all in a scene of their own, if there is to be one.
   void linkLevels() {
-    json_["extensionsUsed"].push_back("MSFT_lod");
+    Json& json = document_.json();
+    json["extensionsUsed"].push_back("MSFT_lod");
     Json all = Json::array(), others = Json::array(), coverage = Json::array();
     for (std::size_t i = 0; i < levels_.size(); ++i) {
       all.push_back(i);
       if (i > 0) others.push_back(i);
       coverage.push_back(chain_.levels[levels_[i]].screenCoverage);
     }
-    Json& first = json_["nodes"][0];
+    Json& first = json["nodes"][0];
     first["extensions"]["MSFT_lod"]["ids"] = others;
     first["extras"]["MSFT_screencoverage"] = coverage;
     if (!options_.allLevelsScene) return;
-    json_["scenes"].push_back({{"name", options_.name + "_all_levels"}, {"nodes", all}});
-  }
-
-  void require(const char* extension) {
-    json_["extensionsUsed"].push_back(extension);
-    json_["extensionsRequired"].push_back(extension);
+    json["scenes"].push_back({{"name", options_.name + "_all_levels"}, {"nodes", all}});
   }
 
   const LodChain& chain_;
   const LodWriteOptions& options_;
-  Json json_ = glb::emptyDocument();
+  GlbDocument document_;
   std::vector<std::size_t> levels_;  ///< of the nodes
-  std::vector<std::string> blobs_;
-  std::uint64_t binaryBytes_ = 0;
-  std::uint64_t plainBytes_ = 0;  ///< of the buffer that packed views stand for
 };
 
 constexpr std::string_view kBraces = "{}";
@@ -193,7 +114,8 @@ class LodWriter {
       : chain_(chain),
         options_(options),
         report_(report),
-        frames_(framesFor(chain, options)),
+        packing_(packingOf(options)),
+        frames_(framesFor(meshesOf(chain), packing_)),
         job_(options.threads, options.progress) {}
 
   void writeOne(const std::filesystem::path& path) {
@@ -263,7 +185,7 @@ class LodWriter {
         job_.beginStage("encoding", 0.5 * shareUpTo(level + 1));
         parts.push_back({&mesh, options_.name, {}});
         if (options_.creaseAngle < 180 && !mesh.normals.empty()) {
-          parts.back().shaded = splitAtCreases(mesh, options_.creaseAngle, job_);
+          parts.back().shaded = shading::splitAtCreases(mesh, options_.creaseAngle, job_);
         }
         report_.vertices.push_back(mesh.positions.size());
       }
@@ -281,11 +203,12 @@ class LodWriter {
     job_.beginStage("encoding", shareUpTo(level + 1));
     requireSoundAttributes(mesh);
     if (mesh.triangleCount() == 0) return;
-    ShadedMesh shaded = splitAtCreases(mesh, options_.creaseAngle, job_);
-    orderForGraphics(shaded);
-    LodStreams streams = encodeLevel(mesh, shaded, frames_, options_);
+    ShadedMesh shaded = shading::splitAtCreases(mesh, options_.creaseAngle, job_);
+    const std::size_t whole[] = {shaded.indices.size()};
+    shading::orderForGraphics(shaded, whole);
+    GlbStreams streams = encode(mesh, shaded, frames_, packing_);
     report_.vertices.push_back(shaded.sources.size());
-    if (options_.compression != LodCompression::None && !streams.frame.quantized) {
+    if (options_.compression != GlbCompression::None && !streams.frame.quantized) {
       report_.floatLevels.push_back(level);
     }
     document.addLevel(level, std::move(streams));
@@ -323,7 +246,8 @@ class LodWriter {
   const LodChain& chain_;
   const LodWriteOptions& options_;
   LodWriteReport& report_;
-  std::vector<LodFrame> frames_;
+  GlbPacking packing_;
+  std::vector<GlbFrame> frames_;
   base::Job job_;
 };
 

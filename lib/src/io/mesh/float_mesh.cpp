@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/known_enum.h"
+#include "base/require_at_most.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
@@ -38,8 +39,8 @@ FloatMesh toFloat(const Mesh& mesh, const FloatMeshOptions& options) {
   constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
   const std::uint64_t corners =
       4 * std::uint64_t{mesh.quads.size()} + 3 * std::uint64_t{mesh.triangles.size()};
-  io::requireAtMost(kMost, mesh.positions.size(), "positions", "an int");
-  io::requireAtMost(kMost, corners, "corners", "an int");
+  base::requireAtMost(kMost, mesh.positions.size(), "positions", "an int");
+  base::requireAtMost(kMost, corners, "corners", "an int");
   FloatMesh out;
   if (options.relative) out.origin = originOf(mesh);
   out.positions.reserve(mesh.positions.size());

@@ -7,10 +7,12 @@
 #include <span>
 #include <string>
 
-#include "io/mesh/shaded_mesh.h"
 #include "io/output_file.h"
+#include "shading/shaded_mesh.h"
 
 namespace tufa::io {
+
+using shading::ShadedMesh;
 
 /// The corners of the box around all positions; both zero for an empty mesh.
 struct Bounds {
@@ -21,9 +23,6 @@ struct Bounds {
 
 /// Whether single precision would move some position.
 [[nodiscard]] bool needsDoublePrecision(const Mesh& mesh);
-
-/// Throws Error(LimitExceeded) that names the format, what there is too much of, and the limit.
-void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, const char* format);
 
 /// Writes bytes to a file and reports progress of the whole.
 class MeshSink {
@@ -81,6 +80,9 @@ void writeOff(const Mesh& mesh, MeshSink& sink);
 void writeStl(const Mesh& mesh, MeshSink& sink);
 void writeObj(std::span<const MeshPart> parts, MeshSink& sink);
 void writeGlb(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink);
+/// In 16 bits where they tell all vertices of a mesh apart; else its name goes into the report.
+void writeCompactGlb(std::span<const MeshPart> parts, const FileFrame& frame,
+                     GlbCompression compression, MeshSink& sink, WriteReport& report);
 void writeUsda(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink);
 /// As variants of one prim, the finest first.
 void writeUsdaLods(std::span<const MeshPart> levels, const FileFrame& frame, MeshSink& sink);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/job.h"
 #include "base/known_enum.h"
@@ -43,13 +44,6 @@ Bounds boundsOf(const Mesh& mesh) {
 bool needsDoublePrecision(const Mesh& mesh) {
   return !std::all_of(mesh.positions.begin(), mesh.positions.end(),
                       [](const Position& p) { return p == base::toSingle(p); });
-}
-
-void requireAtMost(std::uint64_t limit, std::uint64_t count, const char* what, const char* format) {
-  if (count <= limit) return;
-  throw Error(ErrorCode::LimitExceeded, std::to_string(count) + " " + what + " are more than the " +
-                                            std::to_string(limit) + " that " + format +
-                                            " can hold");
 }
 
 void requireSoundFrame(const FileFrame& frame) {
@@ -100,7 +94,7 @@ double splitNormals(std::span<MeshPart> parts, const WriteOptions& options) {
       const auto done = static_cast<double>(i + 1) / static_cast<double>(parts.size());
       job.beginStage("normals", kShadingEnd * done);
       if (!splits(parts[i], options)) continue;
-      parts[i].shaded = splitAtCreases(*parts[i].mesh, options.creaseAngle, job);
+      parts[i].shaded = shading::splitAtCreases(*parts[i].mesh, options.creaseAngle, job);
     }
     job.finish();
   });
@@ -115,12 +109,13 @@ bool hasNormalsAtCorners(MeshFormat format) {
 /// `open()` opens what is written to, once the options are known to be sound.
 template <class Open>
 void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions& options,
-                Open&& open) {
+                WriteReport* report, Open&& open) {
   if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
     throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
   }
   const FileFrame frame{options.name, options.up, options.scale};
   requireSoundFrame(frame);
+  base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
   std::size_t total = 0;
   for (const MeshPart& part : parts) {
     requireSound(part);
@@ -131,6 +126,7 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
   OutputFile file(open());
   const double begin = hasNormalsAtCorners(format) ? splitNormals(parts, options) : 0;
   MeshSink sink(file, total, begin, options.progress);
+  WriteReport found;
   switch (format) {
     case MeshFormat::Ply:
       writePly(*parts.front().mesh, sink);
@@ -145,13 +141,18 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
       writeOff(*parts.front().mesh, sink);
       break;
     case MeshFormat::Glb:
-      writeGlb(parts, frame, sink);
+      if (options.compression == GlbCompression::None) {
+        writeGlb(parts, frame, sink);
+      } else {
+        writeCompactGlb(parts, frame, options.compression, sink, found);
+      }
       break;
     case MeshFormat::Usda:
       writeUsda(parts, frame, sink);
       break;
   }
   file.commit();
+  if (report != nullptr) *report = std::move(found);
 }
 
 /// Throws Error(InvalidArgument) if the format does not hold several meshes.
@@ -194,28 +195,30 @@ void requireMeshEnding(const std::filesystem::path& path) {
   if (!io::isBareDevice(path)) static_cast<void>(meshFormatOf(path));
 }
 
-void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options) {
+void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options,
+           WriteReport* report) {
   const auto format = io::isBareDevice(path) ? MeshFormat::Ply : meshFormatOf(path);
   io::MeshPart part{&mesh, options.name, {}};
-  io::writeParts({&part, 1}, format, options, [&] { return io::OutputFile(path); });
+  io::writeParts({&part, 1}, format, options, report, [&] { return io::OutputFile(path); });
 }
 
-void write(const Mesh& mesh, std::ostream& stream, MeshFormat format, const WriteOptions& options) {
+void write(const Mesh& mesh, std::ostream& stream, MeshFormat format, const WriteOptions& options,
+           WriteReport* report) {
   base::requireKnown(format, MeshFormat::Usda, "the format");
   io::MeshPart part{&mesh, options.name, {}};
-  io::writeParts({&part, 1}, format, options, [&] { return io::OutputFile(stream); });
+  io::writeParts({&part, 1}, format, options, report, [&] { return io::OutputFile(stream); });
 }
 
 void writeMeshes(const std::vector<NamedMesh>& meshes, const std::filesystem::path& path,
-                 const WriteOptions& options) {
+                 const WriteOptions& options, WriteReport* report) {
   std::vector<io::MeshPart> parts = io::partsOf(meshes, meshFormatOf(path), path.string());
-  io::writeParts(parts, meshFormatOf(path), options, [&] { return io::OutputFile(path); });
+  io::writeParts(parts, meshFormatOf(path), options, report, [&] { return io::OutputFile(path); });
 }
 
 void writeMeshes(const std::vector<NamedMesh>& meshes, std::ostream& stream, MeshFormat format,
-                 const WriteOptions& options) {
+                 const WriteOptions& options, WriteReport* report) {
   std::vector<io::MeshPart> parts = io::partsOf(meshes, format, "the stream");
-  io::writeParts(parts, format, options, [&] { return io::OutputFile(stream); });
+  io::writeParts(parts, format, options, report, [&] { return io::OutputFile(stream); });
 }
 
 }  // namespace tufa

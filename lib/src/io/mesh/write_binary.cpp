@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/require_at_most.h"
 #include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
@@ -127,8 +128,8 @@ void writePly(const Mesh& mesh, MeshSink& sink) {
 }
 
 void writeStl(const Mesh& mesh, MeshSink& sink) {
-  requireAtMost(std::numeric_limits<std::uint32_t>::max(), mesh.triangleCount(), "triangles",
-                ".stl");
+  base::requireAtMost(std::numeric_limits<std::uint32_t>::max(), mesh.triangleCount(), "triangles",
+                      ".stl");
   // Not "solid": readers take files that begin so for text.
   std::array<char, 80> header{};
   const std::string_view title = "binary STL written by tufa";

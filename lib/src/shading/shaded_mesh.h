@@ -1,10 +1,13 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include "base/job.h"
 
-namespace tufa::io {
+namespace tufa::shading {
 
 /// A mesh for graphics cards: each vertex has one normal, so a point on a crease becomes one vertex
 /// for each smooth group of faces around it.
@@ -19,8 +22,12 @@ struct ShadedMesh {
 /// mean of their faces' normals, weighted by angle. Positions that no face uses are left out.
 [[nodiscard]] ShadedMesh splitAtCreases(const Mesh& mesh, double creaseAngle, base::Job& job);
 
-/// Reorders triangles for the vertex cache of graphics cards and vertices by their first use.
-/// Neither changes the surface.
-void orderForGraphics(ShadedMesh& mesh);
+/// The same without splitting any, and without normals if the mesh has none.
+[[nodiscard]] ShadedMesh unsplit(const Mesh& mesh);
 
-}  // namespace tufa::io
+/// Reorders triangles for the vertex cache of graphics cards and vertices by their first use.
+/// Neither changes the surface. Triangles stay in their parts, of which `parts` has the sizes, in
+/// indices; together they are all of the mesh's.
+void orderForGraphics(ShadedMesh& mesh, std::span<const std::size_t> parts);
+
+}  // namespace tufa::shading

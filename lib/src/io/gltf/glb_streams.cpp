@@ -1,4 +1,4 @@
-#include "io/gltf/lod_streams.h"
+#include "io/gltf/glb_streams.h"
 
 #include <meshoptimizer.h>
 
@@ -19,22 +19,16 @@ namespace {
 
 using Point = std::array<double, 3>;
 using glb::Floats;
+using shading::ShadedMesh;
 
-constexpr double kMostShort = 65535;
 constexpr double kMostByte = 127;
 
-/// A point or direction of the volume, rotated so that y is up.
-Point turned(double x, double y, double z, UpAxis up) {
-  if (up == UpAxis::Y) return {x, y, z};
-  return {x, z, -y};
-}
-
 /// The elements of all positions of a mesh. Numbers of 16 bits are exact in floats.
-std::vector<Floats> elementsOf(const Mesh& mesh, const LodFrame& frame, UpAxis up) {
+std::vector<Floats> elementsOf(const Mesh& mesh, const GlbFrame& frame, UpAxis up) {
   std::vector<Floats> elements(mesh.positions.size());
   for (std::size_t v = 0; v < elements.size(); ++v) {
     const Position& p = mesh.positions[v];
-    const Point place = turned(p.x, p.y, p.z, up);
+    const Point place = turned({p.x, p.y, p.z}, up);
     for (std::size_t i = 0; i < 3; ++i) {
       double element = frame.factor * (place[i] - frame.origin[i]);
       if (frame.quantized) element = std::clamp(std::round(element), 0.0, kMostShort);
@@ -93,13 +87,16 @@ void append(std::string& bytes, Number number) {
   bytes.append(raw.data(), raw.size());
 }
 
-LodStream positionStream(const std::vector<Floats>& elements, const ShadedMesh& shaded,
-                         bool quantized) {
+GlbStream positionStream(const std::vector<Floats>& elements, const ShadedMesh& shaded,
+                         const GlbFrame& frame) {
+  const bool quantized = frame.quantized;
   // Rows of 16 bit numbers start at multiples of 4 bytes, so one of four is unused.
-  LodStream stream{{},
+  GlbStream stream{{},
                    quantized ? 8U : 12U,
                    shaded.sources.size(),
-                   quantized ? glb::kUnsignedShort : glb::kFloat};
+                   quantized ? glb::kUnsignedShort : glb::kFloat,
+                   "VEC3",
+                   frame.normalized};
   stream.bytes.reserve(stream.stride * stream.count);
   for (const VertexIndex source : shaded.sources) {
     for (const float number : elements[source]) {
@@ -141,13 +138,17 @@ std::array<std::int8_t, 3> roundNormal(const Floats& unit) {
   return best;
 }
 
-LodStream normalStream(const ShadedMesh& shaded, UpAxis up, bool quantized) {
-  LodStream stream{
-      {}, quantized ? 4U : 12U, shaded.normals.size(), quantized ? glb::kByte : glb::kFloat};
+GlbStream normalStream(const ShadedMesh& shaded, UpAxis up, bool quantized) {
+  GlbStream stream{{},
+                   quantized ? 4U : 12U,
+                   shaded.normals.size(),
+                   quantized ? glb::kByte : glb::kFloat,
+                   "VEC3",
+                   quantized};
   stream.bytes.reserve(stream.stride * stream.count);
   for (const Normal& normal : shaded.normals) {
     const Floats unit = glb::unitNormal(normal);
-    const Point n = turned(unit[0], unit[1], unit[2], up);
+    const Point n = turned({unit[0], unit[1], unit[2]}, up);
     const Floats upright = {static_cast<float>(n[0]), static_cast<float>(n[1]),
                             static_cast<float>(n[2])};
     if (quantized) {
@@ -161,9 +162,9 @@ LodStream normalStream(const ShadedMesh& shaded, UpAxis up, bool quantized) {
 }
 
 /// Attributes are floats in any case: what range they need is not known.
-LodStream attributeStream(const Attribute& attribute, const ShadedMesh& shaded) {
+GlbStream attributeStream(const Attribute& attribute, const ShadedMesh& shaded) {
   const auto width = static_cast<std::size_t>(attribute.width);
-  LodStream stream{
+  GlbStream stream{
       {}, width * sizeof(float), shaded.sources.size(), glb::kFloat, gltfType(attribute)};
   stream.bytes.reserve(stream.stride * stream.count);
   for (const VertexIndex source : shaded.sources) {
@@ -174,9 +175,9 @@ LodStream attributeStream(const Attribute& attribute, const ShadedMesh& shaded) 
   return stream;
 }
 
-LodStream indexStream(const ShadedMesh& shaded) {
+GlbStream indexStream(const ShadedMesh& shaded) {
   const bool isShort = shaded.sources.size() <= glb::kMostShortVertices;
-  LodStream stream{{},
+  GlbStream stream{{},
                    isShort ? 2U : 4U,
                    shaded.indices.size(),
                    isShort ? glb::kUnsignedShort : glb::kUnsignedInt,
@@ -204,7 +205,7 @@ void setCodecVersions() {
 }
 
 /// Packs a stream of vertices as EXT_meshopt_compression's mode ATTRIBUTES has it.
-void packVertices(LodStream& stream) {
+void packVertices(GlbStream& stream) {
   std::string packed(meshopt_encodeVertexBufferBound(stream.count, stream.stride), '\0');
   auto* const bytes = reinterpret_cast<unsigned char*>(packed.data());
   setCodecVersions();
@@ -214,7 +215,7 @@ void packVertices(LodStream& stream) {
 }
 
 /// Packs triangles in its mode TRIANGLES, which may rotate the corners of a triangle.
-void packTriangles(const ShadedMesh& shaded, LodStream& stream) {
+void packTriangles(const ShadedMesh& shaded, GlbStream& stream) {
   std::string packed(meshopt_encodeIndexBufferBound(shaded.indices.size(), shaded.sources.size()),
                      '\0');
   setCodecVersions();
@@ -229,12 +230,12 @@ struct Extent {
   Point greatest;
 };
 
-Extent extentOf(const LodChain& chain, UpAxis up) {
+Extent extentOf(std::span<const Mesh* const> meshes, UpAxis up) {
   const double infinity = std::numeric_limits<double>::infinity();
   Extent extent{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  for (const Lod& lod : chain.levels) {
-    for (const Position& p : lod.mesh.positions) {
-      const Point place = turned(p.x, p.y, p.z, up);
+  for (const Mesh* const mesh : meshes) {
+    for (const Position& p : mesh->positions) {
+      const Point place = turned({p.x, p.y, p.z}, up);
       for (std::size_t i = 0; i < 3; ++i) {
         extent.least[i] = std::min(extent.least[i], place[i]);
         extent.greatest[i] = std::max(extent.greatest[i], place[i]);
@@ -244,71 +245,91 @@ Extent extentOf(const LodChain& chain, UpAxis up) {
   return extent;
 }
 
-LodFrame frameAt(const Point& origin, double factor, double nodeScale, double scale) {
-  LodFrame frame{origin, factor, nodeScale, {}, false};
+GlbFrame frameAt(const Point& origin, double factor, double nodeScale, double scale) {
+  GlbFrame frame{origin, factor, nodeScale, {}, false, false};
   for (std::size_t i = 0; i < 3; ++i) frame.translation[i] = scale * origin[i];
   return frame;
 }
 
+GlbStreams encodeElements(const GlbFrame& frame, const std::vector<Floats>& elements,
+                          const Mesh& mesh, const ShadedMesh& shaded, const GlbPacking& packing) {
+  GlbStreams streams;
+  streams.frame = frame;
+  streams.least = streams.greatest = elements[shaded.sources.front()];
+  for (const VertexIndex source : shaded.sources) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      streams.least[i] = std::min(streams.least[i], elements[source][i]);
+      streams.greatest[i] = std::max(streams.greatest[i], elements[source][i]);
+    }
+  }
+  streams.positions = positionStream(elements, shaded, frame);
+  if (!shaded.normals.empty()) {
+    streams.normals = normalStream(shaded, packing.up, packing.compression != GlbCompression::None);
+  }
+  for (const Attribute& attribute : mesh.attributes) {
+    streams.attributes.push_back(attributeStream(attribute, shaded));
+  }
+  streams.indices = indexStream(shaded);
+  if (packing.compression != GlbCompression::Meshopt) return streams;
+  packVertices(streams.positions);
+  if (!shaded.normals.empty()) packVertices(streams.normals);
+  for (GlbStream& attribute : streams.attributes) packVertices(attribute);
+  packTriangles(shaded, streams.indices);
+  return streams;
+}
+
 }  // namespace
 
-std::vector<LodFrame> framesFor(const LodChain& chain, const LodWriteOptions& options) {
-  const Extent extent = extentOf(chain, options.up);
-  std::vector<LodFrame> frames;
+Point turned(const Point& p, UpAxis up) { return up == UpAxis::Y ? p : Point{p[0], p[2], -p[1]}; }
+
+Point turnedBack(const Point& p, UpAxis up) {
+  return up == UpAxis::Y ? p : Point{p[0], -p[2], p[1]};
+}
+
+GlbFrame floatFrame(const Point& origin, double factor, const GlbPacking& packing) {
+  return frameAt(origin, factor, packing.scale / factor, packing.scale);
+}
+
+std::vector<GlbFrame> framesFor(std::span<const Mesh* const> meshes, const GlbPacking& packing) {
+  const Extent extent = extentOf(meshes, packing.up);
+  std::vector<GlbFrame> frames;
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     size = std::max(size, extent.greatest[i] - extent.least[i]);
   }
-  if (options.compression != LodCompression::None && size > 0) {
-    frames.push_back(frameAt(extent.least, kMostShort / size, size * options.scale, options.scale));
-    frames.back().quantized = true;
+  if (packing.compression != GlbCompression::None && size > 0) {
+    frames.push_back(frameAt(extent.least, kMostShort / size, size * packing.scale, packing.scale));
+    frames.back().quantized = frames.back().normalized = true;
   }
   Point origin{0, 0, 0};
-  if (std::any_of(chain.levels.begin(), chain.levels.end(),
-                  [](const Lod& lod) { return needsDoublePrecision(lod.mesh); })) {
+  if (std::any_of(meshes.begin(), meshes.end(),
+                  [](const Mesh* mesh) { return needsDoublePrecision(*mesh); })) {
     for (std::size_t i = 0; i < 3; ++i) {
       origin[i] = static_cast<float>(0.5 * (extent.least[i] + extent.greatest[i]));
     }
   }
-  frames.push_back(frameAt(origin, options.scale, 1, options.scale));
+  frames.push_back(floatFrame(origin, packing.scale, packing));
   // In metres two vertices may round to one. In world units they keep their values.
-  if (options.scale != 1) frames.push_back(frameAt(origin, 1, options.scale, options.scale));
+  if (packing.scale != 1) frames.push_back(floatFrame(origin, 1, packing));
   return frames;
 }
 
-LodStreams encodeLevel(const Mesh& mesh, const ShadedMesh& shaded,
-                       const std::vector<LodFrame>& frames, const LodWriteOptions& options) {
-  for (const LodFrame& frame : frames) {
-    const std::vector<Floats> elements = elementsOf(mesh, frame, options.up);
+GlbStreams encode(const Mesh& mesh, const ShadedMesh& shaded, std::span<const GlbFrame> frames,
+                  const GlbPacking& packing) {
+  for (const GlbFrame& frame : frames) {
+    const std::vector<Floats> elements = elementsOf(mesh, frame, packing.up);
     if (!tellsApart(mesh, elements)) continue;
     if (frame.quantized && !keepsAreas(mesh, shaded, elements)) continue;
-    LodStreams streams;
-    streams.frame = frame;
-    streams.least = streams.greatest = elements[shaded.sources.front()];
-    for (const VertexIndex source : shaded.sources) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        streams.least[i] = std::min(streams.least[i], elements[source][i]);
-        streams.greatest[i] = std::max(streams.greatest[i], elements[source][i]);
-      }
-    }
-    const bool quantized = options.compression != LodCompression::None;
-    streams.positions = positionStream(elements, shaded, frame.quantized);
-    streams.normals = normalStream(shaded, options.up, quantized);
-    streams.indices = indexStream(shaded);
-    for (const Attribute& attribute : mesh.attributes) {
-      streams.attributes.push_back(attributeStream(attribute, shaded));
-    }
-    if (options.compression == LodCompression::Meshopt) {
-      packVertices(streams.positions);
-      packVertices(streams.normals);
-      for (LodStream& attribute : streams.attributes) packVertices(attribute);
-      packTriangles(shaded, streams.indices);
-    }
-    return streams;
+    return encodeElements(frame, elements, mesh, shaded, packing);
   }
   throw Error(ErrorCode::LimitExceeded,
               "vertices are nearer to each other than the single precision of .glb tells apart; "
               "write .ply, which has double precision");
+}
+
+GlbStreams encodeIn(const GlbFrame& frame, const Mesh& mesh, const ShadedMesh& shaded,
+                    const GlbPacking& packing) {
+  return encodeElements(frame, elementsOf(mesh, frame, packing.up), mesh, shaded, packing);
 }
 
 }  // namespace tufa::io

@@ -1,4 +1,4 @@
-#include "io/mesh/shaded_mesh.h"
+#include "shading/shaded_mesh.h"
 
 #include <meshoptimizer.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <numeric>
 
+#include "base/require_at_most.h"
 #include "base/vec3.h"
-#include "io/mesh/mesh_format.h"
 
-namespace tufa::io {
+namespace tufa::shading {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -92,8 +92,8 @@ class CreaseSplitter {
   }
 
   void gatherCorners() {
-    requireAtMost(std::numeric_limits<VertexIndex>::max(), 3 * std::uint64_t{triangles_.size()},
-                  "indices", "a mesh split at creases");
+    base::requireAtMost(std::numeric_limits<VertexIndex>::max(),
+                        3 * std::uint64_t{triangles_.size()}, "indices", "a mesh split at creases");
     begin_.assign(mesh_.positions.size() + 1, 0);
     for (const Triangle& t : triangles_) {
       for (const VertexIndex v : t.vertices) ++begin_[v + 1];
@@ -189,18 +189,45 @@ ShadedMesh splitAtCreases(const Mesh& mesh, double creaseAngle, base::Job& job) 
   return CreaseSplitter(mesh, creaseAngle, job).split();
 }
 
-void orderForGraphics(ShadedMesh& mesh) {
+ShadedMesh unsplit(const Mesh& mesh) {
+  constexpr VertexIndex kUnused = std::numeric_limits<VertexIndex>::max();
+  ShadedMesh out;
+  std::vector<VertexIndex> places(mesh.positions.size(), kUnused);
+  for (const Triangle& t : triangulate(mesh)) {
+    for (const VertexIndex v : t.vertices) {
+      if (places[v] == kUnused) {
+        places[v] = static_cast<VertexIndex>(out.sources.size());
+        out.sources.push_back(v);
+        if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[v]);
+      }
+      out.indices.push_back(places[v]);
+    }
+  }
+  return out;
+}
+
+void orderForGraphics(ShadedMesh& mesh, std::span<const std::size_t> parts) {
   const std::size_t count = mesh.sources.size();
-  meshopt_optimizeVertexCache(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(), count);
+  VertexIndex* part = mesh.indices.data();
+  for (const std::size_t size : parts) {
+    meshopt_optimizeVertexCache(part, part, size, count);
+    part += size;
+  }
   std::vector<VertexIndex> remap(count);
   meshopt_optimizeVertexFetchRemap(remap.data(), mesh.indices.data(), mesh.indices.size(), count);
+  // Vertices that no triangle uses come last.
+  auto next = static_cast<VertexIndex>(
+      std::count_if(remap.begin(), remap.end(), [](VertexIndex n) { return n != ~0U; }));
+  for (VertexIndex& place : remap) {
+    if (place == ~0U) place = next++;
+  }
   meshopt_remapIndexBuffer(mesh.indices.data(), mesh.indices.data(), mesh.indices.size(),
                            remap.data());
   const ShadedMesh old = {mesh.sources, mesh.normals, {}};
   for (std::size_t n = 0; n < count; ++n) {
     mesh.sources[remap[n]] = old.sources[n];
-    mesh.normals[remap[n]] = old.normals[n];
+    if (!old.normals.empty()) mesh.normals[remap[n]] = old.normals[n];
   }
 }
 
-}  // namespace tufa::io
+}  // namespace tufa::shading

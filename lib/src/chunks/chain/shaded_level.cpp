@@ -1,0 +1,90 @@
+#include "chunks/chain/shaded_level.h"
+
+#include <numeric>
+#include <utility>
+
+#include "chunks/chain/mixed_forms.h"
+#include "shading/shaded_mesh.h"
+
+namespace tufa::chunks {
+namespace {
+
+// Twice the area, along the normal.
+Vec3 normalOf(const std::vector<Position>& positions, const Triangle& t) {
+  const Vec3 a(positions[t.vertices[0]]);
+  return (Vec3(positions[t.vertices[1]]) - a).cross(Vec3(positions[t.vertices[2]]) - a);
+}
+
+shading::ShadedMesh splitOf(const ChainLevel& level, double creaseAngle, base::Job& job) {
+  Mesh mesh;
+  mesh.positions = level.positions;
+  mesh.normals = level.normals;
+  mesh.triangles = level.triangles;
+  return shading::splitAtCreases(mesh, creaseAngle, job);
+}
+
+}  // namespace
+
+CurveNormals::CurveNormals(const ChainLevel& finest, std::size_t vertices, double creaseAngle,
+                           base::Job& job) {
+  const shading::ShadedMesh split = splitOf(finest, creaseAngle, job);
+  begin_.assign(vertices + 1, 0);
+  const auto forEachOnCurves = [&](const auto& visit) {
+    for (std::size_t n = 0; n < split.sources.size(); ++n) {
+      const VertexIndex v = finest.cutVertex[split.sources[n]];
+      if (v != ChainLevel::kNone) visit(v, split.normals[n]);
+    }
+  };
+  forEachOnCurves([&](VertexIndex v, const Normal&) { ++begin_[v + 1]; });
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  normals_.resize(begin_.back());
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  forEachOnCurves([&](VertexIndex v, const Normal& n) { normals_[next[v]++] = n; });
+}
+
+std::size_t CurveNormals::nearest(VertexIndex v, const Vec3& face) const {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < countAt(v); ++i) {
+    if (Vec3(at(v, i)).dot(face) > Vec3(at(v, best)).dot(face)) best = i;
+  }
+  return best;
+}
+
+ShadedLevel shade(const ChainLevel& level, const CurveNormals& curves, double creaseAngle,
+                  base::Job& job) {
+  shading::ShadedMesh split = splitOf(level, creaseAngle, job);
+  ShadedLevel out{std::move(split.sources), std::move(split.normals), {}, {}};
+  // The vertices of curves come behind, and those that the level's own creases gave them are used
+  // by no triangle.
+  std::vector<VertexIndex> first(level.positions.size(), ChainLevel::kNone);
+  for (VertexIndex v = 0; v < level.positions.size(); ++v) {
+    if (level.cutVertex[v] == ChainLevel::kNone) continue;
+    first[v] = static_cast<VertexIndex>(out.sources.size());
+    for (std::size_t i = 0; i < curves.countAt(level.cutVertex[v]); ++i) {
+      out.sources.push_back(v);
+      out.normals.push_back(curves.at(level.cutVertex[v], i));
+    }
+  }
+  const auto cornerOf = [&](VertexIndex v, VertexIndex plain, const Vec3& face) {
+    if (level.cutVertex[v] == ChainLevel::kNone) return plain;
+    return first[v] + static_cast<VertexIndex>(curves.nearest(level.cutVertex[v], face));
+  };
+  out.triangles.resize(level.triangles.size());
+  out.changed.resize(level.triangles.size());
+  job.forRanges(level.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const Triangle forms[2] = {level.triangles[t], changed(level, level.triangles[t])};
+      for (const bool isChanged : {false, true}) {
+        const Triangle& form = forms[isChanged ? 1 : 0];
+        const Vec3 face = normalOf(level.positions, form);
+        Triangle& corners = (isChanged ? out.changed : out.triangles)[t];
+        for (std::size_t i = 0; i < 3; ++i) {
+          corners.vertices[i] = cornerOf(form.vertices[i], split.indices[3 * t + i], face);
+        }
+      }
+    }
+  });
+  return out;
+}
+
+}  // namespace tufa::chunks
