@@ -38,6 +38,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   app.require_subcommand(1);
   addMakeCommand(app, chosen);
   addVoxelizeCommand(app, chosen);
+  addModelCommand(app, chosen);
   addInfoCommand(app, chosen);
   addMeshCommand(app, chosen);
   addLodCommand(app, chosen);

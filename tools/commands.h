@@ -19,6 +19,7 @@ void declareCommand(CLI::App& app, Command& chosen);
 // line names it.
 void addMakeCommand(CLI::App& app, Command& chosen);
 void addVoxelizeCommand(CLI::App& app, Command& chosen);
+void addModelCommand(CLI::App& app, Command& chosen);
 void addInfoCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);

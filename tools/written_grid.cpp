@@ -19,7 +19,12 @@ std::string toJson(const WrittenGrid& written) {
   if (!written.input.empty()) json["file"] = written.input;
   json["output"] = written.output;
   json["grid"] = written.grid;
-  if (!written.input.empty()) json["triangles"] = written.triangles;
+  if (written.triangles) json["triangles"] = *written.triangles;
+  if (written.scene) {
+    json["samples"] = written.scene->samples;
+    json["hidden_voxels"] = written.scene->hiddenVoxels;
+    json["undecided_voxels"] = written.scene->undecidedVoxels;
+  }
   json["active_voxels"] = written.activeVoxels;
   json["voxel_size"] = written.voxelSize;
   json["seconds"] = {{"make", written.makeSeconds}, {"write", written.writeSeconds}};
@@ -30,7 +35,8 @@ std::string toJson(const WrittenGrid& written) {
 std::string describe(const WrittenGrid& written) {
   std::string text = shownGrid(written.grid) + ": " + formatCount(written.activeVoxels) +
                      " active voxels of " + formatNumber(written.voxelSize);
-  if (!written.input.empty()) text += " from " + formatCount(written.triangles) + " triangles";
+  if (written.triangles) text += " from " + formatCount(*written.triangles) + " triangles";
+  if (written.scene) text += " from " + formatCount(written.scene->samples) + " samples";
   return text + " in " + shortNumber(written.makeSeconds) + " s\n" +
          describeWritten({written.output}, written.writeSeconds);
 }

@@ -3,16 +3,25 @@
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace tufa::tools {
 
-/// What `make` and `voxelize` tell of the volume that they wrote.
+/// What sampling a scene took.
+struct SampledScene {
+  std::size_t samples = 0;
+  std::size_t hiddenVoxels = 0;     ///< as VoxelizeReport has them
+  std::size_t undecidedVoxels = 0;  ///< as VoxelizeReport has them
+};
+
+/// What `make`, `voxelize` and `model` tell of the volume that they wrote.
 struct WrittenGrid {
-  std::string input;  ///< the mesh it was made of; empty for a shape
+  std::string input;  ///< the mesh or scene it was made of; empty for a shape
   std::string output;
-  std::string grid;           ///< its name
-  std::size_t triangles = 0;  ///< of the mesh it was made of
+  std::string grid;                      ///< its name
+  std::optional<std::size_t> triangles;  ///< of the mesh it was made of
+  std::optional<SampledScene> scene;     ///< if it was made of one
   std::size_t activeVoxels = 0;
   double voxelSize = 0;
   double makeSeconds = 0;

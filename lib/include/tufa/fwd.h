@@ -47,6 +47,7 @@ struct Quad;
 struct ShapeOptions;
 struct Triangle;
 struct VoxelizeOptions;
+struct VoxelizeReport;
 struct WriteOptions;
 struct WriteReport;
 enum class Ambiguity;
@@ -63,5 +64,12 @@ enum class Shape;
 enum class Smoothing;
 enum class UpAxis;
 enum class Winding;
+
+namespace implicit {
+class Field;
+struct Box;
+struct Interval;
+struct Scene;
+}  // namespace implicit
 
 }  // namespace tufa

@@ -9,6 +9,7 @@
 #include <tufa/filter.h>
 #include <tufa/float_mesh.h>
 #include <tufa/fwd.h>
+#include <tufa/implicit.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>

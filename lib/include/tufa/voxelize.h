@@ -3,8 +3,10 @@
 #include <openvdb/openvdb.h>
 
 #include <tufa/export.h>
+#include <tufa/implicit.h>
 #include <tufa/mesh.h>
 #include <tufa/progress.h>
+#include <cstddef>
 
 namespace tufa {
 
@@ -14,9 +16,22 @@ struct VoxelizeOptions {
   double halfWidth = 3;  ///< of the narrow band, in voxels: 1 to 1000
   int threads = 0;       ///< most threads; 0: all
   Progress progress;     ///< called from the calling thread; may cancel
-  /// Most voxels of the band, in estimate from the mesh's area: more are refused as LimitExceeded.
-  /// One vertex far away makes gigabytes of them.
+  /// Most voxels of the band, of a mesh in estimate from its area: more are refused as
+  /// LimitExceeded. One vertex far away makes gigabytes of them.
   double bandVoxels = 1 << 27;
+};
+
+/// What voxelize() has done with a field.
+struct VoxelizeReport {
+  std::size_t samples = 0;       ///< points where the field was evaluated for the grid
+  std::size_t blocks = 0;        ///< of 8^3 voxels that its bounds could not leave out
+  std::size_t activeVoxels = 0;  ///< of the level set
+  /// Voxels that hold a part of the inside, or a gap in it, that none of the samples around show:
+  /// smaller than the voxels.
+  std::size_t hiddenVoxels = 0;
+  /// Voxels of which the bounds, over parts a sixteenth as long, cannot say that they hold none.
+  std::size_t undecidedVoxels = 0;
+  Position firstHidden{0, 0, 0};  ///< a place in the first of both kinds, in the lattice's order
 };
 
 /// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. Distances are exact
@@ -27,5 +42,13 @@ struct VoxelizeOptions {
 /// (bandVoxels), Cancelled.
 [[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh,
                                                         const VoxelizeOptions& options);
+
+/// Samples a field as a narrow-band level set, in parallel and only where its bounds cannot leave
+/// the surface out. The values are those of implicit::Field::distance(). Samples that are NaN are
+/// outside. Throws Error: InvalidArgument (voxel size, half width, a field without finite extent),
+/// LimitExceeded (bandVoxels), Cancelled.
+[[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field,
+                                                        const VoxelizeOptions& options,
+                                                        VoxelizeReport* report = nullptr);
 
 }  // namespace tufa

@@ -75,7 +75,7 @@ void fillFog(const std::vector<Puff>& allPuffs, double voxelSize, Leaf& leaf) {
 }  // namespace
 
 openvdb::FloatGrid::Ptr makeNoise(const ShapeOptions& options) {
-  const int half = extentInVoxels(1, options.voxelSize, 1);
+  const int half = grid::extentInVoxels(1, options.voxelSize, 1);
   const int samples = static_cast<int>(std::lround(2 / options.voxelSize));
   if (samples < 1) {
     throw Error(ErrorCode::InvalidArgument, "voxel size " + base::numberText(options.voxelSize) +
@@ -89,7 +89,7 @@ openvdb::FloatGrid::Ptr makeNoise(const ShapeOptions& options) {
   const openvdb::CoordBBox cube(first, first.offsetBy(samples - 1));
   openvdb::CoordBBox bordered = cube;
   bordered.expand(1);
-  BlockSource source;
+  grid::BlockSource source;
   source.halfExtentVoxels = half + 1;
   source.mayBeActive = [&](const openvdb::Coord& origin, int side) {
     return bordered.hasOverlap(openvdb::CoordBBox(origin, origin.offsetBy(side - 1)));
@@ -103,14 +103,14 @@ openvdb::FloatGrid::Ptr makeNoise(const ShapeOptions& options) {
       if (bordered.isInside(ijk)) leaf.setValueOn(n);
     }
   };
-  buildBlocks(grid->tree(), source, options);
+  sampleBlocks(grid->tree(), source, options);
   return grid;
 }
 
 openvdb::FloatGrid::Ptr makeFog(const ShapeOptions& options) {
   const double voxelSize = options.voxelSize;
-  BlockSource source;
-  source.halfExtentVoxels = extentInVoxels(kPuffSpread + kGreatestPuff, voxelSize, 1);
+  grid::BlockSource source;
+  source.halfExtentVoxels = grid::extentInVoxels(kPuffSpread + kGreatestPuff, voxelSize, 1);
   auto grid = openvdb::FloatGrid::create(0.0f);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxelSize));
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
@@ -120,7 +120,7 @@ openvdb::FloatGrid::Ptr makeFog(const ShapeOptions& options) {
     return !puffsNear(puffs, origin, side, voxelSize).empty();
   };
   source.fill = [&](Leaf& leaf) { fillFog(puffs, voxelSize, leaf); };
-  buildBlocks(grid->tree(), source, options);
+  sampleBlocks(grid->tree(), source, options);
   return grid;
 }
 

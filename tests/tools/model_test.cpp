@@ -1,0 +1,124 @@
+// tufa model: the sample scenes of the documentation, and what it refuses.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/command_fixture.h"
+
+namespace tufa {
+namespace {
+
+using test::CommandTest;
+using test::Outcome;
+using test::readBytes;
+using test::writeBytes;
+using Json = nlohmann::json;
+
+class Model : public CommandTest {
+ protected:
+  void writeScene(const std::string& file, const std::string& object) {
+    writeBytes(folder / file, R"({"tufa_scene": 1, "objects": [)" + object + "]}");
+  }
+};
+
+/// Twice as coarse as they say, which takes a tenth of the time.
+TEST_F(Model, SampleScenesBecomeClosedMeshes) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TUFA_SCENES)) {
+    if (entry.path().extension() != ".json") continue;
+    ++scenes;
+    const std::string scene = entry.path().string();
+    const double voxel = Json::parse(readBytes(scene)).at("voxel").get<double>();
+    const Outcome made =
+        run("model " + scene + " -o s.vdb --json --voxel " + std::to_string(2 * voxel));
+    ASSERT_EQ(made.exitCode, 0) << scene << made.err;
+    const Json json = Json::parse(made.out);
+    EXPECT_EQ(json.at("grid"), entry.path().stem().string());
+    EXPECT_GE(json.at("samples"), json.at("active_voxels"));
+    const Outcome meshed = run("mesh s.vdb -o s.ply --check --json");
+    ASSERT_EQ(meshed.exitCode, 0) << scene << meshed.err << meshed.out;
+    EXPECT_GT(Json::parse(meshed.out).at("triangles"), 100) << scene;
+  }
+  EXPECT_GE(scenes, 10);
+}
+
+TEST_F(Model, LooksAtAPoint) {
+  writeScene("s.json", R"({"type": "sphere", "radius": 2})");
+  const Outcome text = run("model s.json --at 0,0,3");
+  EXPECT_EQ(text.exitCode, 0) << text.err;
+  EXPECT_EQ(text.out, "outside, value 1\ngradient (0, 0, 1)\nnormal (0, 0, 1)\n");
+  const Outcome json = run("model s.json --at 1,0,0 --json");
+  const Json point = Json::parse(json.out);
+  EXPECT_EQ(point.at("inside"), true);
+  EXPECT_EQ(point.at("value"), -1.0);
+  EXPECT_EQ(point.at("normal"), Json({1.0, 0.0, 0.0}));
+  expectFailure("model s.json --at 1,0", 2, "--at takes 3 numbers");
+  expectFailure("model s.json --at 1,0,0 -o s.vdb", 2, "--at only prints");
+  expectFailure("model s.json", 2, "--output is required");
+}
+
+TEST_F(Model, TakesOptionsBeforeTheScene) {
+  writeBytes(folder / "s.json", R"({"tufa_scene": 1, "voxel": 0.2, "half_width": 2, "name": "n",)"
+                                R"( "objects": [{"type": "plane"}], "bounds": [-1,-1,-1,1,1,1]})");
+  const auto voxels = [&](const std::string& options) {
+    const Outcome made = run("model s.json -o s.vdb --json " + options);
+    EXPECT_EQ(made.exitCode, 0) << made.err;
+    return Json::parse(made.out).at("active_voxels").get<int>();
+  };
+  const int own = voxels("");
+  EXPECT_GT(voxels("--voxel 0.1"), 3 * own);
+  EXPECT_GT(voxels("--half-width 3"), own);
+  EXPECT_GT(voxels("--bounds=-2,-2,-1,2,2,1"), 2 * own);
+  const Outcome told = run("model s.json -o s.vdb");
+  EXPECT_EQ(told.out.rfind("grid \"n\": ", 0), 0u) << told.out;
+  EXPECT_NE(told.out.find(" samples in "), std::string::npos) << told.out;
+}
+
+TEST_F(Model, NamesWhatNoSampleShows) {
+  writeScene("s.json", R"({"type": "sphere", "radius": 1},
+                          {"type": "sphere", "center": [2.05, 0.05, 0.05], "radius": 0.02})");
+  const Outcome made = run("model s.json -o s.vdb --voxel 0.1 --json");
+  EXPECT_EQ(made.exitCode, 0);
+  EXPECT_NE(made.err.find("hold parts of the surface that no sample shows, near (2"),
+            std::string::npos)
+      << made.err;
+  EXPECT_GT(Json::parse(made.out).at("hidden_voxels"), 0);
+}
+
+TEST_F(Model, RefusesHostileScenes) {
+  const auto refused = [&](const std::string& object, const std::string& part) {
+    writeScene("bad.json", object);
+    expectFailure("model bad.json -o o.vdb", 3, part);
+  };
+  refused(R"({"type": "sphere", "radius": 0})", "bad.json: /objects/0/radius: must be a number");
+  refused(R"({"type": "sphere", "radius": NaN})", "bad.json");
+  refused(R"({"type": "sphere", "radius": 1e999})", "bad.json");
+  refused(R"({"type": "use", "name": "x\u001b[2J"})", "/objects/0/name");
+  refused(std::string(200000, '['), "nested deeper than 100");
+  refused(std::string(200000, '{'), "nested deeper than 100");
+  refused("", "/objects: must have one object");
+  expectFailure("model none.json -o o.vdb", 3, "none.json");
+  writeBytes(folder / "empty.json", "");
+  expectFailure("model empty.json -o o.vdb", 3, "empty");
+  writeScene("plane.json", R"({"type": "plane"})");
+  expectFailure("model plane.json -o o.vdb", 2, "--bounds");
+  expectFailure("model plane.json -o o.vdb --bounds 0,0,0,1,1,0", 2, "bounds");
+  expectFailure("model plane.json -o o.vdb --bounds 0,0,0,1,1,nan", 2, "--bounds takes 6");
+  expectFailure("model plane.json -o o.vdb --bounds 5,5,5,6,6,6", 3, "no surface");
+  expectFailure("model plane.json -o o.ply --bounds=-1,-1,-1,1,1,1", 2, ".vdb");
+  expectFailure("model plane.json -o o.vdb --voxel 0", 2, "--voxel");
+  writeScene("ball.json", R"({"type": "sphere", "radius": 1e6})");
+  expectFailure("model ball.json -o o.vdb --voxel 0.01", 3, "--band-voxels");
+  expectFailure("model ball.json -o o.vdb --voxel 1", 3, "--band-voxels");
+  writeScene("row.json", R"({"type": "repeat", "object": {"type": "sphere", "radius": 1},
+                             "step": [3, 3, 3], "count": [1000000000, 1000000000, 1000000000]})");
+  expectFailure("model row.json -o o.vdb --voxel 0.1", 2, "too small");
+}
+
+}  // namespace
+}  // namespace tufa

@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+#include <tufa/implicit.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "support/expect_error.h"
+
+namespace tufa {
+namespace {
+
+using implicit::makeExpression;
+using test::expectError;
+
+TEST(Expression, MeansWhatCWouldMean) {
+  using Function = std::function<double(double, double, double)>;
+  const std::vector<std::pair<std::string, Function>> all = {
+      {"1", [](double, double, double) { return 1.0; }},
+      {"z", [](double, double, double z) { return z; }},
+      {"y - (x)", [](double x, double y, double) { return y - x; }},
+      {" 1 + 2 * x - 3 / y ", [](double x, double y, double) { return 1 + 2 * x - 3 / y; }},
+      {"x - y - z", [](double x, double y, double z) { return x - y - z; }},
+      {"x / y / z", [](double x, double y, double z) { return x / y / z; }},
+      {"-x^2", [](double x, double, double) { return -(x * x); }},
+      {"2^3^2", [](double, double, double) { return 512.0; }},
+      {"2^-1", [](double, double, double) { return 0.5; }},
+      {"x^-2", [](double x, double, double) { return 1 / (x * x); }},
+      {"x^7", [](double x, double, double) { return std::pow(x, 7); }},
+      {"x^y", [](double x, double y, double) { return std::pow(x, y); }},
+      {"x^0.5", [](double x, double, double) { return std::sqrt(x); }},
+      {"--x+-y", [](double x, double y, double) { return x - y; }},
+      {"3*-x", [](double x, double, double) { return -3 * x; }},
+      {"x*x*x", [](double x, double, double) { return x * x * x; }},
+      {"1.5e-2*x+.5", [](double x, double, double) { return 0.015 * x + 0.5; }},
+      {"sin(x)*cos(y)+tan(z)",
+       [](double x, double y, double z) { return std::sin(x) * std::cos(y) + std::tan(z); }},
+      {"exp(ln(x)) + sqrt(abs(-y)) + atan(z)",
+       [](double x, double y, double z) {
+         return std::exp(std::log(x)) + std::sqrt(std::abs(-y)) + std::atan(z);
+       }},
+      {"min(x, max(y, z)) + pi * e",
+       [](double x, double y, double z) {
+         return std::min(x, std::max(y, z)) + std::numbers::pi * std::numbers::e;
+       }},
+  };
+  for (const auto& [text, function] : all) {
+    const auto field = makeExpression(text);
+    for (const double x : {0.3, 1.7}) {
+      for (const double y : {0.6, 2.1}) {
+        for (const double z : {0.2, 1.1}) {
+          EXPECT_NEAR(field->value({x, y, z}), function(x, y, z),
+                      1e-13 * (1 + std::abs(function(x, y, z))))
+              << text;
+        }
+      }
+    }
+  }
+}
+
+TEST(Expression, SaysWhereATextIsWrong) {
+  const auto refused = [](const std::string& text, const std::string& part) {
+    expectError(ErrorCode::InvalidArgument, part, [&] { static_cast<void>(makeExpression(text)); });
+  };
+  refused("", "at character 1");
+  refused("x +", "at character 4 of the expression, its end");
+  refused("(x", "closing parenthesis");
+  refused("x y", "at character 3");
+  refused("x + w", "there is no w");
+  refused("sin x", "sin needs its argument in parentheses");
+  refused("min(x)", "two arguments");
+  refused("sin(x, y)", "closing parenthesis");
+  refused("1e999", "number");
+  refused("x $ y", "at character 3");
+  refused(std::string("x\0y", 3), "at character 2");
+  refused(std::string(100000, '('), "nested deeper");
+  refused(std::string(100000, '-') + "x^" + std::string(1000, '('), "nested deeper");
+  std::string longOne = "x";
+  for (int n = 0; n < 20000; ++n) longOne += "+" + std::to_string(n) + "*y";
+  refused(longOne, "more than 10000 operations");
+  std::string powers = "x";
+  for (int n = 0; n < 1000; ++n) powers += "^x";
+  refused(powers, "nested deeper");
+}
+
+/// A point of no value is outside, and no bound says otherwise.
+TEST(Expression, BoundsCoverWhatIsUndefined) {
+  const auto field = makeExpression("(x - 1) / (x - 1) - 2");
+  EXPECT_TRUE(std::isnan(field->value({1, 0, 0})));
+  const auto bound = field->bound({{0, 0, 0}, {2, 1, 1}});
+  EXPECT_LT(bound.least, 0);
+  EXPECT_GT(bound.greatest, 0);
+  // Roots and logarithms of what is negative are those of 0.
+  EXPECT_EQ(makeExpression("sqrt(x) - 1")->value({-4, 0, 0}), -1);
+}
+
+TEST(Expression, EqualPartsAreOne) {
+  // 2^14 products, if each were computed by itself.
+  std::string text = "x";
+  for (int n = 0; n < 14; ++n) text = "(" + text + "+0.1)*(" + text + "+0.1)";
+  EXPECT_GT(text.size(), 100000u);
+  EXPECT_TRUE(std::isfinite(makeExpression(text)->value({0.1, 0, 0})));
+}
+
+}  // namespace
+}  // namespace tufa

@@ -1,0 +1,63 @@
+#include "unit/implicit/field_list.h"
+
+#include "implicit/fields.h"
+
+namespace tufa::test {
+
+using namespace implicit;  // NOLINT: all of it is about them
+
+std::vector<NamedField> allFields() {
+  const FieldPtr sphere = makeSphere({0.1, 0.2, -0.1}, 0.9);
+  const FieldPtr box = makeBox({0.2, 0, 0.1}, {0.8, 0.6, 0.5}, 0);
+  const FieldPtr ball = makeQuadric({1, 1.5, 2, 0.3, -0.2, 0.1, 0.2, 0, -0.1, -1});
+  Affine turn;
+  turn.rows = {Vec3(0.36, 0.48, -0.8), Vec3(-0.8, 0.6, 0), Vec3(0.48, 0.64, 0.6)};
+  turn.shift = {0.1, -0.2, 0.3};
+  Affine stretch = turn;
+  stretch.rows[0] *= 2;
+  stretch.rows[2] *= -0.5;
+  std::vector<FieldPtr> many;
+  for (int n = 0; n < 40; ++n) {
+    many.push_back(makeSphere({0.05 * n - 1, 0.3 * (n % 5) - 0.6, 0.2 * (n % 7) - 0.6}, 0.15));
+  }
+  std::vector<NamedField> all = {
+      {"sphere", sphere},
+      {"segment", makeSegment({-0.5, 0, 0.2}, {0.7, 0.4, -0.3}, 0.3)},
+      {"polyline", makePolyline({{-1, 0, 0}, {0, 0.5, 0}, {0.2, -0.8, 0.4}, {1, 1, 0.1}}, 0.2)},
+      {"circle", makeCircle({0, 0.1, 0.2}, {1, 2, 2}, 0.8, 0.3)},
+      {"box", box},
+      {"round box", makeBox({0.2, 0, 0.1}, {0.8, 0.6, 0.5}, 0.25)},
+      {"plane", makePlane({0.1, 0.2, 0.3}, {1, -2, 0.5})},
+      {"cylinder", makeCylinder({-0.4, -0.3, -0.6}, {0.5, 0.1, 0.7}, 0.5)},
+      {"quadric", ball},
+      {"cone", makeQuadric({1, 1, -1, 0, 0, 0, 0, 0, 0, 0})},
+      {"union", combine(Operation::Union, {sphere, box, ball}, 0)},
+      {"intersection", combine(Operation::Intersection, {sphere, box, ball}, 0)},
+      {"difference", combine(Operation::Intersection, {box, makeComplement(sphere)}, 0)},
+      {"smooth union", combine(Operation::Union, {box, sphere, ball}, 0.4)},
+      {"smooth intersection", combine(Operation::Intersection, {box, sphere, ball}, 0.3)},
+      {"many spheres", combine(Operation::Union, many, 0)},
+      {"many spheres, smooth", combine(Operation::Union, many, 0.1)},
+      {"offset", makeOffset(box, 0.2)},
+      {"shell", makeShell(sphere, 0.2)},
+      {"turned", transformed(box, turn)},
+      {"stretched", transformed(box, stretch)},
+      {"repeated", repeated(makeBox({0, 0, 0}, {0.2, 0.1, 0.15}, 0), {0.5, 0.4, 0.6}, {4, 3, 2})},
+  };
+  constexpr Lattice kLattices[] = {Lattice::Gyroid, Lattice::Primitive, Lattice::Diamond};
+  for (const Lattice lattice : kLattices) {
+    const std::string name = "lattice " + std::to_string(static_cast<int>(lattice));
+    all.push_back({name, makeLattice(lattice, 1.3, 0.2)});
+    all.push_back({name + " sheet", makeSheet(lattice, 1.3, {0.1, 0.3, {0, 0, -1}, {0, 0.5, 1}})});
+  }
+  for (const char* const text :
+       {"(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
+        "sin(3*x)*cos(2*y) + tan(0.2*z) - 0.3", "exp(-x^2 - y^2) * abs(z) - 0.2 + 0.1*x",
+        "sqrt(x^2 + y^2) - atan(2*z) + ln(2 + x)", "min(x, y*z) + max(x - y, 0.5*z)^3 - 0.1",
+        "(x^2 + y^2 + 0.5)^0.7 - 2^z/2", "1/(x^2 + y^2 + z^2 + 0.1) - 2"}) {
+    all.push_back({text, makeExpression(text)});
+  }
+  return all;
+}
+
+}  // namespace tufa::test

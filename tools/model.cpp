@@ -1,0 +1,193 @@
+#include <tufa/voxelize.h>
+
+#include <CLI/CLI.hpp>
+
+#include <tufa/error.h>
+#include <tufa/implicit.h>
+#include <tufa/io.h>
+#include <tufa/memory.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.h"
+#include "console.h"
+#include "number.h"
+#include "paths.h"
+#include "progress_bar.h"
+#include "standard_streams.h"
+#include "volume.h"
+#include "written_grid.h"
+
+namespace tufa::tools {
+namespace {
+
+struct ModelArguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> bounds;
+  std::optional<std::string> at;
+  std::optional<double> voxelSize;
+  std::optional<double> halfWidth;
+  VoxelizeOptions options;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// As many numbers as asked for, with commas between them.
+template <std::size_t N>
+std::array<double, N> numbersIn(const std::string& option, const std::string& text) {
+  std::array<double, N> all{};
+  const std::vector<std::string> words = CLI::detail::split(text, ',');
+  for (std::size_t n = 0; n < words.size(); ++n) {
+    const auto number = numberIn<double>(words[n]);
+    if (words.size() != N || !number || !std::isfinite(*number)) {
+      throw Error(ErrorCode::InvalidArgument, option + " takes " + std::to_string(N) +
+                                                  " numbers with commas between them, not \"" +
+                                                  text + "\"");
+    }
+    all[n] = *number;
+  }
+  return all;
+}
+
+implicit::Scene readSceneInput(const ModelArguments& arguments) {
+  std::optional<implicit::Box> bounds;
+  if (arguments.bounds) {
+    const auto n = numbersIn<6>("--bounds", *arguments.bounds);
+    bounds = {Position(n[0], n[1], n[2]), Position(n[3], n[4], n[5])};
+  }
+  if (isStandard(arguments.input)) return implicit::readScene(standardInput(), bounds);
+  return implicit::readScene(std::filesystem::path(arguments.input), bounds);
+}
+
+std::string shownPoint(const Position& p) {
+  return "(" + formatNumber(p.x) + ", " + formatNumber(p.y) + ", " + formatNumber(p.z) + ")";
+}
+
+/// What `--at` prints.
+int tellPoint(const ModelArguments& arguments) {
+  const auto at = numbersIn<3>("--at", *arguments.at);
+  const implicit::Scene scene = readSceneInput(arguments);
+  const Position point(at[0], at[1], at[2]);
+  const double value = scene.field->value(point);
+  const Position gradient = scene.field->gradient(point);
+  const Position normal = scene.field->normal(point);
+  if (arguments.json) {
+    nlohmann::ordered_json json;
+    json["file"] = arguments.input;
+    json["point"] = at;
+    json["inside"] = value < 0;
+    json["value"] = value;
+    json["gradient"] = {gradient.x, gradient.y, gradient.z};
+    json["normal"] = {normal.x, normal.y, normal.z};
+    print(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  } else {
+    print(std::string(value < 0 ? "inside" : "outside") + ", value " + formatNumber(value) +
+          "\ngradient " + shownPoint(gradient) + "\nnormal " + shownPoint(normal) + "\n");
+  }
+  return kDone;
+}
+
+/// What neither the command line nor the scene says: a hundred voxels along the longest side.
+double voxelSizeFor(const implicit::Field& field) {
+  constexpr double kVoxels = 100;
+  const implicit::Box box = field.extent();
+  const double longest = std::max(
+      {box.greatest.x - box.least.x, box.greatest.y - box.least.y, box.greatest.z - box.least.z});
+  // Where it has no end, voxelize() says so.
+  return std::isfinite(longest) && longest > 0 ? longest / kVoxels : 1;
+}
+
+void noteHidden(const VoxelizeReport& report) {
+  const std::string where =
+      ", near " + shownPoint(report.firstHidden) +
+      (report.hiddenVoxels + report.undecidedVoxels > 1 ? " and elsewhere; take smaller voxels"
+                                                        : "; take smaller voxels");
+  if (report.hiddenVoxels > 0) {
+    printNote(formatCount(report.hiddenVoxels) +
+              " voxels hold parts of the surface that no sample shows" + where);
+  } else if (report.undecidedVoxels > 0) {
+    printNote(formatCount(report.undecidedVoxels) +
+              " voxels may hold parts of the surface that no sample shows" + where);
+  }
+}
+
+int runModel(const ModelArguments& arguments) {
+  if (arguments.at && !arguments.output.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "--at only prints: leave out --output");
+  }
+  if (arguments.at) return tellPoint(arguments);
+  if (arguments.output.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "--output is required, or --at to look at a point");
+  }
+  keepApart(arguments.output);
+  if (arguments.voxelSize) requireVoxelSize("--voxel", *arguments.voxelSize);
+  requireVolumeOutput(arguments.output);
+  requireDistinct(arguments.output, {arguments.input});
+  const implicit::Scene scene = readSceneInput(arguments);
+  VoxelizeOptions options = arguments.options;
+  options.voxelSize =
+      arguments.voxelSize.value_or(scene.voxelSize.value_or(voxelSizeFor(*scene.field)));
+  options.halfWidth = arguments.halfWidth.value_or(scene.halfWidth.value_or(options.halfWidth));
+  VoxelizeReport report;
+  openvdb::FloatGrid::Ptr grid;
+  const double seconds = timed([&] {
+    ProgressBar bar(arguments.quiet);
+    options.progress = bar.callback();
+    grid = voxelize(*scene.field, options, &report);
+  });
+  noteHidden(report);
+  if (report.activeVoxels == 0) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                shownInput(arguments.input) + " has no surface that voxels of " +
+                    formatNumber(options.voxelSize) + " show within its bounds");
+  }
+  grid->setName(scene.name);
+  WrittenGrid written;
+  written.input = arguments.input;
+  written.scene = {report.samples, report.hiddenVoxels, report.undecidedVoxels};
+  written.output = arguments.output;
+  written.voxelSize = options.voxelSize;
+  written.makeSeconds = seconds;
+  writeAndTell(grid, std::move(written), {arguments.json, arguments.quiet});
+  return kDone;
+}
+
+}  // namespace
+
+void addModelCommand(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<ModelArguments>();
+  CLI::App* const model = app.add_subcommand("model", "Convert a scene of formulas to a level set");
+  VoxelizeOptions& options = arguments->options;
+  model
+      ->add_option("SCENE", arguments->input,
+                   "a .json file of docs/scenes.md, or - for standard input")
+      ->required();
+  model->add_option("-o,--output", arguments->output,
+                    "the .vdb file to write, or - for standard output");
+  model->add_option("--voxel", arguments->voxelSize,
+                    "voxel size in the scene's units; default: the scene's, or a hundredth of its "
+                    "longest side");
+  model->add_option("--half-width", arguments->halfWidth,
+                    "half width of the narrow band, in voxels; default: the scene's, or 3");
+  model->add_option("--bounds", arguments->bounds,
+                    "X0,Y0,Z0,X1,Y1,Z1: the box that the solid is cut by, in place of the scene's");
+  model->add_option("--at", arguments->at,
+                    "X,Y,Z: print value, gradient and normal at a point, and write nothing");
+  model->add_option("--band-voxels", options.bandVoxels, "most voxels of the band")
+      ->check(above0())
+      ->capture_default_str();
+  addThreadsOption(*model, options.threads);
+  model->add_flag("--json", arguments->json, "one JSON object on standard output");
+  model->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
+  model->callback([arguments, &chosen] { chosen = [arguments] { return runModel(*arguments); }; });
+}
+
+}  // namespace tufa::tools
