@@ -20,10 +20,19 @@ enum class LineKind : std::uint8_t {
 /// A vertex as lines see it.
 struct LineVertex {
   LineKind kind = LineKind::Off;
-  bool isLocked = false;  ///< may not go in a step of LineMode::Alone, see Part::lockBeside()
+  bool isBeside = false;  ///< off a line, and beside one when a step of LineMode::Alone began
+  /// In a step of LineMode::Alone: the plane whose vertices' going has changed a triangle at this
+  /// vertex, kNone for none, kSeveral if it may not go at all.
+  Index change = kNone;
+  Index name = kNone;  ///< its number when the last step of LineMode::Alone began
   /// The planes of lines that it lies on, kNone where there are fewer than three.
   std::array<Index, 3> planes{kNone, kNone, kNone};
 
+  static constexpr Index kSeveral = kNone - 1;
+
+  void addChange(Index plane) { change = change == kNone || change == plane ? plane : kSeveral; }
+  /// Whether it may go without changing triangles in a second plane.
+  [[nodiscard]] bool mayChange(Index plane) const { return change == kNone || change == plane; }
   [[nodiscard]] int commonPlanes(const LineVertex& other) const {
     int count = 0;
     for (const Index plane : planes) {
@@ -37,7 +46,7 @@ struct LineVertex {
 /// into a neighbour on its line under all guards, so that those left keep their places.
 enum class LineMode : std::uint8_t {
   Free,   ///< together with the rest
-  Alone,  ///< and nothing else
+  Alone,  ///< and beside them only what goes into a neighbour that stays where it is
   Held    ///< not at all
 };
 

@@ -36,6 +36,9 @@ class Part {
   /// What was tried in all parts so far.
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
   void clearCounts() { counts_ = {}; }
+  /// Changes of LineVertex::change in all parts so far: vertices of the surface and planes. Other
+  /// parts may have the same vertices.
+  [[nodiscard]] std::vector<std::array<Index, 2>>& changes() { return changes_; }
 
  private:
   static constexpr Index kBuckets = 512;
@@ -97,6 +100,10 @@ class Part {
   void loadLines(const Surface& surface);
   void storeLines(Surface& surface) const;
   [[nodiscard]] bool isOnLine(Index v) const { return hasLines_ && line_[v].kind != LineKind::Off; }
+  [[nodiscard]] bool isNearLine(Index v) const {
+    return line_[v].kind != LineKind::Off || line_[v].isBeside;
+  }
+  [[nodiscard]] bool isAlone() const { return hasLines_ && limits_.lines == LineMode::Alone; }
   [[nodiscard]] bool isLineEdge(Index corner) const;
   [[nodiscard]] std::array<Index, 2> keptAtLine(Index a, Index b) const;
   [[nodiscard]] float errorAtLine(Index a, Index b, Vec3f place, const LocalQuadric& sum) const;
@@ -104,7 +111,9 @@ class Part {
   Outcome tryInto(Index kept, Index gone);
   [[nodiscard]] bool mayHold(Index a, Index b) const;
   [[nodiscard]] bool makesChord() const;
-  void lockBeside(Index gone);
+  [[nodiscard]] Index planeBeside(Index v) const;
+  [[nodiscard]] bool mayGoAlone(Index gone, Index kept) const;
+  void noteGone(Index kept, Index gone);
   [[nodiscard]] bool mayFlipAtLine(const Index* v) const;
 
   // part_star.cpp.
@@ -175,7 +184,8 @@ class Part {
   bool hasLines_ = false;
   std::vector<LineVertex> line_;
   std::vector<Index> region_;                   ///< of each triangle
-  std::vector<std::array<Index, 2>> wentInto_;  ///< vertices of the input, from and to
+  std::vector<std::array<Index, 3>> wentInto_;  ///< names, from and to, and the plane
+  std::vector<std::array<Index, 2>> changes_;
   // For each corner; for each triangle its first sample; for each sample.
   std::vector<Index> vertex_, opposite_, firstSample_;
   std::vector<Sample> samples_;

@@ -58,14 +58,11 @@ float Part::solve(Index a, Index b, Vec3f& place, LocalQuadric& sum) const {
 
 void Part::propose(Index a, Index b) {
   if (inner_[a] == 0 || inner_[b] == 0) return;
+  if (isAlone() && !isNearLine(a) && !isNearLine(b)) return;
   Vec3f place;
   LocalQuadric sum;
   float error = solve(a, b, place, sum);
-  if (isOnLine(a) || isOnLine(b)) {
-    error = errorAtLine(a, b, place, sum);
-  } else if (limits_.lines == LineMode::Alone) {
-    return;
-  }
+  if (isOnLine(a) || isOnLine(b) || isAlone()) error = errorAtLine(a, b, place, sum);
   const float most = limits_.errorShare * limits_.distance;
   if (!(error <= most * most * sum.weight)) return;
   // Among edges of flat surface the short ones come first.
@@ -77,7 +74,7 @@ void Part::propose(Index a, Index b) {
 // The place of least quadric error first. Beside creases and slivers that can fold a triangle where
 // one of the two old places does not: those are next.
 Outcome Part::tryCollapse(Index a, Index b) {
-  if (isOnLine(a) || isOnLine(b)) return tryCollapseAtLine(a, b);
+  if (isOnLine(a) || isOnLine(b) || isAlone()) return tryCollapseAtLine(a, b);
   Vec3f exact;
   solve(a, b, exact, sum_);
   if (!gatherRing(a, b)) return Outcome::Link;

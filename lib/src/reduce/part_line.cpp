@@ -1,8 +1,8 @@
 // Collapses at lines, the edges between regions: which vertex stays, and what a region may not do.
 //
-// A vertex of a line keeps its place. So the lines of a coarser mesh have a part of the vertices of
-// the finer one, and what a vertex went into is all that is needed to give a region the lines of
-// the coarser mesh: see chunks/chain/chunk_chain.h.
+// A vertex of a line keeps its place, and in LineMode::Alone all vertices do. So the lines of a
+// coarser mesh have a part of the vertices of the finer one, and what a vertex went into is all
+// that is needed to give a region the lines of the coarser mesh: see chunks/chain/chunk_chain.h.
 
 #include <algorithm>
 #include <limits>
@@ -23,9 +23,9 @@ void Part::loadLines(const Surface& surface) {
 
 void Part::storeLines(Surface& surface) const {
   if (!hasLines_) return;
-  const auto vertices = partition_->vertices(number_);
-  for (Index i = 0; i < vertexCount_; ++i) surface.line[vertices[i]] = line_[i];
-  for (const auto& [from, to] : wentInto_) surface.into[from] = to;
+  for (const auto& [from, to, plane] : wentInto_) {
+    surface.into[from] = to, surface.intoPlane[from] = plane;
+  }
 }
 
 // Whether the edge opposite a corner is between two regions.
@@ -36,13 +36,39 @@ bool Part::isLineEdge(Index c) const {
 // Those of two neighbours, at least one of them on a line, that may stay; kNone for none.
 std::array<Index, 2> Part::keptAtLine(Index a, Index b) const {
   const LineKind p = line_[a].kind, q = line_[b].kind;
-  if (p == LineKind::Off || q == LineKind::Off) {
-    if (limits_.lines == LineMode::Alone) return {kNone, kNone};
-    return {q == LineKind::Off ? a : b, kNone};
+  if (limits_.lines == LineMode::Alone) {
+    return {mayGoAlone(b, a) ? a : kNone, mayGoAlone(a, b) ? b : kNone};
   }
+  if (p == LineKind::Off || q == LineKind::Off) return {q == LineKind::Off ? a : b, kNone};
   if (limits_.lines == LineMode::Held) return {kNone, kNone};
-  const auto mayGo = [&](Index v) { return line_[v].kind == LineKind::On && !line_[v].isLocked; };
-  return {mayGo(b) ? a : kNone, mayGo(a) ? b : kNone};
+  return {q == LineKind::On ? a : kNone, p == LineKind::On ? b : kNone};
+}
+
+// The plane of the line beside a vertex off it; kNone if there is none, or are several.
+Index Part::planeBeside(Index v) const {
+  Index plane = kNone, c = corner_[v];
+  do {
+    const LineVertex& other = line_[vertex_[nextCorner(c)]];
+    if (other.kind == LineKind::On && plane != kNone && other.planes[0] != plane) return kNone;
+    if (other.kind == LineKind::On) plane = other.planes[0];
+    c = around(c);
+  } while (c != corner_[v]);
+  return plane;
+}
+
+// Triangles may not change in a second plane: then each has two forms, and what holds for all
+// triangles in the one and in the other form holds for any mixture.
+bool Part::mayGoAlone(Index gone, Index kept) const {
+  const LineVertex &from = line_[gone], &to = line_[kept];
+  if (from.kind == LineKind::End) return false;
+  if (from.kind == LineKind::On) {
+    return to.kind != LineKind::Off && from.mayChange(from.planes[0]);
+  }
+  if (!from.isBeside) return false;
+  const Index plane = planeBeside(gone);
+  if (plane == kNone || !from.mayChange(plane)) return false;
+  return to.kind == LineKind::End || (to.kind == LineKind::On && to.planes[0] == plane) ||
+         (to.kind == LineKind::Off && to.mayChange(plane));
 }
 
 // The quadric error at the better one of the places that a collapse may have.
@@ -70,13 +96,7 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
     outcome = tryInto(k, gone);
     if (outcome != Outcome::Done) continue;
     sum_.moveBy(place_ - exact);
-    if (isOnLine(gone)) {
-      const auto sourceOf = [&](Index v) {
-        return surface_->source[partition_->vertices(number_)[v]];
-      };
-      wentInto_.push_back({sourceOf(gone), sourceOf(k)});
-      if (limits_.lines == LineMode::Alone) lockBeside(gone);
-    }
+    if (isOnLine(gone) || limits_.lines == LineMode::Alone) noteGone(k, gone);
     apply(k, gone);
     for (int i = 0; i < size_; ++i) propose(k, ring_[i]);
     return outcome;
@@ -116,14 +136,19 @@ bool Part::makesChord() const {
   return false;
 }
 
-// Triangles at a vertex that goes may not change in a second plane: then each triangle has two
-// forms, and what holds for all triangles in the one and in the other form holds for any mixture.
-// The vertices beside it on other planes are locked. Called while the ring is that of the collapse.
-void Part::lockBeside(Index gone) {
+// Notes where a vertex goes, and that the triangles around it change. Called while the ring is that
+// of the collapse.
+void Part::noteGone(Index kept, Index gone) {
+  const Index plane = isOnLine(gone) ? line_[gone].planes[0] : planeBeside(gone);
+  wentInto_.push_back({line_[gone].name, line_[kept].name, plane});
+  if (limits_.lines != LineMode::Alone) return;
+  const auto note = [&](Index v) {
+    line_[v].addChange(plane);
+    changes_.push_back({partition_->vertices(number_)[v], plane});
+  };
+  note(kept);
   for (int i = 0; i < size_; ++i) {
-    if (i > 0 && i < split_) continue;  // beside the one that stays alone
-    LineVertex& line = line_[ring_[i]];
-    if (line.kind == LineKind::On && line.commonPlanes(line_[gone]) == 0) line.isLocked = true;
+    if (i == 0 || i >= split_) note(ring_[i]);  // others are beside the one that stays alone
   }
 }
 

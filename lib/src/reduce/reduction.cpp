@@ -97,13 +97,22 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
 
 void Reduction::setRegions(const Regions& regions) { reduce::setRegions(surface_, regions); }
 
-// Forgets what went where in the step before, and which vertices it locked.
+// Names all vertices, and forgets what went where in the step before.
 void Reduction::beginLines() {
-  for (Index v = 0; v < surface_.line.size(); ++v) {
-    const Index source = surface_.source[v];
-    surface_.line[v].isLocked = !stay_.empty() && source != kNone && stay_[source] != 0;
+  const auto count = static_cast<Index>(surface_.line.size());
+  surface_.into.resize(count);
+  surface_.intoPlane.assign(count, kNone);
+  for (Index v = 0; v < count; ++v) {
+    LineVertex& line = surface_.line[v];
+    line.name = surface_.into[v] = v;
+    line.change = !stay_.empty() && stay_[v] != 0 ? LineVertex::kSeveral : kNone;
+    line.isBeside = false;
   }
-  for (Index i = 0; i < surface_.into.size(); ++i) surface_.into[i] = i;
+  for (const Triangle& t : surface_.triangles) {
+    const bool isBeside = std::any_of(t.vertices.begin(), t.vertices.end(),
+                                      [&](Index v) { return surface_.isOnLine(v); });
+    for (const Index v : t.vertices) surface_.line[v].isBeside |= isBeside;
+  }
 }
 
 // Large tolerances by way of smaller ones: most collapses are cheap there, as little surface is
@@ -215,6 +224,8 @@ void Reduction::returnPart(std::unique_ptr<Part> part) {
   const std::lock_guard<std::mutex> lock(partsMutex_);
   lastCounts_ += part->counts();
   part->clearCounts();
+  lastChanges_.insert(lastChanges_.end(), part->changes().begin(), part->changes().end());
+  part->changes().clear();
   parts_.push_back(std::move(part));
 }
 
@@ -236,6 +247,8 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
     returnPart(std::move(part));
   });
   counts_ += lastCounts_;
+  for (const auto& [vertex, plane] : lastChanges_) surface_.line[vertex].addChange(plane);
+  lastChanges_.clear();
   isReference_ = false;
   compact(surface_, dead);
   ++phaseNumber_;

@@ -92,7 +92,8 @@ class Reduction {
   /// kLeastTolerance nothing is done.
   void toTolerance(float tolerance, LineMode lines = LineMode::Free);
 
-  /// In steps of LineMode::Alone the vertices of the input that are marked stay. Empty: none.
+  /// In steps of LineMode::Alone the vertices that are marked stay, by their numbers when the step
+  /// begins. Empty: none.
   void lockLines(std::vector<std::uint8_t> stay) { stay_ = std::move(stay); }
 
   /// At most `count` triangles and few less, within the least tolerance that reaches it among a
@@ -111,9 +112,12 @@ class Reduction {
   /// How often the mesh was reduced to the last tolerance.
   [[nodiscard]] int attempts() const { return attempt_ + 1; }
   [[nodiscard]] ReducedMesh mesh() const;
-  /// For each vertex of the input where it has gone along lines in the last step of LineMode::Alone
-  /// or LineMode::Free, at once: a vertex that may have gone on in turn. Itself if it has not.
+  /// For each vertex, by its number when the last step of LineMode::Alone began, where it has gone
+  /// in that step, at once: a vertex that may have gone on in turn. Itself if it has not. Before
+  /// there is such a step: for vertices of the input that went along lines.
   [[nodiscard]] const std::vector<Index>& wentInto() const { return surface_.into; }
+  /// For those that have gone the plane of the line that they were on, or beside.
+  [[nodiscard]] const std::vector<Index>& wentFor() const { return surface_.intoPlane; }
   /// The state between two steps, and back to one.
   [[nodiscard]] Surface surface() const { return surface_; }
   void restore(Surface surface) { surface_ = std::move(surface); }
@@ -138,6 +142,7 @@ class Reduction {
   std::mutex partsMutex_;
   std::vector<std::unique_ptr<Part>> parts_;  ///< as many as threads have been at work
   OperationCounts counts_, lastCounts_;
+  std::vector<std::array<Index, 2>> lastChanges_;  ///< see Part::changes()
   Certificate certificate_;
   bool isReference_;                                 ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance

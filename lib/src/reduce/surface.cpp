@@ -133,7 +133,8 @@ void setRegions(Surface& s, const Regions& regions) {
   s.mayHold = regions.mayHold;
   s.line.assign(count, {});
   s.into.resize(count);
-  for (Index v = 0; v < count; ++v) s.into[v] = v;
+  for (Index v = 0; v < count; ++v) s.into[v] = s.line[v].name = v;
+  s.intoPlane.assign(count, kNone);
   const CornersOfVertices corners(count, s.triangles);
   for (Index v = 0; v < count; ++v) {
     // Each line edge at the vertex is met twice, once in each of its triangles, where its region is

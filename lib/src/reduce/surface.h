@@ -34,11 +34,12 @@ struct Surface {
   /// faces.
   std::vector<Index> owner;
 
-  // Empty without regions: for each triangle, for each vertex, and for each vertex of the input
-  // that has gone into a neighbour on its line where, else itself.
+  // Empty without regions: for each triangle, for each vertex, and for each name of a vertex where
+  // it has gone, else itself.
   std::vector<Index> region;
   std::vector<LineVertex> line;
   std::vector<Index> into;
+  std::vector<Index> intoPlane;  ///< for each name the plane of the line that it went for
   /// Edges of the input inside a region between vertices of lines in one plane, as keys of
   /// chordKey(), sorted: they may never become edges of lines.
   std::vector<std::uint64_t> chords;

@@ -65,14 +65,15 @@ TEST(ChunkChain, PassesOnTheCurvesOfTheNextLevel) {
   for (const double tolerance : {0.05, 0.4}) chain.make(tolerance);
   const ChainLevel &fine = chain.levels[0], &coarse = chain.levels[1];
   std::set<VertexIndex> changedInto, own;
-  std::size_t changes = 0;
+  std::size_t changes = 0, beside = 0;
   for (VertexIndex v = 0; v < fine.positions.size(); ++v) {
+    EXPECT_EQ(fine.into[fine.into[v]], fine.into[v]);
+    EXPECT_EQ(fine.into[v] != v, fine.intoPlane[v] != ChunkPlane::kNone);
     if (fine.cutVertex[v] == ChainLevel::kNone) {
-      EXPECT_EQ(fine.into[v], v);
+      beside += fine.into[v] != v ? 1 : 0;
       continue;
     }
     changes += fine.into[v] != v ? 1 : 0;
-    EXPECT_EQ(fine.into[fine.into[v]], fine.into[v]);
     changedInto.insert(fine.cutVertex[fine.into[v]]);
   }
   for (VertexIndex v = 0; v < coarse.positions.size(); ++v) {
@@ -85,6 +86,7 @@ TEST(ChunkChain, PassesOnTheCurvesOfTheNextLevel) {
   }
   EXPECT_EQ(changedInto, own);
   EXPECT_GT(changes, 10U);
+  EXPECT_GT(beside, 10U);
 }
 
 TEST(ChunkChain, ChangesATriangleInOnePlaneAtATime) {
@@ -93,20 +95,15 @@ TEST(ChunkChain, ChangesATriangleInOnePlaneAtATime) {
   for (const ChainLevel& level : chain.levels) {
     for (const Triangle& t : level.triangles) {
       bool isMixed = false;
-      (void)changingPlane(chain.cut, level, t, isMixed);
+      (void)changingPlane(level, t, isMixed);
       EXPECT_FALSE(isMixed);
     }
-    EXPECT_TRUE(findMixedForms(chain.cut, level, chain.model.job()).empty());
+    EXPECT_TRUE(findMixedForms(level, chain.model.job()).empty());
   }
 }
 
 // Triangles in one plane beside one of another that they would cross once they change.
 TEST(MixedForms, AreFoundWhereTrianglesOfTwoPlanesWouldMeet) {
-  CutMesh cut;
-  cut.chunks = {Coord(0)};
-  cut.planes = {{0, 0}, {1, 0}};
-  constexpr auto kNone = ChunkPlane::kNone;
-  cut.planesOf = {{0, kNone, kNone}, {0, kNone, kNone}, {1, kNone, kNone}, {1, kNone, kNone}};
   ChainLevel level;
   level.positions = {{0, 1, 0}, {0, 9, 0}, {2, 0, -1}, {9, 0, 0},
                      {4, 1, 0}, {4, 9, 0}, {2, 3, 1},  {2, 8, 2}};
@@ -115,10 +112,12 @@ TEST(MixedForms, AreFoundWhereTrianglesOfTwoPlanesWouldMeet) {
   level.triangles = {{1, 4, 5}, {2, 6, 7}};  // once 1 goes to 0, its triangle crosses the other's
   level.chunkOf = {0, 0};
   level.into = {0, 0, 3, 3, 4, 5, 6, 7};
+  constexpr auto kNone = ChunkPlane::kNone;
+  level.intoPlane = {kNone, 0, 1, kNone, kNone, kNone, kNone, kNone};
   base::Job job(1, {});
-  EXPECT_EQ(findMixedForms(cut, level, job).size(), 2U);
+  EXPECT_EQ(findMixedForms(level, job).size(), 2U);
   level.into[1] = 1;
-  EXPECT_TRUE(findMixedForms(cut, level, job).empty());
+  EXPECT_TRUE(findMixedForms(level, job).empty());
 }
 
 TEST(SplitLevel, GivesEachTriangleToOnePartOfItsChunk) {

@@ -105,17 +105,17 @@ ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
 
 void ChunkChain::reduceCurves(float tolerance, ChainLevel& before) {
   const reduce::Surface surface = reduction_->surface();
-  std::vector<std::uint8_t> stay(cut_.mesh.positions.size(), 0);
+  std::vector<std::uint8_t> stay(before.positions.size(), 0);
   for (int attempt = 0;; ++attempt) {
     reduction_->lockLines(stay);
     reduction_->toTolerance(tolerance, reduce::LineMode::Alone);
     setInto(before);
-    const std::vector<std::uint32_t> bad = findMixedForms(cut_, before, job_);
+    const std::vector<std::uint32_t> bad = findMixedForms(before, job_);
     if (bad.empty()) break;
     for (const std::uint32_t t : bad) {
       for (const VertexIndex v : before.triangles[t].vertices) {
         if (before.into[v] == v && attempt < kMostAttempts) continue;
-        if (before.cutVertex[v] != ChainLevel::kNone) stay[before.cutVertex[v]] = 1;
+        stay[v] = 1;
       }
     }
     reduction_->restore(surface);
@@ -126,18 +126,12 @@ void ChunkChain::reduceCurves(float tolerance, ChainLevel& before) {
 // What each vertex has gone into at last.
 void ChunkChain::setInto(ChainLevel& level) const {
   const std::vector<reduce::Index>& went = reduction_->wentInto();
-  std::vector<VertexIndex> vertexOf(cut_.mesh.positions.size(), ChainLevel::kNone);
   for (VertexIndex v = 0; v < level.positions.size(); ++v) {
-    if (level.cutVertex[v] != ChainLevel::kNone) vertexOf[level.cutVertex[v]] = v;
-  }
-  level.into.resize(level.positions.size());
-  for (VertexIndex v = 0; v < level.positions.size(); ++v) {
-    level.into[v] = v;
-    if (level.cutVertex[v] == ChainLevel::kNone) continue;
-    VertexIndex last = level.cutVertex[v];
+    VertexIndex last = v;
     while (went[last] != last) last = went[last];
-    level.into[v] = vertexOf[last];
+    level.into[v] = last;
   }
+  level.intoPlane = reduction_->wentFor();
 }
 
 std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate) const {
@@ -171,6 +165,7 @@ ChainLevel ChunkChain::extract() const {
   level.normals.resize(count);
   level.cutVertex.assign(count, ChainLevel::kNone);
   level.into.resize(count);
+  level.intoPlane.assign(count, ChunkPlane::kNone);
   level.isEnd.resize(count);
   for (VertexIndex v = 0; v < count; ++v) {
     const reduce::Index source = reduced.sources[v];

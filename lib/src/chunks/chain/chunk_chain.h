@@ -26,6 +26,7 @@ struct ChainLevel {
   std::vector<std::uint8_t> isEnd;  ///< of a curve
   /// For each vertex the one of this LOD that stands for it beside the next LOD.
   std::vector<VertexIndex> into;
+  std::vector<std::uint32_t> intoPlane;  ///< where that is another one, the plane it is for
   std::vector<double> errors;            ///< of each chunk, voxels
   std::vector<double> transitionErrors;  ///< with all curves as the next LOD has them
   static constexpr VertexIndex kNone = ~VertexIndex{0};

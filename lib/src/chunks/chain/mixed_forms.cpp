@@ -18,25 +18,23 @@ base::Box boxOf(const ChainLevel& level, const Triangle& t) {
 
 }  // namespace
 
-std::uint32_t changingPlane(const CutMesh& cut, const ChainLevel& level, const Triangle& triangle,
-                            bool& isMixed) {
+std::uint32_t changingPlane(const ChainLevel& level, const Triangle& triangle, bool& isMixed) {
   std::uint32_t plane = ChunkPlane::kNone;
   isMixed = false;
   for (const VertexIndex v : triangle.vertices) {
     if (level.into[v] == v) continue;
-    const std::uint32_t own = cut.planesOf[level.cutVertex[v]][0];
+    const std::uint32_t own = level.intoPlane[v];
     isMixed |= plane != ChunkPlane::kNone && plane != own;
     plane = own;
   }
   return plane;
 }
 
-std::vector<std::uint32_t> findMixedForms(const CutMesh& cut, const ChainLevel& level,
-                                          base::Job& job) {
+std::vector<std::uint32_t> findMixedForms(const ChainLevel& level, base::Job& job) {
   std::vector<std::uint32_t> bad, changing, planes;
   for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
     bool isMixed = false;
-    const std::uint32_t plane = changingPlane(cut, level, level.triangles[t], isMixed);
+    const std::uint32_t plane = changingPlane(level, level.triangles[t], isMixed);
     if (plane == ChunkPlane::kNone) continue;
     if (isMixed) bad.push_back(t);
     changing.push_back(t), planes.push_back(plane);

@@ -12,13 +12,12 @@ namespace tufa::chunks {
 /// Finds the triangles of a level that, in the form beside the next level, intersect a triangle of
 /// the same chunk in its own form that would change in another plane, or that change in two
 /// planes: places in `level.triangles`, sorted. The level must have its `into`.
-[[nodiscard]] std::vector<std::uint32_t> findMixedForms(const CutMesh& cut, const ChainLevel& level,
-                                                        base::Job& job);
+[[nodiscard]] std::vector<std::uint32_t> findMixedForms(const ChainLevel& level, base::Job& job);
 
 /// The plane in which a triangle changes beside the next level, ChunkPlane::kNone if it does not.
 /// `isMixed` is set where there are several.
-[[nodiscard]] std::uint32_t changingPlane(const CutMesh& cut, const ChainLevel& level,
-                                          const Triangle& triangle, bool& isMixed);
+[[nodiscard]] std::uint32_t changingPlane(const ChainLevel& level, const Triangle& triangle,
+                                          bool& isMixed);
 
 /// A triangle beside the next level.
 [[nodiscard]] inline Triangle changed(const ChainLevel& level, const Triangle& t) {

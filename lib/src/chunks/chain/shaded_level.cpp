@@ -54,6 +54,10 @@ ShadedLevel shade(const ChainLevel& level, const CurveNormals& curves, double cr
                   base::Job& job) {
   shading::ShadedMesh split = splitOf(level, creaseAngle, job);
   ShadedLevel out{std::move(split.sources), std::move(split.normals), {}, {}};
+  // Those of a vertex off the curves stand together.
+  std::vector<VertexIndex> plain(level.positions.size() + 1, 0);
+  for (const VertexIndex source : out.sources) ++plain[source + 1];
+  std::partial_sum(plain.begin(), plain.end(), plain.begin());
   // The vertices of curves come behind, and those that the level's own creases gave them are used
   // by no triangle.
   std::vector<VertexIndex> first(level.positions.size(), ChainLevel::kNone);
@@ -65,9 +69,16 @@ ShadedLevel shade(const ChainLevel& level, const CurveNormals& curves, double cr
       out.normals.push_back(curves.at(level.cutVertex[v], i));
     }
   }
-  const auto cornerOf = [&](VertexIndex v, VertexIndex plain, const Vec3& face) {
-    if (level.cutVertex[v] == ChainLevel::kNone) return plain;
-    return first[v] + static_cast<VertexIndex>(curves.nearest(level.cutVertex[v], face));
+  const auto cornerOf = [&](VertexIndex v, VertexIndex own, const Vec3& face) {
+    if (level.cutVertex[v] != ChainLevel::kNone) {
+      return first[v] + static_cast<VertexIndex>(curves.nearest(level.cutVertex[v], face));
+    }
+    if (out.sources[own] == v) return own;
+    VertexIndex best = plain[v];
+    for (VertexIndex n = best + 1; n < plain[v + 1]; ++n) {
+      if (Vec3(out.normals[n]).dot(face) > Vec3(out.normals[best]).dot(face)) best = n;
+    }
+    return best;
   };
   out.triangles.resize(level.triangles.size());
   out.changed.resize(level.triangles.size());

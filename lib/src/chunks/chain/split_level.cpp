@@ -46,7 +46,7 @@ class Splitter {
     for (const std::uint32_t t : triangles_[chunk]) {
       const Triangle& triangle = level_.triangles[t];
       bool isMixed = false;
-      const std::uint32_t plane = changingPlane(cut_, level_, triangle, isMixed);
+      const std::uint32_t plane = changingPlane(level_, triangle, isMixed);
       if (plane == ChunkPlane::kNone) {
         out.interior.push_back(localTriangle(shaded_.triangles[t]));
         continue;
