@@ -164,7 +164,7 @@ TEST(ChunkFaces, CostFewTrianglesAtAnyLevel) {
   lods.levels = options.levels;
   const LodChain chain = buildLods(*grid, lods);
   ASSERT_EQ(chain.levels.size(), made.index.tolerances.size());
-  const double most[] = {1.2, 1.4, 2.5, 8};
+  const double most[] = {1.15, 1.3, 2.2, 7.5};
   for (std::size_t level = 0; level < chain.levels.size(); ++level) {
     EXPECT_LT(static_cast<double>(trianglesOf(made.index, level)),
               most[level] * static_cast<double>(chain.levels[level].mesh.triangleCount()))
@@ -319,7 +319,7 @@ TEST(ChunkNormals, AreSplitAtCreasesAndTheSameOnBothSidesOfAFace) {
   options.creaseAngle = 180;
   const double unsplit = smearedShare(meshesAt(makeChunks(*grid, options), 0));
   EXPECT_GT(unsplit, 0.5);
-  EXPECT_LT(split, 0.02);  // of the whole LOD: 0.011
+  EXPECT_LT(split, 0.03);  // of the whole LOD: 0.011
 }
 
 TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {

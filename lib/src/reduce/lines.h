@@ -60,9 +60,12 @@ struct Regions {
   Index count = 0;
   /// For each vertex the planes of LineVertex; to be given for vertices on lines only.
   std::vector<std::array<Index, 3>> planes;
-  /// Whether a vertex of a region that was at `a` or `b` may be at a place. Called from several
-  /// threads.
-  std::function<bool(Index region, Vec3f place, Vec3f a, Vec3f b)> mayHold;
+  /// Of planes by their numbers, unit. Given, vertices of lines may move in their plane where lines
+  /// are reduced together with the rest.
+  std::vector<Vec3f> normals;
+  /// Whether a vertex of a region that was at `a` or `b` may be at a place. `plane`: in which it
+  /// is, if it is on a line, else kNone. Called from several threads.
+  std::function<bool(Index region, Index plane, Vec3f place, Vec3f a, Vec3f b)> mayHold;
 };
 
 }  // namespace tufa::reduce

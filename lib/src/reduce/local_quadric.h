@@ -46,6 +46,20 @@ struct LocalQuadric {
     return {x, y, z};
   }
 
+  /// The same among places in the plane with two unit directions at a right angle.
+  [[nodiscard]] Vec3f minimumAlong(Vec3f u, Vec3f v) const {
+    const auto times = [&](Vec3f d) {
+      return Vec3f{xx * d.x + xy * d.y + xz * d.z, xy * d.x + yy * d.y + yz * d.z,
+                   xz * d.x + yz * d.y + zz * d.z};
+    };
+    const Vec3f b{bx, by, bz}, qu = times(u), qv = times(v);
+    const float regular = 1e-3f * (dot(u, qu) + dot(v, qv)) + 1e-20f;
+    const float d0 = dot(u, qu) + regular, l = dot(u, qv) / d0;
+    const float d1 = dot(v, qv) + regular - l * dot(u, qv);
+    const float y = (-dot(v, b) + l * dot(u, b)) / d1, x = -dot(u, b) / d0 - l * y;
+    return u * x + v * y;
+  }
+
   /// The sum at a place d further on.
   [[nodiscard]] float at(Vec3f d) const {
     return c + 2 * (bx * d.x + by * d.y + bz * d.z) + d.x * (xx * d.x + 2 * (xy * d.y + xz * d.z)) +

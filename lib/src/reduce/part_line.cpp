@@ -1,6 +1,6 @@
 // Collapses at lines, the edges between regions: which vertex stays, and what a region may not do.
 //
-// A vertex of a line keeps its place, and in LineMode::Alone all vertices do. So the lines of a
+// In LineMode::Alone every vertex keeps its place. So the lines of a
 // coarser mesh have a part of the vertices of the finer one, and what a vertex went into is all
 // that is needed to give a region the lines of the coarser mesh: see chunks/chain/chunk_chain.h.
 
@@ -74,6 +74,7 @@ bool Part::mayGoAlone(Index gone, Index kept) const {
 // The quadric error at the better one of the places that a collapse may have.
 float Part::errorAtLine(Index a, Index b, Vec3f place, const LocalQuadric& sum) const {
   float least = std::numeric_limits<float>::infinity();
+  if (mayMove(a, b)) least = std::max(0.0f, sum.at(bestInPlane(a, b, place, sum) - place));
   for (const Index kept : keptAtLine(a, b)) {
     if (kept != kNone) least = std::min(least, std::max(0.0f, sum.at(position_[kept] - place)));
   }
@@ -90,10 +91,22 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
   }
   const float most = limits_.errorShare * limits_.distance;
   Outcome outcome = Outcome::Place;
-  for (const Index k : kept) {
-    if (k == kNone || !(errorAt(k) <= most * most * sum_.weight)) continue;
+  const auto isCheap = [&](Vec3f place) {
+    return sum_.at(place - exact) <= most * most * sum_.weight;
+  };
+  struct Choice {
+    Index kept;
+    Vec3f place;
+  };
+  Choice choices[3] = {{kNone, {}}, {kept[0], {}}, {kept[1], {}}};
+  if (mayMove(a, b)) choices[0] = {a, surface_->roundedPlace(bestInPlane(a, b, exact, sum_))};
+  for (int i : {1, 2}) {
+    if (choices[i].kept != kNone) choices[i].place = position_[choices[i].kept];
+  }
+  for (const auto& [k, place] : choices) {
+    if (k == kNone || !isCheap(place)) continue;
     const Index gone = k == a ? b : a;
-    outcome = tryInto(k, gone);
+    outcome = tryInto(k, gone, place);
     if (outcome != Outcome::Done) continue;
     sum_.moveBy(place_ - exact);
     if (isOnLine(gone) || limits_.lines == LineMode::Alone) noteGone(k, gone);
@@ -104,7 +117,25 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
   return outcome;
 }
 
-Outcome Part::tryInto(Index kept, Index gone) {
+// Whether two neighbours may become one at a new place: both inside a line, where the rest is
+// reduced too.
+bool Part::mayMove(Index a, Index b) const {
+  return limits_.lines == LineMode::Free && !surface_->planeNormals.empty() &&
+         line_[a].kind == LineKind::On && line_[b].kind == LineKind::On &&
+         line_[a].planes[0] == line_[b].planes[0] && line_[a].planes[0] != kNone;
+}
+
+// The place of least error in their plane. `sum` is seen from `place`.
+Vec3f Part::bestInPlane(Index a, Index b, Vec3f place, const LocalQuadric& sum) const {
+  const base::Frame frame = base::frameAbout(surface_->planeNormals[line_[a].planes[0]]);
+  const Vec3f middle = (position_[a] + position_[b]) * 0.5f;
+  LocalQuadric q = sum;
+  q.moveBy(middle - place);
+  const Vec3f off = q.minimumAlong(frame.x, frame.y);
+  return squaredLength(off) <= squaredLength(position_[a] - position_[b]) ? middle + off : middle;
+}
+
+Outcome Part::tryInto(Index kept, Index gone, Vec3f place) {
   if (!gatherRing(kept, gone)) return Outcome::Link;
   if (isOnLine(kept) && isOnLine(gone)) {
     if (region_[left_ / 3] == region_[right_ / 3]) return Outcome::Link;
@@ -114,7 +145,7 @@ Outcome Part::tryInto(Index kept, Index gone) {
     if (isLast(left_) || isLast(previousCorner(right_))) return Outcome::Link;
   }
   if (makesChord()) return Outcome::Link;
-  return tryPlace(kept, gone, position_[kept]);
+  return tryPlace(kept, gone, place);
 }
 
 // Whether an edge other than of a line would run from the vertex that stays to another one of a
@@ -152,10 +183,15 @@ void Part::noteGone(Index kept, Index gone) {
   }
 }
 
-// Vertices on no line stay inside their region, the triangles' around them.
+// Vertices stay inside their region, the triangles' around them; those of lines between both.
 bool Part::mayHold(Index a, Index b) const {
-  return isOnLine(a) || isOnLine(b) || !surface_->mayHold ||
-         surface_->mayHold(region_[left_ / 3], place_, position_[a], position_[b]);
+  if (!surface_->mayHold || place_ == position_[a]) return true;
+  const Index plane = isOnLine(a) && isOnLine(b) ? line_[a].planes[0] : kNone;
+  if (plane == kNone && (isOnLine(a) || isOnLine(b))) return true;
+  const auto mayHoldIn = [&](Index region) {
+    return surface_->mayHold(region, plane, place_, position_[a], position_[b]);
+  };
+  return mayHoldIn(region_[left_ / 3]) && (plane == kNone || mayHoldIn(region_[right_ / 3]));
 }
 
 bool Part::mayFlipAtLine(const Index* v) const {

@@ -130,7 +130,7 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
 void setRegions(Surface& s, const Regions& regions) {
   const Index count = static_cast<Index>(s.position.size());
   s.region = regions.ofTriangle;
-  s.mayHold = regions.mayHold;
+  s.mayHold = regions.mayHold, s.planeNormals = regions.normals;
   s.line.assign(count, {});
   s.into.resize(count);
   for (Index v = 0; v < count; ++v) s.into[v] = s.line[v].name = v;

@@ -43,7 +43,8 @@ struct Surface {
   /// Edges of the input inside a region between vertices of lines in one plane, as keys of
   /// chordKey(), sorted: they may never become edges of lines.
   std::vector<std::uint64_t> chords;
-  std::function<bool(Index region, Vec3f place, Vec3f a, Vec3f b)> mayHold;  ///< see Regions
+  std::vector<Vec3f> planeNormals;  ///< see Regions
+  std::function<bool(Index region, Index plane, Vec3f place, Vec3f a, Vec3f b)> mayHold;
 
   /// A place as it will be written, which is what the guards judge; empty: as it is.
   std::function<Vec3f(const Vec3f&)> rounded;

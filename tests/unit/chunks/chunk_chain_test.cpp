@@ -82,7 +82,6 @@ TEST(ChunkChain, PassesOnTheCurvesOfTheNextLevel) {
     const auto same = std::find(fine.cutVertex.begin(), fine.cutVertex.end(), coarse.cutVertex[v]) -
                       fine.cutVertex.begin();
     EXPECT_EQ(fine.positions[static_cast<std::size_t>(same)], coarse.positions[v]);
-    EXPECT_EQ(fine.normals[static_cast<std::size_t>(same)], coarse.normals[v]);
   }
   EXPECT_EQ(changedInto, own);
   EXPECT_GT(changes, 10U);

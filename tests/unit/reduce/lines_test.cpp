@@ -34,7 +34,8 @@ Regions halvesOf(const test::FineMesh& mesh) {
   for (const Vec3f& p : mesh.positions) {
     regions.planes.push_back({p.x == kMiddle ? 0 : kNone, kNone, kNone});
   }
-  regions.mayHold = [](Index region, Vec3f place, Vec3f, Vec3f) {
+  regions.mayHold = [](Index region, Index plane, Vec3f place, Vec3f, Vec3f) {
+    if (plane == 0) return place.x == kMiddle;
     return region == 0 ? place.x < kMiddle : place.x > kMiddle;
   };
   return regions;
@@ -45,9 +46,11 @@ struct Reducer {
   base::Job job{1, {}};
   Reduction reduction;
 
-  explicit Reducer(test::FineMesh mesh)
+  explicit Reducer(test::FineMesh mesh, std::vector<Vec3f> normals = {})
       : input(std::move(mesh)), reduction(input.view(), input.view(), {}, {}, {}, job) {
-    reduction.setRegions(halvesOf(input));
+    Regions regions = halvesOf(input);
+    regions.normals = std::move(normals);
+    reduction.setRegions(regions);
   }
 
   [[nodiscard]] std::set<Index> lineSources() const {
@@ -112,6 +115,26 @@ TEST(Lines, FollowTheToleranceOnCurvedSurface) {
   const std::vector<float>& ofRegion = box.reduction.certificate().ofRegion;
   ASSERT_EQ(ofRegion.size(), 2U);
   EXPECT_EQ(std::max(ofRegion[0], ofRegion[1]), box.reduction.certificate().largest);
+}
+
+TEST(Lines, MayMoveInTheirPlaneWithTheRest) {
+  Reducer kept(wavingBox(0.8f)), moving(wavingBox(0.8f), {{1, 0, 0}});
+  for (Reducer* box : {&kept, &moving}) {
+    box->reduction.toTolerance(0.1f);
+    EXPECT_LE(box->reduction.certificate().largest, 0.1f);
+    expectWhole(box->reduction.mesh());
+    expectApart(*box);
+  }
+  EXPECT_LT(moving.lineSources().size(), kept.lineSources().size());
+  EXPECT_LE(moving.reduction.triangleCount(), kept.reduction.triangleCount());
+  std::size_t moved = 0;
+  const Surface surface = moving.reduction.surface();
+  for (Index v = 0; v < surface.line.size(); ++v) {
+    if (surface.line[v].kind == LineKind::Off) continue;
+    EXPECT_EQ(surface.position[v].x, kMiddle);
+    moved += surface.position[v] == moving.input.positions[surface.source[v]] ? 0 : 1;
+  }
+  EXPECT_GT(moved, 4U);
 }
 
 // What a step of lines alone makes is the mesh before with other vertex numbers.

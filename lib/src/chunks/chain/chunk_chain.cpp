@@ -33,17 +33,15 @@ ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
   base::Box box = base::Box::empty();
   for (const Position& p : cut.mesh.positions) box.add(Vec3(p));
   middle_ = box.centre();
-  const double perVoxel = 1 / model.affine().voxelSize();
-  const auto localOf = [&](const std::vector<Position>& from) {
+  const auto localsOf = [&](const std::vector<Position>& from) {
     std::vector<Vec3f> local(from.size());
     job.forRanges(local.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        local[i] = Vec3f((Vec3(from[i]) - middle_) * perVoxel);
+      for (std::size_t i = begin; i < end; ++i) local[i] = localOf(from[i]);
     });
     return local;
   };
-  const std::vector<Vec3f> positions = localOf(cut.mesh.positions);
-  const std::vector<Vec3f> reference = localOf(cut.reference);
+  const std::vector<Vec3f> positions = localsOf(cut.mesh.positions);
+  const std::vector<Vec3f> reference = localsOf(cut.reference);
   const reduce::MeshView view{positions, cut.mesh.triangles};
   const reduce::MeshView before{reference, cut.mesh.triangles};
   std::vector<reduce::Index> same(reference.size());
@@ -61,7 +59,13 @@ reduce::Regions ChunkChain::regionsOf() const {
   regions.ofTriangle = cut_.chunkOf;
   regions.planes = cut_.planesOf;
   const grid::Affine& affine = model_.affine();
-  regions.mayHold = [this, &affine](reduce::Index region, Vec3f place, Vec3f a, Vec3f b) {
+  for (const ChunkPlane& plane : cut_.planes) {
+    float gradient[3] = {};
+    gradient[plane.axis] = 1;
+    regions.normals.emplace_back(Vec3(affine.normal(gradient[0], gradient[1], gradient[2])));
+  }
+  regions.mayHold = [this, &affine](reduce::Index region, reduce::Index plane, Vec3f place, Vec3f a,
+                                    Vec3f b) {
     const Coord& chunk = cut_.chunks[region];
     const auto latticeOf = [&](Vec3f p) { return affine.latticePoint(positionOf(p), Coord(0)); };
     const Vec3 at = latticeOf(place);
@@ -80,12 +84,17 @@ reduce::Regions ChunkChain::regionsOf() const {
       const double before[2] = {std::min(from[axis], to[axis]) - low,
                                 high - std::max(from[axis], to[axis])};
       for (std::size_t side = 0; side < 2; ++side) {
+        if (plane != reduce::kNone && cut_.planes[plane].axis == static_cast<int>(axis)) continue;
         if (depth[2 * axis + side] < std::min(kDepth, before[side])) return false;
       }
     }
     return true;
   };
   return regions;
+}
+
+Vec3f ChunkChain::localOf(const Position& p) const {
+  return Vec3f((Vec3(p) - middle_) * (1 / model_.affine().voxelSize()));
 }
 
 Position ChunkChain::positionOf(const Vec3f& local) const {
@@ -171,10 +180,12 @@ ChainLevel ChunkChain::extract() const {
     const reduce::Index source = reduced.sources[v];
     Position p;
     if (source != reduce::kNone) {
-      p = cut_.mesh.positions[source];
-      level.normals[v] = cut_.mesh.normals[source];
       if (kinds_[source] != reduce::LineKind::Off) level.cutVertex[v] = source;
       level.isEnd[v] = kinds_[source] == reduce::LineKind::End ? 1 : 0;
+    }
+    if (source != reduce::kNone && localOf(cut_.mesh.positions[source]) == reduced.positions[v]) {
+      p = cut_.mesh.positions[source];
+      level.normals[v] = cut_.mesh.normals[source];
     } else {
       p = positionOf(reduced.positions[v]);
       level.normals[v] = normalOn(cut_.mesh.triangles[reduced.faces[v]], Vec3(p));

@@ -53,6 +53,7 @@ class ChunkChain {
   [[nodiscard]] reduce::Regions regionsOf() const;
   [[nodiscard]] ChainLevel extract() const;
   [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
+  [[nodiscard]] base::Vec3f localOf(const Position& p) const;
   [[nodiscard]] Normal normalOn(const Triangle& face, const Vec3& p) const;
   void reduceCurves(float tolerance, ChainLevel& before);
   void setInto(ChainLevel& level) const;
