@@ -3,18 +3,22 @@
 //     tufa_render -o OUT.png [--size 900x700] MESH[:key=value,...]...
 //
 // Each mesh becomes one picture; they stand side by side. Keys: azimuth, elevation (degrees), width
-// (world units, 0 fits), x, y, z (the centre if width is given); 0 or 1: edges, smooth, yup.
+// (world units, 0 fits), x, y, z (the centre if width is given); 0 or 1: edges, smooth, yup. A
+// folder of chunks is drawn with colours for its LODs: 0 within `step` world units of (eyex, eyey,
+// eyez), 1 within two steps, 2 within four, and so on.
 
 #include <tufa/io.h>
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "chunk_scene.h"
 #include "scene.h"
 
 namespace {
@@ -25,6 +29,8 @@ using tufa::render::View;
 struct Panel {
   std::string path;
   View view;
+  tufa::Position eye{0, 0, 0};
+  double step = 1;
 };
 
 struct Arguments {
@@ -34,10 +40,13 @@ struct Arguments {
   std::vector<Panel> panels;
 };
 
-void setKey(View& view, const std::string& key, double value) {
+void setKey(Panel& panel, const std::string& key, double value) {
+  View& view = panel.view;
   const std::map<std::string, double*> numbers = {
       {"azimuth", &view.azimuth}, {"elevation", &view.elevation}, {"width", &view.width},
-      {"x", &view.centre[0]},     {"y", &view.centre[1]},         {"z", &view.centre[2]}};
+      {"x", &view.centre[0]},     {"y", &view.centre[1]},         {"z", &view.centre[2]},
+      {"eyex", &panel.eye.x},     {"eyey", &panel.eye.y},         {"eyez", &panel.eye.z},
+      {"step", &panel.step}};
   const std::map<std::string, bool*> switches = {
       {"edges", &view.edges}, {"smooth", &view.smooth}, {"yup", &view.yUp}};
   if (numbers.count(key) != 0) {
@@ -49,15 +58,22 @@ void setKey(View& view, const std::string& key, double value) {
   }
 }
 
+Panel panelOf(const std::string& path) {
+  Panel panel;
+  panel.path = path;
+  return panel;
+}
+
 Panel parsePanel(const std::string& text) {
   const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || text.find('=', colon) == std::string::npos) return {text, {}};
-  Panel panel{text.substr(0, colon), {}};
+  if (colon == std::string::npos || text.find('=', colon) == std::string::npos)
+    return panelOf(text);
+  Panel panel = panelOf(text.substr(0, colon));
   std::istringstream list(text.substr(colon + 1));
   for (std::string item; std::getline(list, item, ',');) {
     const std::size_t equals = item.find('=');
     if (equals == std::string::npos) throw std::runtime_error("not key=value: " + item);
-    setKey(panel.view, item.substr(0, equals), std::stod(item.substr(equals + 1)));
+    setKey(panel, item.substr(0, equals), std::stod(item.substr(equals + 1)));
   }
   return panel;
 }
@@ -84,6 +100,16 @@ Arguments parse(const std::vector<std::string>& words) {
   return arguments;
 }
 
+Image imageOf(const Panel& panel, const Arguments& arguments) {
+  if (!std::filesystem::is_directory(panel.path)) {
+    return render(tufa::readMesh(panel.path), panel.view, arguments.width, arguments.height);
+  }
+  const auto scene = tufa::render::readChunkScene(panel.path, panel.eye, panel.step);
+  View view = panel.view;
+  view.colors = scene.colors;
+  return render(scene.mesh, view, arguments.width, arguments.height);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -91,8 +117,7 @@ int main(int argc, char** argv) {
     const Arguments arguments = parse({argv + 1, argv + argc});
     std::vector<Image> images;
     for (const Panel& panel : arguments.panels) {
-      images.push_back(
-          render(tufa::readMesh(panel.path), panel.view, arguments.width, arguments.height));
+      images.push_back(imageOf(panel, arguments));
     }
     writePng(sideBySide(images, 6, {1, 1, 1}), arguments.output);
   } catch (const std::exception& error) {
