@@ -90,6 +90,39 @@ TEST_F(Model, NamesWhatNoSampleShows) {
   EXPECT_GT(Json::parse(made.out).at("hidden_voxels"), 0);
 }
 
+/// Blinn's balls in a table, and the same in a point cloud.
+TEST_F(Model, ReadsBallsFromFiles) {
+  std::filesystem::create_directory(folder / "sub");
+  writeBytes(folder / "sub/b.csv", "x,y,z\n0,0,0\n# two\n1.5; 0; 0\r\n3 0 0\n");
+  writeBytes(folder / "sub/b.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+             "property float z\nend_header\n0 0 0\n1.5 0 0\n3 0 0\n");
+  for (const std::string file : {"b.csv", "b.ply"}) {
+    writeScene("sub/s.json", R"({"type": "metaballs", "radius": 0.5, "file": ")" + file + "\"}");
+    const Outcome inside = run("model sub/s.json --at 3,0.1,0 --json");
+    EXPECT_EQ(inside.exitCode, 0) << inside.err;
+    EXPECT_EQ(Json::parse(inside.out).at("inside"), true) << file;
+    EXPECT_EQ(run("model sub/s.json --at 0.7,0,0").out.rfind("outside", 0), 0u) << file;
+  }
+  const auto refused = [&](const std::string& file, const std::string& bytes,
+                           const std::string& part) {
+    writeBytes(folder / "sub" / file, bytes);
+    writeScene("sub/s.json", R"({"type": "metaballs", "file": ")" + file + "\"}");
+    expectFailure("model sub/s.json -o o.vdb", 3, "/objects/0/file: " + part);
+  };
+  refused("a.csv", "1,2\n", "cannot read sub/a.csv: line 1");
+  refused("a.csv", "1,2,3\n4,5,nan\n", "cannot read sub/a.csv: line 2");
+  refused("a.csv", "1,2,3,4,5,6\n", "cannot read sub/a.csv: line 1: has more than");
+  refused("a.csv", "1,2,3,0\n", "ball 1 needs a radius above 0");
+  refused("a.csv", "1,2,1e300\n", "ball 1 needs");
+  refused("a.csv", "x,y,z\n", "must name one ball");
+  refused("a.csv", "", "cannot read sub/a.csv: the file is empty");
+  refused("a.ply",
+          "ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\n"
+          "property float z\nend_header\n0 0 0\n",
+          "cannot read sub/a.ply");
+}
+
 TEST_F(Model, RefusesHostileScenes) {
   const auto refused = [&](const std::string& object, const std::string& part) {
     writeScene("bad.json", object);

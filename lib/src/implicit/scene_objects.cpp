@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "implicit/scene_skeletons.h"
+
 namespace tufa::implicit {
 namespace {
 
@@ -132,6 +134,9 @@ FieldPtr readExpression(SceneObject& object) {
   }
 }
 
+/// The one type that reads another file.
+constexpr const char* kMetaballs = "metaballs";
+
 using Reader = FieldPtr (*)(SceneObject&);
 
 const std::map<std::string, Reader>& readers() {
@@ -148,6 +153,7 @@ const std::map<std::string, Reader>& readers() {
       {"schwarz_p", [](SceneObject& o) { return readLattice(Lattice::Primitive, o); }},
       {"schwarz_d", [](SceneObject& o) { return readLattice(Lattice::Diamond, o); }},
       {"expression", readExpression},
+      {"convolution", readConvolution},
   };
   return kReaders;
 }
@@ -155,14 +161,15 @@ const std::map<std::string, Reader>& readers() {
 }  // namespace
 
 FieldPtr readPrimitive(const std::string& type, SceneObject& object,
-                       const std::filesystem::path& /*folder*/) {
+                       const std::filesystem::path& folder) {
+  if (type == kMetaballs) return readMetaballs(object, folder);
   const auto reader = readers().find(type);
   return reader == readers().end() ? nullptr : reader->second(object);
 }
 
 std::string primitiveNames() {
-  std::string names;
-  for (const auto& [name, reader] : readers()) names += (names.empty() ? "" : ", ") + name;
+  std::string names = kMetaballs;
+  for (const auto& [name, reader] : readers()) names += ", " + name;
   return names;
 }
 

@@ -1,6 +1,8 @@
 #include "unit/implicit/field_list.h"
 
+#include "implicit/convolution.h"
 #include "implicit/fields.h"
+#include "implicit/metaballs.h"
 
 namespace tufa::test {
 
@@ -57,6 +59,27 @@ std::vector<NamedField> allFields() {
         "(x^2 + y^2 + 0.5)^0.7 - 2^z/2", "1/(x^2 + y^2 + z^2 + 0.1) - 2"}) {
     all.push_back({text, makeExpression(text)});
   }
+  for (const BallKernel kernel : {BallKernel::Blinn, BallKernel::Nishimura, BallKernel::Wyvill}) {
+    const std::string name = "metaballs " + std::to_string(static_cast<int>(kernel));
+    std::vector<Metaball> balls = {
+        {{-0.4, 0, 0.1}, 0.9, 1}, {{0.5, 0.2, 0}, 0.8, 1.2}, {{0, 0.6, 0.3}, 0.5, -0.7}};
+    all.push_back({name, makeMetaballs(balls, {kernel, 0.4, 3})});
+    for (int n = 0; n < 60; ++n) {
+      balls.push_back({{0.04 * n - 1.2, 0.3 * (n % 7) - 1, 0.25 * (n % 9) - 1}, 0.3, 0.6});
+    }
+    all.push_back({name + ", many", makeMetaballs(balls, {kernel, 0.4, 3})});
+  }
+  const SkeletonSegment bone{{-0.7, 0.1, 0}, {0.8, -0.2, 0.4}};
+  const SkeletonSegment rib{{0.1, -0.7, 0.2}, {0.2, 0.6, -0.3}};
+  for (const ConvolutionKernel kernel :
+       {ConvolutionKernel::Cauchy, ConvolutionKernel::Gaussian, ConvolutionKernel::Polynomial}) {
+    const std::string name = "segments " + std::to_string(static_cast<int>(kernel));
+    all.push_back({name, makeConvolution({{bone, 1}, {rib, -0.4}}, {kernel, 0.6, 0.3})});
+  }
+  const SkeletonTriangle sail{{-0.6, -0.5, 0.1}, {0.8, -0.3, 0.2}, {0.1, 0.9, -0.4}};
+  const SkeletonArc bow{{0.1, 0, -0.1}, Vec3(2, 1, 2) / 3.0, Vec3(1, -2, 0) * 0.3, 4};
+  all.push_back({"triangle", makeConvolution({{sail, 1}}, {ConvolutionKernel::Cauchy, 0.4, 0.3})});
+  all.push_back({"arc", makeConvolution({{bow, 1}}, {ConvolutionKernel::Cauchy, 0.3, 0.4})});
   return all;
 }
 

@@ -158,6 +158,34 @@ TEST(Scene, ErrorsNameThePath) {
       "{'type': 'repeat', 'object': {'type': 'sphere', 'radius': 1}, 'step': [1, 1, 1],"
       " 'count': [0, 1, 1]}",
       "/count/0: must be a whole number from 1 ");
+  object("{'type': 'metaballs'}", ": must have \"balls\" or a \"file\"");
+  object("{'type': 'metaballs', 'balls': []}", "/balls: must name one ball or more");
+  object("{'type': 'metaballs', 'balls': [{'center': [0, 0, 0], 'radius': 0}]}",
+         "/balls/0/radius: must be a number above 0");
+  object("{'type': 'metaballs', 'threshold': -1, 'balls': []}", "/threshold: must be a number");
+  object("{'type': 'metaballs', 'kernel': 'x', 'balls': []}", "/kernel: must be one of blinn, ");
+  object("{'type': 'metaballs', 'file': 'none.csv'}", "/file: cannot read none.csv");
+  object("{'type': 'convolution', 'width': 0}", "/width: must be a number above 0");
+  object("{'type': 'convolution', 'width': 1, 'skeleton': []}", "/skeleton: must have one part");
+  object("{'type': 'convolution', 'width': 1, 'skeleton': [{}]}", "/skeleton/0: must have one of");
+  object("{'type': 'convolution', 'width': 1, 'skeleton': [{'polyline': [[0,0,0], [0,0,0]]}]}",
+         "/skeleton/0/polyline/1: is the same point");
+  object(
+      "{'type': 'convolution', 'width': 1, 'kernel': 'gaussian', 'skeleton':"
+      " [{'triangle': [[0,0,0], [1,0,0], [0,1,0]]}]}",
+      "/skeleton/0/triangle: has a closed form with the kernel cauchy only");
+  object(
+      "{'type': 'convolution', 'width': 1, 'skeleton': [{'triangle': [[0,0,0], [1,0,0],"
+      " [2,0,0]]}]}",
+      "/skeleton/0/triangle: has its corners on a line");
+  object(
+      "{'type': 'convolution', 'width': 1, 'skeleton': [{'arc': {'start': [1, 0, 0],"
+      " 'degrees': 361}}]}",
+      "/skeleton/0/arc/degrees: must be at most 360");
+  object(
+      "{'type': 'convolution', 'width': 1, 'skeleton': [{'arc': {'start': [0, 0, 1],"
+      " 'degrees': 90}}]}",
+      "/skeleton/0/arc/start: lies on the axis");
   refused("{", "cannot read s.json: ");
   refused("[]", "/: must be an object");
   refused("{}", "has no \"tufa_scene\"");
