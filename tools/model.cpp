@@ -184,6 +184,8 @@ void addModelCommand(CLI::App& app, Command& chosen) {
   model->add_option("--band-voxels", options.bandVoxels, "most voxels of the band")
       ->check(above0())
       ->capture_default_str();
+  model->add_flag("--fog", options.fog,
+                  "a fog volume: 1 inside, down to 0 on the surface, in place of a level set");
   addThreadsOption(*model, options.threads);
   model->add_flag("--json", arguments->json, "one JSON object on standard output");
   model->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");

@@ -79,6 +79,8 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen) {
                    "most voxels of the band, in estimate from the mesh's area")
       ->check(above0())
       ->capture_default_str();
+  voxelize->add_flag("--fog", options.fog,
+                     "a fog volume: 1 inside, down to 0 on the surface, in place of a level set");
   addThreadsOption(*voxelize, options.threads);
   voxelize->add_flag("--json", arguments->json, "one JSON object on standard output");
   voxelize->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");

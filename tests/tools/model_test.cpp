@@ -74,6 +74,9 @@ TEST_F(Model, TakesOptionsBeforeTheScene) {
   EXPECT_GT(voxels("--voxel 0.1"), 3 * own);
   EXPECT_GT(voxels("--half-width 3"), own);
   EXPECT_GT(voxels("--bounds=-2,-2,-1,2,2,1"), 2 * own);
+  EXPECT_EQ(run("model s.json -o fog.vdb --fog").exitCode, 0);
+  EXPECT_NE(run("info fog.vdb").out.find("fog volume"), std::string::npos);
+  EXPECT_EQ(run("mesh fog.vdb -o fog.ply --iso 0.1 --check").exitCode, 0);
   const Outcome told = run("model s.json -o s.vdb");
   EXPECT_EQ(told.out.rfind("grid \"n\": ", 0), 0u) << told.out;
   EXPECT_NE(told.out.find(" samples in "), std::string::npos) << told.out;

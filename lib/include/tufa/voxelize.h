@@ -19,6 +19,9 @@ struct VoxelizeOptions {
   /// Most voxels of the band, of a mesh in estimate from its area: more are refused as
   /// LimitExceeded. One vertex far away makes gigabytes of them.
   double bandVoxels = 1 << 27;
+  /// A fog volume in place of a level set: 1 inside, and less within the half width of the surface,
+  /// down to 0 on it. Its isovalue for a surface near the true one is small.
+  bool fog = false;
 };
 
 /// What voxelize() has done with a field.

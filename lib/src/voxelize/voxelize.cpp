@@ -13,6 +13,7 @@
 #include "base/number_text.h"
 #include "base/vec3.h"
 #include "grid/progress_interrupter.h"
+#include "voxelize/fog.h"
 
 namespace tufa {
 namespace {
@@ -117,6 +118,7 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   if (interrupter.cancelled()) throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
   result->setGridClass(openvdb::GRID_LEVEL_SET);
   result->setName("surface");
+  if (options.fog) base::runWithThreads(options.threads, [&] { voxelize_field::toFog(*result); });
   return result;
 }
 

@@ -18,6 +18,7 @@
 #include "base/vec3.h"
 #include "grid/build_blocks.h"
 #include "implicit/boxes.h"
+#include "voxelize/fog.h"
 #include "voxelize/hidden_parts.h"
 
 namespace tufa {
@@ -57,8 +58,8 @@ struct Counts {
 /// Samples the blocks of a lattice, with counts in common.
 class Sampler {
  public:
-  Sampler(const Field& field, const VoxelizeOptions& options, Counts& counts)
-      : field_(&field), options_(options), counts_(counts) {
+  Sampler(const Field& field, const VoxelizeOptions& options, Counts& counts, base::Job& job)
+      : field_(&field), options_(options), counts_(counts), job_(job) {
     const double margin = band() + options.voxelSize;
     region_ = implicit::grown(field.extent(), margin);
   }
@@ -126,6 +127,8 @@ class Sampler {
   }
 
   void fill(Leaf& leaf) const {
+    // A field of a million parts takes seconds for one block.
+    job_.checkCancelled(0, 1);
     const openvdb::Coord origin = leaf.origin();
     SampledBlock block{*field_, {origin.x(), origin.y(), origin.z()}, options_.voxelSize};
     leaf.setValuesOff();
@@ -173,6 +176,7 @@ class Sampler {
   std::shared_ptr<const Sampler> whole_;  ///< keeps what that one may refer to
   const VoxelizeOptions& options_;
   Counts& counts_;
+  base::Job& job_;
   Box region_;  ///< where there is anything to sample
 };
 
@@ -225,7 +229,8 @@ openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field, const VoxelizeOpt
   openvdb::initialize();
 
   Counts counts;
-  const auto sampler = std::make_shared<const Sampler>(field, options, counts);
+  base::Job job(options.threads, options.progress);
+  const auto sampler = std::make_shared<const Sampler>(field, options, counts, job);
   auto result = openvdb::FloatGrid::create(static_cast<float>(sampler->band()));
   result->setTransform(openvdb::math::Transform::createLinearTransform(options.voxelSize));
   result->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -236,7 +241,6 @@ openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field, const VoxelizeOpt
   // A surface that passes a cube has a band of thousands of voxels in it.
   constexpr double kLeastInCube = 1024;
   source->mostCubes = static_cast<std::size_t>(std::max(1.0, options.bandVoxels / kLeastInCube));
-  base::Job job(options.threads, options.progress);
   job.beginStage("sampling", 1);
   grid::buildBlocks(result->tree(), *source, job);
   if (sampler->overLimit()) {
@@ -248,6 +252,9 @@ openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field, const VoxelizeOpt
   // Leaves already hold the right signs; only the tiles between them are still all outside.
   job.run([&] { openvdb::tools::signedFloodFill(result->tree(), true, 1, 1); });
   if (!field.hasUnitGradient()) activateCrossings(*result);
+  if (options.fog) {
+    job.run([&] { voxelize_field::toFog(*result); });
+  }
   job.finish();
   if (report != nullptr) {
     report->samples = counts.samples;

@@ -9,6 +9,12 @@
 
 #include "support/expect_error.h"
 
+#ifdef TUFA_HAS_MUPARSER
+#include <muParser.h>
+
+#include <random>
+#endif
+
 namespace tufa {
 namespace {
 
@@ -103,6 +109,65 @@ TEST(Expression, EqualPartsAreOne) {
   EXPECT_GT(text.size(), 100000u);
   EXPECT_TRUE(std::isfinite(makeExpression(text)->value({0.1, 0, 0})));
 }
+
+#ifdef TUFA_HAS_MUPARSER
+
+/// An expression of any form, of positive numbers: what is negative, muParser gives no root of.
+std::string anyExpression(std::mt19937& random, int depth) {
+  const auto pick = [&](unsigned count) { return static_cast<unsigned>(random()) % count; };
+  if (depth == 0 || pick(6) == 0) {
+    constexpr const char* kAtoms[] = {"x", "y", "z", "1.5", "2", "0.25e1"};
+    return kAtoms[pick(6)];
+  }
+  const std::string a = anyExpression(random, depth - 1);
+  const std::string b = anyExpression(random, depth - 1);
+  constexpr const char* kBetween[] = {" + ", "-", "*", " / "};
+  constexpr const char* kAround[] = {"sin", "cos", "atan", "abs", "exp"};
+  switch (pick(8)) {
+    case 0:
+      return kAround[pick(5)] + ("(" + a + ")");
+    case 1:
+      return "min(" + a + "," + b + ")";
+    case 2:
+      return "(-" + a + ")";
+    case 3:
+      return "sqrt(abs(" + a + "))";
+    case 4:
+      return "(" + a + ")^" + std::to_string(pick(5));
+    case 5:
+      return "(-(" + a + ")^2)";
+    default:
+      return "(" + a + kBetween[pick(4)] + b + ")" + kBetween[pick(4)] + b;
+  }
+}
+
+TEST(Expression, MeansWhatMuParserMeans) {
+  std::mt19937 random(22);
+  int compared = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const std::string text = anyExpression(random, 4);
+    double x = 0.7;
+    double y = 1.3;
+    double z = 0.4;
+    mu::Parser parser;
+    parser.DefineVar("x", &x);
+    parser.DefineVar("y", &y);
+    parser.DefineVar("z", &z);
+    parser.SetExpr(text);
+    double due = 0;
+    try {
+      due = parser.Eval();
+    } catch (const mu::Parser::exception_type& error) {
+      FAIL() << text << ": " << error.GetMsg();
+    }
+    if (!(std::abs(due) < 1e6)) continue;  // where roundings count
+    ++compared;
+    ASSERT_NEAR(makeExpression(text)->value({x, y, z}), due, 1e-7 * (1 + std::abs(due))) << text;
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+#endif
 
 }  // namespace
 }  // namespace tufa

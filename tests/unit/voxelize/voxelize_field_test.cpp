@@ -85,10 +85,10 @@ TEST(VoxelizeField, SamplesADistanceAsItIs) {
 }
 
 TEST(VoxelizeField, IsTheSameForAnyNumberOfThreads) {
-  const auto field = combine(
-      Operation::Intersection,
-      {implicit::makeSheet(implicit::Lattice::Gyroid, 1, {0.1, 0.1}), implicit::makeSphere({}, 1)},
-      0);
+  const auto field = combine(Operation::Intersection,
+                             {implicit::makeSheet(implicit::Lattice::Gyroid, 1, {0.1, 0.1}),
+                              implicit::makeSphere({0, 0, 0}, 1)},
+                             0);
   const auto with = [&](int threads, VoxelizeReport& report) {
     VoxelizeOptions options = voxelsOf(0.05);
     options.threads = threads;
@@ -159,7 +159,7 @@ TEST(VoxelizeField, SteepFieldsHaveNoHoles) {
   const Mesh mesh = contour(*grid, {}, &report);
   EXPECT_EQ(report.openEdges, 0u);
   EXPECT_GT(mesh.triangleCount(), 100u);
-  EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({}, 1)), 0.02);
+  EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({0, 0, 0}, 1)), 0.02);
 }
 
 /// Inside or outside, and no slope that tells how far.
@@ -179,7 +179,7 @@ class Step final : public Field {
   [[nodiscard]] implicit::Box extent() const override { return ball_->extent(); }
 
  private:
-  FieldPtr ball_ = implicit::makeSphere({}, 1);
+  FieldPtr ball_ = implicit::makeSphere({0, 0, 0}, 1);
 };
 
 TEST(VoxelizeField, FieldsWithoutSlopesHaveNoHoles) {
@@ -187,7 +187,7 @@ TEST(VoxelizeField, FieldsWithoutSlopesHaveNoHoles) {
   ContourReport report;
   const Mesh mesh = contour(*grid, {}, &report);
   EXPECT_EQ(report.openEdges, 0u);
-  EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({}, 1)), 0.1);
+  EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({0, 0, 0}, 1)), 0.1);
 }
 
 /// Creases of max and min stay where they are: the box's edges, and the rims of a bore.
@@ -262,7 +262,7 @@ TEST(VoxelizeField, PartsBetweenSamplesAreNamed) {
 
 TEST(VoxelizeField, RefusesWhatItCannotDo) {
   const auto plane = implicit::makePlane({0, 0, 0}, {0, 0, 1});
-  const auto sphere = implicit::makeSphere({}, 1);
+  const auto sphere = implicit::makeSphere({0, 0, 0}, 1);
   const auto refused = [](const Field& field, const VoxelizeOptions& options, ErrorCode code,
                           const std::string& part) {
     expectError(code, part, [&] { static_cast<void>(voxelize(field, options)); });
@@ -277,6 +277,32 @@ TEST(VoxelizeField, RefusesWhatItCannotDo) {
   VoxelizeOptions stopped = voxelsOf(0.01);
   stopped.progress = [](std::string_view, double) { return false; };
   refused(*sphere, stopped, ErrorCode::Cancelled, "cancelled");
+}
+
+TEST(VoxelizeField, MakesFogVolumes) {
+  const auto field = implicit::makeSphere({0, 0, 0}, 1);
+  VoxelizeOptions options = voxelsOf(0.1);
+  options.fog = true;
+  VoxelizeReport report;
+  const auto grid = voxelize(*field, options, &report);
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
+  EXPECT_EQ(report.activeVoxels, grid->activeVoxelCount());
+  EXPECT_EQ(grid->tree().getValue(openvdb::Coord(0)), 1);
+  EXPECT_TRUE(grid->tree().isValueOn(openvdb::Coord(0)));
+  EXPECT_NEAR(grid->tree().getValue(openvdb::Coord(0, 0, 9)), 1.0 / 3, 1e-5);
+  EXPECT_EQ(grid->tree().getValue(openvdb::Coord(0, 0, 11)), 0);
+}
+
+/// A scene of a million objects must stop where it is asked to, within a cube of 64^3 voxels too.
+TEST(VoxelizeField, StopsWithinACube) {
+  const auto field = implicit::makeSphere({0, 0, 0}, 1);
+  VoxelizeOptions options = voxelsOf(0.04);
+  options.threads = 1;
+  int calls = 0;
+  options.progress = [&](std::string_view, double) { return ++calls < 20; };
+  expectError(ErrorCode::Cancelled, "cancelled",
+              [&] { static_cast<void>(voxelize(*field, options)); });
+  EXPECT_EQ(calls, 20);
 }
 
 TEST(VoxelizeField, ManyPartsCostWhatIsNearThem) {

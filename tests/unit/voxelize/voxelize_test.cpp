@@ -47,6 +47,16 @@ TEST(Voxelize, GivesTheSignedDistance) {
   }
 }
 
+TEST(Voxelize, MakesFogVolumes) {
+  VoxelizeOptions options;
+  options.voxelSize = 0.1;
+  options.fog = true;
+  const auto grid = voxelize(makeCube(), options);
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
+  EXPECT_EQ(grid->tree().getValue(openvdb::Coord(0)), 1);
+  EXPECT_NEAR(grid->tree().getValue(openvdb::Coord(0, 0, 9)), 1.0 / 3, 1e-5);
+}
+
 TEST(Voxelize, DoesNotCareForOrientation) {
   VoxelizeOptions options;
   options.voxelSize = 0.1;
