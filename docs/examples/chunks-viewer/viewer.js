@@ -61,7 +61,9 @@ class Viewer {
     this.camera = new THREE.PerspectiveCamera(45, 1, size / 20000, size * 4);
     this.fly = new FlyCamera(this.camera, this.renderer.domElement, size / 20);
     const centre = box.getCenter(new THREE.Vector3());
-    this.camera.position.set(centre.x, box.min.y - size / 20, box.max.z + size / 6);
+    // All of it in sight, from above.
+    const back = new THREE.Vector3(0.4, -1, 0.8).normalize().multiplyScalar(1.15 * size);
+    this.camera.position.copy(centre).add(back);
     this.camera.lookAt(centre);
   }
 
