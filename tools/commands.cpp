@@ -39,6 +39,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addMakeCommand(app, chosen);
   addVoxelizeCommand(app, chosen);
   addModelCommand(app, chosen);
+  addImportCommand(app, chosen);
   addInfoCommand(app, chosen);
   addMeshCommand(app, chosen);
   addLodCommand(app, chosen);

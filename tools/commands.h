@@ -20,6 +20,7 @@ void declareCommand(CLI::App& app, Command& chosen);
 void addMakeCommand(CLI::App& app, Command& chosen);
 void addVoxelizeCommand(CLI::App& app, Command& chosen);
 void addModelCommand(CLI::App& app, Command& chosen);
+void addImportCommand(CLI::App& app, Command& chosen);
 void addInfoCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);

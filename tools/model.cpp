@@ -18,7 +18,7 @@
 
 #include "commands.h"
 #include "console.h"
-#include "number.h"
+#include "number_list.h"
 #include "paths.h"
 #include "progress_bar.h"
 #include "standard_streams.h"
@@ -39,23 +39,6 @@ struct ModelArguments {
   bool json = false;
   bool quiet = false;
 };
-
-/// As many numbers as asked for, with commas between them.
-template <std::size_t N>
-std::array<double, N> numbersIn(const std::string& option, const std::string& text) {
-  std::array<double, N> all{};
-  const std::vector<std::string> words = CLI::detail::split(text, ',');
-  for (std::size_t n = 0; n < words.size(); ++n) {
-    const auto number = numberIn<double>(words[n]);
-    if (words.size() != N || !number || !std::isfinite(*number)) {
-      throw Error(ErrorCode::InvalidArgument, option + " takes " + std::to_string(N) +
-                                                  " numbers with commas between them, not \"" +
-                                                  text + "\"");
-    }
-    all[n] = *number;
-  }
-  return all;
-}
 
 implicit::Scene readSceneInput(const ModelArguments& arguments) {
   std::optional<implicit::Box> bounds;

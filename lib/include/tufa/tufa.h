@@ -10,6 +10,7 @@
 #include <tufa/float_mesh.h>
 #include <tufa/fwd.h>
 #include <tufa/implicit.h>
+#include <tufa/import.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <tufa/export.h>
+#include <tufa/mesh.h>
+#include <tufa/openvdb_fwd.h>
+#include <tufa/progress.h>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tufa {
+
+/// How a raw image holds a value.
+enum class RawType {
+  U8,   ///< unsigned, a byte
+  U16,  ///< unsigned, two bytes
+  I16,  ///< signed, two bytes
+  F32,  ///< IEEE single precision
+};
+
+/// What a raw stack does not say of itself, and options of importRaw().
+struct RawImport {
+  std::array<std::int64_t, 3> size{};      ///< voxels along x, y and z: 1 to a million each
+  RawType type = RawType::U8;              ///< of all values
+  bool bigEndian = false;                  ///< which byte of a value comes first
+  std::uint64_t headerBytes = 0;           ///< at the beginning of each file, left out
+  std::array<double, 3> spacing{1, 1, 1};  ///< world units between voxels along x, y and z
+  Position origin{0, 0, 0};                ///< of the first voxel, world units
+  std::optional<double> threshold;         ///< values up to it are background; none: the least one
+  int threads = 0;                         ///< most threads; 0: all. Never changes the result.
+  Progress progress;                       ///< called from the calling thread; may cancel
+};
+
+/// The type of that name ("u8", "u16", "i16" or "f32"), if there is one.
+[[nodiscard]] TUFA_API std::optional<RawType> rawTypeByName(std::string_view name);
+
+/// Reads an image of which the values lie one after the other in one or more files, x running
+/// fastest, then y. Voxels above the threshold are active in the float grid that it makes; the
+/// others have the threshold's value, and so has all beyond the image. NaN is background. Only
+/// eight slices and the grid are in memory. Throws Error: InvalidArgument (size, spacing, origin),
+/// UnreadableFile (files that do not hold just so many values), Cancelled.
+[[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> importRaw(
+    const std::vector<std::filesystem::path>& files, const RawImport& options);
+
+}  // namespace tufa
