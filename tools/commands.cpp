@@ -45,6 +45,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addLodCommand(app, chosen);
   addChunksCommand(app, chosen);
   addCheckCommand(app, chosen);
+  addCompareCommand(app, chosen);
   addRepairCommand(app, chosen);
   addHelpCommand(app, chosen);
 }

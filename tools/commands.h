@@ -26,6 +26,7 @@ void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);
 void addChunksCommand(CLI::App& app, Command& chosen);
 void addCheckCommand(CLI::App& app, Command& chosen);
+void addCompareCommand(CLI::App& app, Command& chosen);
 void addRepairCommand(CLI::App& app, Command& chosen);
 void addHelpCommand(CLI::App& app, Command& chosen);
 

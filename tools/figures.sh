@@ -64,6 +64,19 @@ figure README.md '| triangles within 0.474 voxel of a sphere, voxel 0.02 | 1,452
 figure README.md '| triangles within 2.04 voxels of the bracket, voxel 0.02 | 16,988 | ' ' |' \
   "$(grouped "$(key triangles)")"
 
+# Methods compared: what does not depend on the machine.
+for method in mc emc surface-nets; do
+  "$tufa" compare bracket.vdb --methods $method --truth bracket --json > out.json
+  faults=none
+  pairs=$(grouped "$(key self_intersecting_pairs)")
+  page=docs/which-method.md
+  row="| bracket, $method | "
+  figure $page "$row" " | $faults | " "$(grouped "$(key triangles)")"
+  figure $page "$row$(grouped "$(key triangles)") | $faults | " ' | ' "$pairs"
+  figure $page "$row$(grouped "$(key triangles)") | $faults | $pairs | " ' | ' \
+    "$(sed -n 's/.*"euler_characteristic": \([0-9-]*\),$/\1/p' out.json | head -n 1)"
+done
+
 # Spot, at 0.01 units a voxel as docs/index.md has it.
 spot=$data/ode_spot.obj
 if [ -n "$data" ] && [ -f "$spot" ]; then

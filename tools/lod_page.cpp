@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "console.h"
+#include "html.h"
 #include "render/scene.h"
 
 namespace tufa::tools {
@@ -38,61 +39,6 @@ Color rampAt(double share) {
   return color;
 }
 
-std::string base64(const std::string& bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned word = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      word = word << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += i + k <= bytes.size() ? kDigits[word >> (18 - 6 * k) & 63U] : '=';
-    }
-  }
-  return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '&':
-        safe += "&amp;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
-
-std::string element(const std::string& tag, const std::string& content) {
-  return "<" + tag + ">" + content + "</" + tag + ">";
-}
-
-std::string figure(const Image& image, const std::string& caption) {
-  return "<figure><img alt=\"" + escaped(caption) + "\" src=\"data:image/png;base64," +
-         base64(render::pngOf(image)) + "\">" + element("figcaption", escaped(caption)) +
-         "</figure>\n";
-}
-
-std::string row(const std::string& cell, const std::vector<std::string>& texts) {
-  std::string cells;
-  for (const std::string& text : texts) cells += element(cell, escaped(text));
-  return element("tr", cells) + "\n";
-}
-
 /// The ramp as a bar, from 0 to the largest error.
 std::string legend(const std::string& largest) {
   std::string stops;
@@ -108,20 +54,6 @@ std::string legend(const std::string& largest) {
   return "<p class=\"legend\">0 <span style=\"background:linear-gradient(90deg," + stops +
          ")\"></span> " + escaped(largest) + "</p>\n";
 }
-
-constexpr const char* kStyle =
-    "body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:1500px;padding:0 1rem;"
-    "color:#1c2530;background:#fff}"
-    "h1{font-size:1.5rem;margin:0}h2{font-size:1.1rem;margin:2rem 0 .3rem}p{margin:.3rem 0}"
-    "table{border-collapse:collapse;margin:1rem 0}"
-    "th,td{text-align:right;padding:.25rem .9rem;border-bottom:1px solid #d8dee6;"
-    "font-variant-numeric:tabular-nums}th{font-weight:600}"
-    ".row{display:grid;grid-template-columns:repeat(3,1fr);gap:.6rem}"
-    "figure{margin:0}img{width:100%;display:block;border-radius:4px}"
-    "figcaption,.legend{font-size:.85rem;color:#4a5868}"
-    ".legend{text-align:right}"
-    ".legend span{display:inline-block;width:9rem;height:.7rem;vertical-align:middle;"
-    "border-radius:2px}";
 
 /// Rendering has no progress of its own: checks for cancellation between pictures.
 void report(const LodPage& page, std::size_t done, std::size_t all) {
@@ -166,18 +98,13 @@ void writeLodPage(const LodChain& chain, const Mesh& reference, const LodPage& p
   View view;
   view.yUp = page.yUp;
   view = render::fitted(chain.levels.front().mesh, view, kWidth, kHeight);
-  std::string html = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
-  html += element("title", escaped(page.title)) + element("style", kStyle) + "</head><body>\n";
-  html += element("h1", escaped(page.title)) + "\n" + element("p", escaped(page.summary)) + "\n";
-  html += "<table>\n" + row("th", page.headings);
-  for (const auto& texts : page.rows) html += row("td", texts);
-  html += "</table>\n";
+  std::string html = pageHead(page.title, page.summary) + table(page.headings, page.rows);
   for (std::size_t level = 0; level < chain.levels.size(); ++level) {
     report(page, level, chain.levels.size());
     html += levelSection(chain, level, reference, page, view);
   }
   report(page, chain.levels.size(), chain.levels.size());
-  writeFile(html + "</body></html>\n", path);
+  writeFile(html + pageEnd(), path);
 }
 
 }  // namespace tufa::tools

@@ -1,6 +1,5 @@
 // What `tufa lod` tells of a run.
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "attribute_options.h"
@@ -8,6 +7,7 @@
 #include "lod_run.h"
 #include "paths.h"
 #include "report.h"
+#include "text_table.h"
 
 namespace tufa::tools {
 namespace {
@@ -42,22 +42,6 @@ Json levelToJson(const LodRun& run, std::size_t level) {
   json["seconds"] = lod.seconds;
   if (!run.checks.empty()) json["check"] = toJson(run.checks[level]);
   return json;
-}
-
-/// Columns as wide as their widest cell, each cell to the right.
-std::string layOut(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += (i > 0 ? "  " : "") + std::string(widths[i] - row[i].size(), ' ') + row[i];
-    }
-    text += "\n";
-  }
-  return text;
 }
 
 }  // namespace

@@ -19,11 +19,6 @@ Json toJson(const CheckComponent& piece) {
           {"genus", piece.genus ? Json(*piece.genus) : Json(nullptr)}};
 }
 
-Json toJson(const DistanceSummary& side) {
-  return {
-      {"samples", side.samples}, {"largest", side.largest}, {"mean", side.mean}, {"rms", side.rms}};
-}
-
 void addLine(std::string& text, const char* label, const std::string& value) {
   text += "  " + std::string(label) + value + "\n";
 }
@@ -98,6 +93,11 @@ Json toJson(const CheckReport& report) {
   json["component_list_complete"] = listed == report.components.size();
   json["seconds"] = report.seconds;
   return json;
+}
+
+Json toJson(const DistanceSummary& side) {
+  return {
+      {"samples", side.samples}, {"largest", side.largest}, {"mean", side.mean}, {"rms", side.rms}};
 }
 
 Json toJson(const DistanceReport& report) {

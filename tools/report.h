@@ -12,6 +12,7 @@ namespace tufa::tools {
 [[nodiscard]] nlohmann::ordered_json toJson(const CheckReport& report);
 
 /// What checkAgainst() measured, for programs.
+[[nodiscard]] nlohmann::ordered_json toJson(const DistanceSummary& side);
 [[nodiscard]] nlohmann::ordered_json toJson(const DistanceReport& report);
 
 /// The same for people: some lines of text, the verdict last.

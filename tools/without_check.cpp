@@ -1,6 +1,7 @@
 // Stands for Tufa::check in a command that is built without it.
 #include <tufa/check.h>
 
+#include <tufa/compare.h>
 #include <tufa/error.h>
 #include <tufa/repair.h>
 
@@ -27,6 +28,15 @@ DistanceReport checkAgainst(const Mesh& /*mesh*/, const openvdb::GridBase& /*gri
 
 std::vector<double> distancesTo(const Mesh& /*mesh*/, const std::vector<Position>& /*points*/,
                                 const DistanceOptions& /*options*/) {
+  refuse();
+}
+
+const std::vector<std::string_view>& comparedNames() {
+  static const std::vector<std::string_view> kNone;
+  return kNone;
+}
+
+Comparison compareMethods(const openvdb::GridBase& /*grid*/, const CompareOptions& /*options*/) {
   refuse();
 }
 

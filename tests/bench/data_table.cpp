@@ -13,19 +13,21 @@
 #include <cctype>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "meta_image.h"
 #include "table_text.h"
 
 namespace {
 
 using namespace tufa;
+using bench::count;
 using bench::number;
+using bench::readMetaImage;
 namespace fs = std::filesystem;
 
 // Voxels along the longest side of a mesh.
@@ -35,48 +37,6 @@ double extentOf(const Mesh& mesh) {
   openvdb::BBoxd box;
   for (const Position& p : mesh.positions) box.expand(openvdb::Vec3d(p.x, p.y, p.z));
   return box.empty() ? 0 : box.extents()[box.maxExtent()];
-}
-
-// A raw volume of unsigned 16-bit samples with a MetaImage header beside it.
-openvdb::FloatGrid::Ptr readMetaImage(const fs::path& header) {
-  std::ifstream text(header);
-  openvdb::Coord size;
-  openvdb::Vec3d spacing(1);
-  std::string key, equals, data;
-  while (text >> key >> equals) {
-    if (key == "DimSize") {
-      text >> size[0] >> size[1] >> size[2];
-    } else if (key == "ElementSpacing") {
-      text >> spacing[0] >> spacing[1] >> spacing[2];
-    } else if (key == "ElementDataFile") {
-      text >> data;
-    } else {
-      std::getline(text, data);
-    }
-  }
-  std::ifstream samples(header.parent_path() / data, std::ios::binary);
-  auto grid = openvdb::FloatGrid::create(0);
-  openvdb::math::Mat4d scale = openvdb::math::Mat4d::identity();
-  scale.preScale(spacing);
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(scale));
-  auto accessor = grid->getAccessor();
-  for (int z = 0; z < size[2]; ++z) {
-    for (int y = 0; y < size[1]; ++y) {
-      for (int x = 0; x < size[0]; ++x) {
-        unsigned char bytes[2];
-        samples.read(reinterpret_cast<char*>(bytes), 2);
-        accessor.setValue({x, y, z}, static_cast<float>(bytes[0] | bytes[1] << 8));
-      }
-    }
-  }
-  if (!samples) throw Error(ErrorCode::UnreadableFile, data + ": too short");
-  return grid;
-}
-
-std::string count(std::size_t value) {
-  std::string digits = std::to_string(value);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
 }
 
 std::string errors(const DistanceSummary& side) {

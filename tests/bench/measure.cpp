@@ -1,45 +1,20 @@
 #include "measure.h"
 
-#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
+
+#include "base/peak_memory.h"
 
 namespace tufa::bench {
 namespace {
 
-// A line "KEY:   N kB" of /proc/self/status, in bytes.
-std::optional<double> statusBytes(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  std::string word;
-  while (status >> word) {
-    double kilobytes = 0;
-    if (word == key + ":" && status >> kilobytes) return kilobytes * 1024;
-  }
-  return {};
-}
-
-// Sets the high-water mark of resident memory back to what is resident now. Linux only.
-bool resetPeak() {
-  std::ofstream clear("/proc/self/clear_refs");
-  clear << "5" << std::flush;
-  return clear.good();
-}
-
-// Freed memory goes back to the system first, else a contender would be lent what others left.
 std::optional<double> extraBytesOf(const Contender& contender, int threads) {
-  malloc_trim(0);
-  if (!resetPeak()) {
-    (void)contender.run(threads);
-    return {};
-  }
-  const auto before = statusBytes("VmRSS");
+  const base::PeakMemory memory;
   (void)contender.run(threads);
-  const auto peak = statusBytes("VmHWM");
-  if (!before || !peak) return {};
-  return *peak - *before;
+  const auto bytes = memory.extraBytes();
+  return bytes ? std::optional(static_cast<double>(*bytes)) : std::nullopt;
 }
 
 // Processor time of the whole process, in seconds.

@@ -6,6 +6,7 @@ set(said "tufa: this tufa was built without the mesh checker; configure with -DT
 
 foreach(call IN ITEMS
     "check;none.ply"
+    "compare;none.vdb;-o;none.html"
     "mesh;none.vdb;-o;none.ply;--check"
     "lod;none.vdb;-o;none.glb;--check"
     "lod;none.vdb;-o;none.glb;--report;none.html"

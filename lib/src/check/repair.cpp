@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/part_of_progress.h"
 #include "check/repair_steps.h"
 
 namespace tufa {
@@ -25,14 +26,6 @@ void requireOptions(const RepairOptions& options) {
   }
 }
 
-/// A part of the progress of the call.
-Progress partOf(const Progress& progress, double begin, double end) {
-  if (!progress) return nullptr;
-  return [&progress, begin, end](std::string_view stage, double fraction) {
-    return progress(stage, begin + (end - begin) * fraction);
-  };
-}
-
 std::size_t faultsOf(const CheckReport& report) {
   return report.boundaryEdges + report.nonManifoldEdges + report.nonManifoldVertices +
          report.misorientedEdges + report.invalidFaces + report.collapsedFaces +
@@ -42,7 +35,7 @@ std::size_t faultsOf(const CheckReport& report) {
 CheckReport checked(const Mesh& mesh, const RepairOptions& options, double begin, double end) {
   CheckOptions checks;
   checks.threads = options.threads;
-  checks.progress = partOf(options.progress, begin, end);
+  checks.progress = base::partOf(options.progress, begin, end);
   return check(mesh, checks);
 }
 
@@ -54,7 +47,7 @@ Mesh repair(const Mesh& mesh, const RepairOptions& options, RepairReport* report
   RepairReport& out = report != nullptr ? *report : own;
   out = {};
   out.before = checked(mesh, options, 0, kBeforeEnd);
-  const Progress tell = partOf(options.progress, kBeforeEnd, kStepsEnd);
+  const Progress tell = base::partOf(options.progress, kBeforeEnd, kStepsEnd);
   Mesh repaired = checks::runRepairSteps(mesh, options, out, [&](double done) {
     if (tell && !tell("repair", done)) throw Error(ErrorCode::Cancelled, "cancelled by the caller");
   });

@@ -63,6 +63,18 @@ std::vector<Box> TriangleSoup::boxes(base::Job& job) const {
   return result;
 }
 
+std::vector<VertexIndex> TriangleSoup::usedVertices() const {
+  std::vector<bool> isUsed(points_.size());
+  for (const Triangle& triangle : triangles_) {
+    for (const VertexIndex v : triangle.vertices) isUsed[v] = true;
+  }
+  std::vector<VertexIndex> used;
+  for (std::size_t v = 0; v < isUsed.size(); ++v) {
+    if (isUsed[v]) used.push_back(static_cast<VertexIndex>(v));
+  }
+  return used;
+}
+
 double TriangleSoup::distanceSquared(const Vec3& from, std::uint32_t triangle) const {
   const auto& v = triangles_[triangle].vertices;
   return triangleDistanceSquared(from, points_[v[0]], points_[v[1]], points_[v[2]]);

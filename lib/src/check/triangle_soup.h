@@ -22,6 +22,9 @@ class TriangleSoup {
   [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
   [[nodiscard]] const Vec3& point(VertexIndex v) const { return points_[v]; }
 
+  /// The vertices that triangles have, in their order.
+  [[nodiscard]] std::vector<VertexIndex> usedVertices() const;
+
   /// The distance to the nearest triangle; infinite if there is none. `hint` is a triangle that is
   /// likely near, or Bvh::kNone, and becomes the nearest: queries in spatial order are then much
   /// faster.

@@ -22,6 +22,7 @@ class VoxelFrame {
   [[nodiscard]] double voxelSize() const { return voxelSize_; }
 
   [[nodiscard]] Vec3 fromWorld(const Position& p) const { return (p - origin_) / voxelSize_; }
+  [[nodiscard]] Position toWorld(const Vec3& point) const { return point * voxelSize_ + origin_; }
   [[nodiscard]] Vec3 fromIndex(const Vec3& index) const { return times(toVoxels_, index); }
   [[nodiscard]] Vec3 toIndex(const Vec3& point) const { return times(toIndex_, point); }
   /// A gradient by index coordinates as one by voxel space.
