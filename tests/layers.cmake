@@ -23,6 +23,7 @@ list(REMOVE_ITEM sees_lod extract)
 list(REMOVE_ITEM sees_chunks extract)
 list(APPEND sees_chunks shading)
 # Folders beside the pipeline, and all that each of them sees.
+set(sees_advise base grid uniform extract advise)
 set(sees_shapes base grid shapes)
 set(sees_implicit base io implicit)
 set(sees_voxelize base grid implicit voxelize)

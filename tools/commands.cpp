@@ -41,6 +41,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addModelCommand(app, chosen);
   addImportCommand(app, chosen);
   addInfoCommand(app, chosen);
+  addAdviseCommand(app, chosen);
   addMeshCommand(app, chosen);
   addLodCommand(app, chosen);
   addChunksCommand(app, chosen);

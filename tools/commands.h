@@ -22,6 +22,7 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen);
 void addModelCommand(CLI::App& app, Command& chosen);
 void addImportCommand(CLI::App& app, Command& chosen);
 void addInfoCommand(CLI::App& app, Command& chosen);
+void addAdviseCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);
 void addChunksCommand(CLI::App& app, Command& chosen);

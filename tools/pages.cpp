@@ -88,7 +88,7 @@ void writeOptions(std::ostream& out, const CLI::App& app) {
 void writeExitCodes(std::ostream& out) {
   out << ".SH EXIT STATUS\n"
          ".TP\n0\ndone\n"
-         ".TP\n1\nthe checked mesh is not watertight\n"
+         ".TP\n1\nthe checked mesh is not watertight, or the volume not fine enough\n"
          ".TP\n2\nwrong usage\n"
          ".TP\n3\na file that cannot be read, written or meshed\n"
          ".TP\n130\ncancelled by Ctrl\\-C or SIGTERM\n";

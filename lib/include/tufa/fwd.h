@@ -10,6 +10,7 @@ namespace tufa {
 class Coord;
 class Error;
 class Progress;
+struct AdviseOptions;
 struct Attribute;
 struct AttributeOptions;
 struct Camera;
@@ -50,6 +51,7 @@ struct Quad;
 struct RawImport;
 struct RepairOptions;
 struct RepairReport;
+struct SamplingReport;
 struct ShapeOptions;
 struct Triangle;
 struct TruthReport;

@@ -1,6 +1,7 @@
 #pragma once
 
 // The whole of Tufa::tufa. The checker, <tufa/check.h>, is apart: it links CGAL under the GPL.
+#include <tufa/advise.h>
 #include <tufa/attributes.h>
 #include <tufa/chunks.h>
 #include <tufa/contour.h>

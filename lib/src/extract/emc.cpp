@@ -5,6 +5,7 @@
 
 #include "base/huge_pages.h"
 #include "extract/cube_mesher.h"
+#include "extract/loop_crossings.h"
 #include "extract/marching_cubes.h"
 #include "extract/place_crossings.h"
 #include "uniform/qef.h"
@@ -45,18 +46,6 @@ constexpr auto kBeyond = [] {
   }
   return beyond;
 }();
-
-// Calls body(edge) for the crossings of a loop, in order.
-template <class Body>
-void forLoop(const CubeCase& cell, int loop, const Body& body) {
-  int first = 0;
-  while (cell.next[first] < 0 || cell.loopOf[first] != loop) ++first;
-  int edge = first;
-  do {
-    body(edge);
-    edge = cell.next[edge];
-  } while (edge != first);
-}
 
 // A vertex on a crease or corner.
 struct Feature {
@@ -146,22 +135,14 @@ class SharpMesher {
   bool addFeature(const SurfaceBlock& block, const CubeCase& cell, int loop,
                   const std::array<int, 3>& at, const CubeTable& table,
                   std::vector<Feature>& features) const {
-    std::array<VertexIndex, kEdges> vertices;
-    int count = 0;
     const int place = CubeTable::placeOf(at[0], at[1], at[2]);
-    forLoop(cell, loop, [&](int edge) { vertices[count++] = table[place + kEdgeOffsets[edge]]; });
-    if (!isSharp(vertices, count)) return false;
+    const LoopCrossings crossings(cell, loop, place, table, mesh_);
+    if (crossings.leastCosine() >= leastCosine_) return false;
     const grid::Affine& affine = volume_.affine;
     const Coord corner = volume_.blocks.origin(block.block).offsetBy(at[0], at[1], at[2]);
-    uniform::Qef planes;
     Vec3 sum(0);
-    for (int i = 0; i < count; ++i) {
-      const Normal& n = mesh_.normals[vertices[i]];
-      const Vec3 point = affine.latticePoint(mesh_.positions[vertices[i]], corner) - Vec3(0.5);
-      const Vec3 plane = affine.planeInLattice(n);
-      planes += uniform::Qef(toVector(point), toVector(plane));
-      sum += Vec3(n.x, n.y, n.z);
-    }
+    for (int i = 0; i < crossings.size(); ++i) sum += Vec3(crossings.normal(i));
+    const uniform::Qef planes = crossings.planes(affine, corner);
     const uniform::Vector best = uniform::solve(planes, kHalfCell);
     if (!sum.normalize()) sum = Vec3(0);
     features.push_back(
@@ -169,21 +150,6 @@ class SharpMesher {
                          0.5 + static_cast<double>(best[1]), 0.5 + static_cast<double>(best[2])),
          {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])}});
     return true;
-  }
-
-  static uniform::Vector toVector(const Vec3& v) {
-    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-  }
-
-  [[nodiscard]] bool isSharp(const std::array<VertexIndex, kEdges>& vertices, int count) const {
-    for (int i = 0; i < count; ++i) {
-      const Normal& a = mesh_.normals[vertices[i]];
-      for (int k = 0; k < i; ++k) {
-        const Normal& b = mesh_.normals[vertices[k]];
-        if (a.x * b.x + a.y * b.y + a.z * b.z < leastCosine_) return true;
-      }
-    }
-    return false;
   }
 
   // Whether a triangle of the case belongs to a loop without a feature. Its first corner is an
