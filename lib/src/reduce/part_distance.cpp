@@ -134,7 +134,7 @@ bool Part::crossingsNear() {
   }
   for (int k = 0; k < size_; ++k) {
     const int i = sharpest + k < size_ ? sharpest + k : sharpest + k - size_;
-    if (!edgeNear(apexFace_, {place_, spoke_[i], n_, !isGraph_, hasLines_}, ring_[i])) return false;
+    if (!edgeNear(apexFace_, {place_, spoke_[i], n_, !isGraph_}, ring_[i])) return false;
   }
   return true;
 }

@@ -143,8 +143,7 @@ bool Part::flipDistance(const Index* v) {
   if (face_[v[0]] == kNone) return false;
   const Index start = reference_->locate(face_[v[0]], y, n_);
   if (start == kNone) return false;
-  if (isOn(Outcome::Crossing) && !edgeNear(start, {y, x - y, n_, false, hasLines_}, v[3]))
-    return false;
+  if (isOn(Outcome::Crossing) && !edgeNear(start, {y, x - y, n_, false}, v[3])) return false;
   return !isOn(Outcome::Face) || facesNear();
 }
 

@@ -94,9 +94,6 @@ class ReferenceMesh {
     /// Whether the end is a plane across `along`, not one that holds the axis: where the surface
     /// may stand upright, as beside a star that is no graph.
     bool steep = false;
-    /// Whether a start at a vertex may be left into any face there, not only the first one: needed
-    /// along lines, whose edges run over edges of the reference.
-    bool anyFace = false;
   };
 
   /// Follows the section of the mesh with the plane through `start` that `along` and `axis` span,
@@ -126,8 +123,8 @@ class ReferenceMesh {
       return out >= 0;
     };
     Index face = first;
-    if (!enter(first) && section.anyFace) {
-      // A section that starts at a vertex may begin in another face there.
+    if (!enter(first)) {
+      // A section that starts at a vertex of that face may begin in another face there.
       for (int i = 0; i < 3; ++i) {
         if (squaredLength(q[i]) != 0) continue;
         (void)allAround(faces_[first].vertex[static_cast<std::size_t>(i)], [&](Index f) {
