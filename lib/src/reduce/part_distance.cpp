@@ -142,7 +142,8 @@ bool Part::crossingsNear() {
 // Whether an edge stays near the reference, walking from the face below its start. Where the
 // reference bends away around a crease just before the end, the section never passes the end: it
 // then is enough that it came near it, as all triangles around the end have that in common. The end
-// is at the vertex `end`.
+// is at the vertex `end`. Where the surface is steep, a section may pass over the end at a
+// distance: it is then not the way there.
 bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end) {
   constexpr float kFarTolerance = 0.25f;  // voxels; with a larger one a walk may stray anywhere
   constexpr float kArrived = 0.5f;        // voxels from the end, and twice the distance allowed
@@ -163,9 +164,13 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
     hasArrived |= ok && squaredLength(m - z) <= close2;
     return ok;
   };
-  if (!reference_->follow(face, section, isNear)) {
+  const ReferenceMesh::Arrival arrival = reference_->follow(face, section, isNear);
+  if (!arrival) {
     if (!hasArrived && (isFar || !limits_.isLoose)) return false;
     if (!limits_.isLoose) noteFacesBetween(last, end);
+  } else if (!limits_.isLoose && squaredLength(arrival.at - z) > squaredDistance_ &&
+             reference_->distance(arrival.face, section.start + z) > distance_) {
+    return false;
   }
   const bool mayStray = (flags_[end] & kNarrow) != 0 || limits_.distance > kFarTolerance;
   return !mayStray || limits_.isLoose || isBelow(last, end, section.axis);

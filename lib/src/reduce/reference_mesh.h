@@ -96,15 +96,22 @@ class ReferenceMesh {
     bool steep = false;
   };
 
+  /// Where a section passes its end.
+  struct Arrival {
+    Index face = kNone;
+    Vec3f at;  ///< seen from the start
+    explicit operator bool() const { return face != kNone; }
+  };
+
   /// Follows the section of the mesh with the plane through `start` that `along` and `axis` span,
   /// from face `first` to where it passes the end. visit(face, m, right, left) is called where it
   /// leaves a face across the edge from right to left, at m, all as seen from the start; the walk
-  /// ends when that returns false. Returns whether the end was reached.
+  /// ends when that returns false. Returns where the end was reached, if it was.
   ///
   /// The section is followed by the sides of the edges' ends alone, so that it needs no graph: it
   /// goes up and down walls, over creases, and past its own start if the surface does.
   template <class Visit>
-  bool follow(Index first, const Section& section, Visit&& visit) const {
+  Arrival follow(Index first, const Section& section, Visit&& visit) const {
     const Vec3f side = cross(section.axis, section.along);  // positive on the left
     const Vec3f forward = section.steep
                               ? section.along
@@ -134,16 +141,21 @@ class ReferenceMesh {
         break;
       }
     }
-    if (out < 0) return false;
+    if (out < 0) return {};
+    Vec3f before;
     Vec3f right = q[(out + 1) % 3], left = q[(out + 2) % 3];
     float sr = s[(out + 1) % 3], sl = s[(out + 2) % 3];
     for (int step = 0; step < kMostSteps; ++step) {
       const float share = sr / (sr - sl);
       const Vec3f m = right + (left - right) * share;
-      if (dot(m, forward) >= end) return true;
-      if (!visit(face, m, right, left)) return false;
+      if (const float way = dot(m, forward); way >= end) {
+        const float over = way - end, length = way - dot(before, forward);
+        return {face, length > over ? m - (m - before) * (over / length) : m};
+      }
+      if (!visit(face, m, right, left)) return {};
+      before = m;
       const Index c = faces_[face].opposite[static_cast<std::size_t>(out)];
-      if (c == kNone) return false;
+      if (c == kNone) return {};
       face = c / 3;
       const int at = static_cast<int>(c - 3 * face);
       const Vec3f w = positions_[faces_[face].vertex[static_cast<std::size_t>(at)]] - section.start;
@@ -155,7 +167,7 @@ class ReferenceMesh {
         right = w, sr = sw, out = at == 0 ? 2 : at - 1;
       }
     }
-    return false;
+    return {};
   }
 
  private:

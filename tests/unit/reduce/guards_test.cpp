@@ -173,8 +173,8 @@ TEST(Guards, AreFoundMissingByAnAudit) {
       {Outcome::Sample, sphere, 0.3f, 0},  {Outcome::Apex, sphere, 0.2f, 0},
       {Outcome::Crossing, noise, 0.2f, 0}, {Outcome::Face, noise, 0.2f, 1},
       {Outcome::Flat, plate, 0.3f, 7},     {Outcome::Turn, plate, 0.2f, 7},
-      {Outcome::Fold, plate, 0.3f, 0},     {Outcome::Intersection, plate, 0.3f, 0},
-      {Outcome::Round, noise, 0.05f, 4},
+      {Outcome::Fold, noise, 0.3f, 3},     {Outcome::Intersection, plate, 0.3f, 0},
+      {Outcome::Round, plate, 0.02f, 4},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(static_cast<int>(c.guard));

@@ -197,6 +197,21 @@ TEST_F(ReferenceMeshTest, FollowsASectionDownAWall) {
   EXPECT_EQ(visits, 3);
 }
 
+// A section along an edge that leaves the surface passes over the edge's end.
+TEST_F(ReferenceMeshTest, TellsWhereASectionPassesItsEnd) {
+  const Vec3f start(6.3f, 4.2f, 8);
+  const Index first = reference.locate(faceAt(start), start, {0, 0, 1});
+  ASSERT_NE(first, kNone);
+  const auto anywhere = [](Index, Vec3f, Vec3f, Vec3f) { return true; };
+  for (const float depth : {0.0f, 4.0f}) {
+    const Vec3f along{1.2f, 0.01f, -depth};
+    const auto arrival = reference.follow(first, {start, along, {0, 0, 1}}, anywhere);
+    ASSERT_TRUE(arrival);
+    EXPECT_NEAR(length(arrival.at - along), depth, 1e-4f);
+    EXPECT_NEAR(reference.distance(arrival.face, start + along), depth, 1e-4f);
+  }
+}
+
 TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   const test::FineMesh mesh = test::bumpySphere(5, 20, 1, 1);
   base::Job job(1, {});
@@ -267,8 +282,8 @@ TEST(Sections, StartAtAVertexInWhateverFaceIsGiven) {
         if (w == v) continue;
         reference.allAround(v, [&](Index first) {
           const auto anywhere = [](Index, Vec3f, Vec3f, Vec3f) { return true; };
-          EXPECT_TRUE(reference.follow(
-              first, {from, ball.positions[w] - from, unit(from), false, true}, anywhere))
+          EXPECT_TRUE(
+              reference.follow(first, {from, ball.positions[w] - from, unit(from)}, anywhere))
               << v << " to " << w << " from face " << first;
           return true;
         });
