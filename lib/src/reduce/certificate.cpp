@@ -5,16 +5,13 @@
 #include <atomic>
 #include <cmath>
 
+#include "reduce/halving.h"
 #include "reduce/overlay_path.h"
 
 namespace tufa::reduce {
 namespace {
 
 constexpr std::size_t kGrain = 8192;
-constexpr int kDepth = 12;
-// Bounds are tight within this factor and distance.
-constexpr float kTight = 1.002f;
-constexpr float kTightVoxels = 1e-4f;
 
 // A triangle beside a face of the reference, where the map may jump.
 struct Gap {
@@ -26,8 +23,8 @@ struct Gap {
 struct Measured {
   float largest = 0;
   double sum = 0;
-  Index halved = 0, worst = kNone;
-  std::vector<Gap> gaps;
+  Index worst = kNone;
+  std::vector<Index> open;  // faces without a way within what is expected
   std::vector<Index> beyond;
 
   void see(float value, Index face, float expected) {
@@ -36,79 +33,10 @@ struct Measured {
   }
 };
 
-struct Sphere {
-  Vec3f middle;
-  float radius;
-};
-
 void sortUnique(std::vector<Index>& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
-
-// A radius whose square is finite.
-constexpr float kEverywhere = 1e15f;
-
-using Corners = std::array<Vec3f, 3>;
-
-// A bound of the distance from the part of a triangle inside a sphere to the nearest of some
-// triangles, by halving: no point of a piece is farther from one of them than the farthest of the
-// piece's corners. Distance: d(point, candidate).
-template <class Distance>
-class Halving {
- public:
-  Halving(Distance distance, const Sphere& about, float expected)
-      : distance_(std::move(distance)), about_(about), expected_(expected) {}
-
-  float bound(const Corners& p, const std::vector<Index>& candidates, int depth = 0) const {
-    const Vec3f m = (p[0] + p[1] + p[2]) * (1.0f / 3);
-    const float size = std::sqrt(
-        std::max({squaredLength(p[0] - m), squaredLength(p[1] - m), squaredLength(p[2] - m)}));
-    if (length(m - about_.middle) > size + about_.radius) return 0;
-    std::vector<float> away(candidates.size());
-    for (std::size_t k = 0; k < candidates.size(); ++k) away[k] = distance_(m, candidates[k]);
-    const auto nearest = std::min_element(away.begin(), away.end());
-    if (*nearest + size <= expected_) return *nearest + size;  // no distance grows faster
-    std::vector<Index> close{candidates[static_cast<std::size_t>(nearest - away.begin())]};
-    for (std::size_t k = 0; k < candidates.size(); ++k) {  // others are nowhere the nearest
-      if (away[k] <= *nearest + 2 * size && candidates[k] != close[0]) {
-        close.push_back(candidates[k]);
-      }
-    }
-    const bool isLast = depth >= kDepth;
-    float best = kFar, low[3] = {kFar, kFar, kFar};
-    for (const Index candidate : close) {
-      float most = 0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const float at = distance_(p[i], candidate);
-        most = std::max(most, at);
-        low[i] = std::min(low[i], at);
-      }
-      best = std::min(best, most);
-      if (best <= expected_) return best;
-    }
-    if (isLast) return best;
-    const float lowest = std::max({low[0], low[1], low[2]});
-    const bool isInside = length(m - about_.middle) + size <= about_.radius + 1;
-    if (isInside && best <= kTight * lowest + kTightVoxels) return best;
-    return std::min(best, worstOfQuarters(p, close, depth + 1));
-  }
-
- private:
-  static constexpr float kFar = 1e30f;
-
-  float worstOfQuarters(const Corners& p, const std::vector<Index>& candidates, int depth) const {
-    const Vec3f a = (p[0] + p[1]) * 0.5f, b = (p[1] + p[2]) * 0.5f, c = (p[2] + p[0]) * 0.5f;
-    const Corners quarters[4] = {{p[0], a, c}, {a, p[1], b}, {c, b, p[2]}, {a, b, c}};
-    float worst = 0;
-    for (const Corners& q : quarters) worst = std::max(worst, bound(q, candidates, depth));
-    return worst;
-  }
-
-  Distance distance_;
-  Sphere about_;
-  float expected_;
-};
 
 // The largest values of regions, from several threads.
 class RegionMaxima {
@@ -156,46 +84,96 @@ class Measure {
         reference_(reference),
         expected_(expected),
         regions_(regions),
+        owner_(s.owner),
         opposite_(oppositeCorners(s.position.size(), s.triangles, job)),
         corners_(s.position.size(), s.triangles) {}
 
   void vertices(std::size_t begin, std::size_t end, Measured& measured) const {
     for (std::size_t r = begin; r < end; ++r) {
-      if (s_.owner[r] == kNone) continue;
-      const float d = distance(reference_.positions()[r], s_.owner[r]);
+      if (owner_[r] == kNone) continue;
+      const float d = distance(reference_.positions()[r], owner_[r]);
       measured.sum += static_cast<double>(d);
-      regions_.see(s_.owner[r], d);
+      regions_.see(owner_[r], d);
       measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, expected_);
     }
   }
 
   void faces(std::size_t begin, std::size_t end, Measured& measured) const {
     for (Index f = static_cast<Index>(begin); f < end; ++f) {
-      const auto& v = reference_.faces()[f].vertex;
-      const OwnedFace face{
-          reference_.cornersOf(f), v, {s_.owner[v[0]], s_.owner[v[1]], s_.owner[v[2]]}};
-      if (face.hasOneOwner()) continue;
-      float way = std::sqrt(overlayBound2(*this, face, expected_ * expected_));
-      if (way > expected_) way = halve(f, face, measured);
-      regions_.seeAround(face.owners, corners_, way);
-      measured.see(way, f, expected_);
+      if (!passes(f, measured)) measured.open.push_back(f);
     }
+  }
+
+  // Looks for other owners of a face's corners, with which it and all faces around the corner have
+  // ways: a corner beside an edge of the surface may be near both sides. Returns whether it has
+  // one.
+  bool findOwners(Index f, Measured& measured) {
+    if (passes(f, measured)) return true;  // by another owner that was found for a neighbour
+    const OwnedFace face = owned(f);
+    const std::vector<Index> around = trianglesAround(face.owners);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index r = face.vertices[i];
+      if (reference_.isAtBorder(r)) continue;
+      for (const Index t : around) {
+        const float d = distance(face.corners[i], t);
+        if (t == face.owners[i] || d > expected_) continue;
+        owner_[r] = t;
+        Measured there;
+        if (reference_.allAround(r, [&](Index g) { return passes(g, there); })) {
+          regions_.see(t, d);
+          measured.see(std::max(d, there.largest), f, expected_);
+          return true;
+        }
+      }
+      owner_[r] = face.owners[i];
+    }
+    return false;
+  }
+
+  // The way from a face to the triangles around its owners, by halving. Notes where the map may
+  // jump.
+  void halve(Index f, std::vector<Gap>& gaps, Measured& measured) const {
+    const OwnedFace face = owned(f);
+    const std::vector<Index> around = trianglesAround(face.owners);
+    for (const Index t : around) {
+      if (isBetween(t, face.owners)) gaps.push_back({t, f});
+    }
+    const auto toTriangle = [&](Vec3f q, Index t) { return distance(q, t); };
+    const float way =
+        Halving(toTriangle, Sphere{{}, kEverywhere}, expected_).bound(face.corners, around);
+    regions_.seeAround(face.owners, corners_, way);
+    measured.see(way, f, expected_);
+  }
+
+  // The reference vertices that each triangle owns.
+  [[nodiscard]] std::vector<std::vector<Index>> verticesOfOwners() const {
+    std::vector<std::vector<Index>> vertices(s_.triangles.size());
+    for (Index r = 0; r < owner_.size(); ++r) {
+      if (owner_[r] != kNone) vertices[owner_[r]].push_back(r);
+    }
+    return vertices;
   }
 
   // The way back: from the parts of a triangle about some faces, which the map may not reach, to
   // all faces nearby at reference vertices of the triangles around. From the whole triangle, if
-  // there are many. `owned`: for each triangle the reference vertices that it owns.
+  // that is less. `owned`: for each triangle the reference vertices that it owns.
   void wayBack(std::span<const Gap> gaps, const std::vector<std::vector<Index>>& owned,
                Measured& measured) const {
-    constexpr std::size_t kMany = 4;
-    if (gaps.size() > kMany) return wayBack(gaps.front(), {{}, kEverywhere}, owned, measured);
+    const Index t = gaps.front().triangle;
+    const Vec3f a = s_.corner(t, 0), b = s_.corner(t, 1), c = s_.corner(t, 2);
+    const float area = length(cross(b - a, c - a)) / 2;
+    std::vector<Sphere> parts;
+    float partsArea = 0;
     for (const Gap& gap : gaps) {
       const Corners face = reference_.cornersOf(gap.face);
       Sphere about{(face[0] + face[1] + face[2]) * (1.0f / 3), 0};
       for (const Vec3f& p : face) about.radius = std::max(about.radius, length(p - about.middle));
-      about.radius += 3 * expected_ + 1;
-      wayBack(gap, about, owned, measured);
+      about.radius += 2 * expected_ + kBeyond;
+      parts.push_back(about);
+      partsArea += 3 * about.radius * about.radius;
     }
+    if (partsArea > area) return wayBack(gaps.front(), {{}, kEverywhere}, owned, measured);
+    for (std::size_t i = 0; i < gaps.size(); ++i) wayBack(gaps[i], parts[i], owned, measured);
   }
 
   // As overlay_path.h sees a mesh.
@@ -212,7 +190,7 @@ class Measure {
   // From what of a triangle is in a sphere.
   void wayBack(const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned,
                Measured& measured) const {
-    const float reach = about.radius + 2 * expected_ + 1;
+    const float reach = about.radius + kBeyond + 2 * expected_ + 1;
     std::vector<Index> candidates{gap.face};
     for (const Index t : trianglesAround({&gap.triangle, 1})) {
       for (const Index r : owned[t]) {
@@ -232,15 +210,20 @@ class Measure {
     measured.see(back, gap.face, expected_);
   }
 
-  // The way from a face to the triangles around its owners. Notes where the map may jump.
-  float halve(Index f, const OwnedFace& face, Measured& measured) const {
-    ++measured.halved;
-    const std::vector<Index> around = trianglesAround(face.owners);
-    for (const Index t : around) {
-      if (isBetween(t, face.owners)) measured.gaps.push_back({t, f});
-    }
-    const auto toTriangle = [&](Vec3f q, Index t) { return distance(q, t); };
-    return Halving(toTriangle, Sphere{{}, kEverywhere}, expected_).bound(face.corners, around);
+  [[nodiscard]] OwnedFace owned(Index f) const {
+    const auto& v = reference_.faces()[f].vertex;
+    return {reference_.cornersOf(f), v, {owner_[v[0]], owner_[v[1]], owner_[v[2]]}};
+  }
+
+  // Whether there is a way from a face to its owners within what is expected.
+  bool passes(Index f, Measured& measured) const {
+    const OwnedFace face = owned(f);
+    if (face.hasOneOwner()) return true;
+    const float way = std::sqrt(overlayBound2(*this, face, expected_ * expected_));
+    if (!(way <= expected_)) return false;
+    regions_.seeAround(face.owners, corners_, way);
+    measured.see(way, f, expected_);
+    return true;
   }
 
   [[nodiscard]] float distance(Vec3f p, Index t) const {
@@ -278,6 +261,7 @@ class Measure {
   const ReferenceMesh& reference_;
   float expected_;
   RegionMaxima& regions_;
+  std::vector<Index> owner_;
   std::vector<Index> opposite_;
   CornersOfVertices corners_;
 };
@@ -287,7 +271,7 @@ class Measure {
 Certificate certify(const Surface& s, const ReferenceMesh& reference, float expected,
                     base::Job& job) {
   RegionMaxima regions(s);
-  const Measure measure(s, reference, expected, regions, job);
+  Measure measure(s, reference, expected, regions, job);
   const std::size_t vertices = s.owner.size(), faces = reference.faces().size();
   const std::size_t a = (vertices + kGrain - 1) / kGrain, b = (faces + kGrain - 1) / kGrain;
   std::vector<Measured> parts(a + b);  // their limits, and so the sums, do not depend on threads
@@ -301,13 +285,19 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
       }
     }
   });
+  Certificate all;
   std::vector<Gap> gaps;
-  for (const Measured& p : parts) gaps.insert(gaps.end(), p.gaps.begin(), p.gaps.end());
-  if (!gaps.empty()) {
-    std::vector<std::vector<Index>> owned(s.triangles.size());
-    for (Index r = 0; r < vertices; ++r) {
-      if (s.owner[r] != kNone) owned[s.owner[r]].push_back(r);
+  Measured last;
+  for (const Measured& p : parts) {
+    for (const Index f : p.open) {
+      if (measure.findOwners(f, last)) continue;
+      measure.halve(f, gaps, last);
+      ++all.halved;
     }
+  }
+  parts.push_back(last);
+  if (!gaps.empty()) {
+    const std::vector<std::vector<Index>> owned = measure.verticesOfOwners();
     // Those of a triangle together.
     std::stable_sort(gaps.begin(), gaps.end(),
                      [](const Gap& x, const Gap& y) { return x.triangle < y.triangle; });
@@ -317,20 +307,19 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     }
     const std::size_t groups = first.size();
     first.push_back(gaps.size());
-    parts.resize(a + b + groups);
+    const std::size_t done = parts.size();
+    parts.resize(done + groups);
     job.forRanges(groups, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         measure.wayBack({gaps.data() + first[i], gaps.data() + first[i + 1]}, owned,
-                        parts[a + b + i]);
+                        parts[done + i]);
       }
     });
   }
-  Certificate all;
   double sum = 0;
   for (const Measured& p : parts) {
     if (p.largest > all.largest) all.largest = p.largest, all.worst = p.worst;
     sum += p.sum;
-    all.halved += p.halved;
     all.beyond.insert(all.beyond.end(), p.beyond.begin(), p.beyond.end());
   }
   sortUnique(all.beyond);

@@ -76,38 +76,103 @@ struct OwnedFace {
 
 /// The triangles that the edges of a face pass in turn. Steps back and forth are left out.
 struct OverlayLoop {
-  std::array<Index, 3 * OverlayPath::kMost> triangles;
-  int first = 0;
-  int end = 0;
+  static constexpr int kMost = 3 * OverlayPath::kMost;
+  std::array<Index, kMost> triangles;
+  int count = 0;
 
   void add(Index triangle) {
-    if (end >= 2 && at(end - 2) == triangle) {
-      --end;
+    if (count >= 2 && at(count - 2) == triangle) {
+      --count;
     } else {
-      triangles[static_cast<std::size_t>(end++)] = triangle;
+      triangles[static_cast<std::size_t>(count++)] = triangle;
     }
   }
   /// Leaves out steps back and forth where the loop closes.
   void close() {
-    while (end - first >= 3 && at(first + 1) == at(end - 1)) ++first, --end;
+    int first = 0;
+    while (count - first >= 3 && at(first + 1) == at(count - 1)) ++first, --count;
+    beginAt(first);
   }
   [[nodiscard]] Index at(int i) const { return triangles[static_cast<std::size_t>(i)]; }
-  /// Whether all of its triangles have a vertex.
-  template <class M>
-  [[nodiscard]] bool isAround(const M& mesh, Index vertex) const {
-    for (int i = first; i < end; ++i) {
-      bool has = false;
-      for (int k = 0; k < 3; ++k) has |= mesh.vertex(at(i), k) == vertex;
-      if (!has) return false;
-    }
-    return true;
+  void beginAt(int first) {
+    std::copy(triangles.begin() + first, triangles.begin() + count, triangles.begin());
+    count -= first;
   }
 };
 
+template <class M>
+bool hasVertex(const M& mesh, Index triangle, Index vertex) {
+  for (int k = 0; k < 3; ++k) {
+    if (mesh.vertex(triangle, k) == vertex) return true;
+  }
+  return false;
+}
+
+/// Pulls a loop over a vertex, if it gets shorter: its first `arc` triangles are around the vertex,
+/// and those on the other side take their place.
+template <class M>
+bool pullOver(const M& mesh, Index vertex, int arc, OverlayLoop& loop) {
+  std::array<Index, OverlayLoop::kMost> others;
+  int count = 0;
+  for (Index before = loop.at(arc - 2), t = loop.at(arc - 1); t != loop.at(0);) {
+    Index next = kNone;
+    for (int i = 0; i < 3; ++i) {
+      if (mesh.vertex(t, i) != vertex && mesh.across(t, i) != before) next = mesh.across(t, i);
+    }
+    if (next == kNone || count + 2 >= arc) return false;
+    before = t, t = next;
+    others[static_cast<std::size_t>(count++)] = t;
+  }
+  OverlayLoop pulled;
+  for (int i = arc - 1; i < loop.count; ++i) pulled.add(loop.at(i));
+  for (int i = count; i-- > 0;) pulled.add(others[static_cast<std::size_t>(i)]);  // from loop.at(0)
+  pulled.close();
+  loop = pulled;
+  return true;
+}
+
+/// Pulls a loop together over vertices that are near a face. Returns the largest squared distance
+/// of one of them from it, or kFar2 if that does not succeed within the limit.
+///
+/// Where the loop crosses an edge is near a point of the face, and so is the vertex. The loop's
+/// arc around the vertex and the vertex make triangles, each inside one triangle of the mesh, that
+/// go to triangles in the face corner by corner; then the loop crosses all edges at the vertex.
+template <class M>
+float pullTogether(const M& mesh, const std::array<Vec3f, 3>& face, float limit2,
+                   OverlayLoop& loop) {
+  float worst = 0;
+  const auto isNear = [&](Index t, int k) {
+    const float d2 = squaredDistanceToTriangle(mesh(t, k), face[0], face[1], face[2]);
+    if (d2 <= limit2) worst = std::max(worst, d2);
+    return d2 <= limit2;
+  };
+  const auto pullOnce = [&] {
+    for (int turn = 0; turn < loop.count; ++turn) {
+      std::rotate(loop.triangles.begin(), loop.triangles.begin() + 1,
+                  loop.triangles.begin() + loop.count);
+      for (int k = 0; k < 3; ++k) {
+        const Index first = loop.at(0), vertex = mesh.vertex(first, k);
+        int arc = 1;
+        while (arc < loop.count && hasVertex(mesh, loop.at(arc), vertex)) ++arc;
+        if (arc == loop.count) {
+          if (isNear(first, k)) return loop.count = 0, true;
+        } else if (arc > 2 && isNear(first, k) && pullOver(mesh, vertex, arc, loop)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  while (loop.count > 2) {
+    if (!pullOnce()) return kFar2;
+  }
+  return worst;
+}
+
 /// A bound of the squared distance between a face of the reference and the mesh where the face lies
 /// over it, from the ways of its edges; more than the limit, at most kFar2, if there is none. The
-/// ways make a loop, which must fall together or turn around one vertex, and that must be near the
-/// face. The distances of the corners from their owners are not in it.
+/// ways make a loop, which must fall together or be pulled together over vertices near the face.
+/// The distances of the corners from their owners are not in it.
 template <class M>
 float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
   float worst = 0;
@@ -128,15 +193,7 @@ float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
     }
   }
   loop.close();
-  if (loop.end - loop.first <= 2) return worst;
-  for (int k = 0; k < 3; ++k) {
-    if (!loop.isAround(mesh, mesh.vertex(loop.at(loop.first), k))) continue;
-    const auto& p = face.corners;
-    const Vec3f centre = mesh(loop.at(loop.first), k);
-    worst = std::max(worst, squaredDistanceToTriangle(centre, p[0], p[1], p[2]));
-    if (worst <= limit2) return worst;
-  }
-  return kFar2;
+  return std::max(worst, pullTogether(mesh, face.corners, limit2, loop));
 }
 
 /// The squared distance of a face's farthest corner from that of its owners where it is least: a

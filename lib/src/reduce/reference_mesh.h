@@ -81,6 +81,14 @@ class ReferenceMesh {
     return across == kNone ? kNone : nextCorner(across);
   }
 
+  [[nodiscard]] bool isAtBorder(Index vertex) const {
+    const Index first = cornerOf_[vertex];
+    Index c = first;
+    while (c != kNone && (c = around(c)) != first) {
+    }
+    return c == kNone;
+  }
+
   /// Walks from face `start` to the face that the line through p along `axis` passes. kNone if the
   /// way ends at a border, takes more than `steps` faces, or ends at a face that looks against the
   /// axis.

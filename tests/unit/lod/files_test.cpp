@@ -73,7 +73,7 @@ std::vector<std::array<double, 3>> sortedPositions(const Mesh& mesh) {
 
 TEST(LodFiles, NamesLinksAndDescribesTheLevels) {
   const ScratchFolder folder;
-  const LodChain chain = chainOf(Shape::Bracket, 0.05);
+  const LodChain chain = chainOf(Shape::Bracket, 0.03);
   LodWriteOptions options;
   options.name = "part";
   options.scale = 0.5;

@@ -98,6 +98,24 @@ TEST(Certificate, BoundsTheWayBackToo) {
   }
 }
 
+// The ways along a face's edges make a loop around vertices of the mesh that are inside it.
+TEST(Certificate, PullsLoopsOverVerticesInsideAFace) {
+  const test::FineMesh reference = test::subdivided(test::box(8, 8, 8), 1);
+  test::FineMesh fine = test::subdivided(reference, 1);
+  const Certificate same = certified(fine, reference, 0.1f);
+  EXPECT_EQ(same.halved, 0U);
+  EXPECT_LT(same.largest, 1e-5f);
+  for (std::size_t v = reference.positions.size(); v < fine.positions.size(); ++v) {
+    Vec3f& p = fine.positions[v];
+    p.z += 0.2f * std::sin(p.x * 5 + p.y * 3);
+  }
+  const double sampled = sampledBothWays(fine, reference);
+  const Certificate bumpy = certified(fine, reference, 0.3f);
+  EXPECT_EQ(bumpy.halved, 0U);
+  EXPECT_GE(bumpy.largest, sampled * 0.9999);
+  EXPECT_LE(bumpy.largest, 0.3f);
+}
+
 TEST(Certificate, IsNoLessThanTheSampledDistanceOfAnyTwoMeshes) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const float radius = 6;
