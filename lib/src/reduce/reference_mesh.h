@@ -138,15 +138,24 @@ class ReferenceMesh {
       return out >= 0;
     };
     Index face = first;
+    const auto tryFace = [&](Index f) {
+      if (f != kNone && out < 0 && enter(f)) face = f;
+    };
     if (!enter(first)) {
-      // A section that starts at a vertex of that face may begin in another face there.
-      for (int i = 0; i < 3; ++i) {
-        if (squaredLength(q[i]) != 0) continue;
-        (void)allAround(faces_[first].vertex[static_cast<std::size_t>(i)], [&](Index f) {
-          face = f;
-          return !enter(f);
-        });
-        break;
+      // A section that starts at a vertex of that face, or along an edge, may begin in another face
+      // there.
+      const float beside = kBeside * length(side);
+      const bool isAt[] = {squaredLength(q[0]) == 0, squaredLength(q[1]) == 0,
+                           squaredLength(q[2]) == 0};
+      const bool isBeside[] = {std::abs(s[0]) <= beside, std::abs(s[1]) <= beside,
+                               std::abs(s[2]) <= beside};
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (isAt[i]) {
+          (void)allAround(faces_[first].vertex[i], [&](Index f) { return tryFace(f), out < 0; });
+        } else if (isBeside[(i + 1) % 3] && isBeside[(i + 2) % 3]) {
+          const Index c = faces_[first].opposite[i];
+          tryFace(c == kNone ? kNone : c / 3);
+        }
       }
     }
     if (out < 0) return {};
@@ -179,6 +188,7 @@ class ReferenceMesh {
   }
 
  private:
+  static constexpr float kBeside = 1e-4f;  ///< voxels from a section, for an edge along it
   static constexpr int kMostSteps = 2000;
   static constexpr std::uint8_t kRough = 1, kHeld = 2;
 
