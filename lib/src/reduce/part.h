@@ -139,10 +139,10 @@ class Part {
   }
   bool scaleTolerance(std::span<const Index> triangles, Index vertex);
   bool scaleStarTolerance(Index a);
-  bool samplesNear(Index t);
-  bool sampleNearGraph(Index s, Vec3f p);
+  bool samplesNear(Index t, int wedge);
+  bool sampleNearGraph(Index s, Vec3f p, int wedge);
   bool sampleNearStar(Index s, Vec3f p);
-  [[nodiscard]] int wedgeOf(Vec3f s) const;
+  [[nodiscard]] int wedgeOf(Vec3f s, int likely) const;
   bool apexNear(Index a, Index b);
   bool crossingsNear();
   bool edgeNear(Index face, const ReferenceMesh::Section& section, Index end);

@@ -25,8 +25,10 @@ Outcome Part::distanceGuard(Index a, Index b) {
   roughFaces_.clear();
   if (reference_->isScaled() && !scaleStarTolerance(a)) return Outcome::Sample;
   bool isNear = true;
-  for (int i = 0; i < size_ && isNear; ++i) isNear = samplesNear(at_[i] / 3);
-  if (!isNear || !samplesNear(left_ / 3) || !samplesNear(right_ / 3)) return Outcome::Sample;
+  for (int i = 0; i < size_ && isNear; ++i) isNear = samplesNear(at_[i] / 3, i);
+  if (!isNear || !samplesNear(left_ / 3, 0) || !samplesNear(right_ / 3, split_)) {
+    return Outcome::Sample;
+  }
   if (!apexNear(a, b)) return Outcome::Apex;
   if (isOn(Outcome::Crossing) && !crossingsNear()) return Outcome::Crossing;
   if (isOn(Outcome::Face) && !facesNear()) return Outcome::Face;
@@ -60,12 +62,14 @@ bool Part::scaleStarTolerance(Index a) {
 }
 
 // All samples of a triangle that changes; notes the new triangles that take them. One that is too
-// far goes first in its list, as it is likely to be so again.
-bool Part::samplesNear(Index t) {
+// far goes first in its list, as it is likely to be so again. `wedge`: the new triangle that takes
+// most of them.
+bool Part::samplesNear(Index t, int wedge) {
   Index before = kNone;
   for (Index s = firstSample_[t]; s != kNone; before = s, s = samples_[s].next) {
     const Vec3f p = samples_[s].p - place_;
-    if ((isGraph_ ? sampleNearGraph(s, p) : sampleNearStar(s, p)) || !isOn(Outcome::Sample)) {
+    if ((isGraph_ ? sampleNearGraph(s, p, wedge) : sampleNearStar(s, p)) ||
+        !isOn(Outcome::Sample)) {
       continue;
     }
     if (before != kNone) {
@@ -79,9 +83,9 @@ bool Part::samplesNear(Index t) {
 }
 
 // By the triangle above or below it: its plane's height first, as that is cheap.
-bool Part::sampleNearGraph(Index s, Vec3f p) {
+bool Part::sampleNearGraph(Index s, Vec3f p, int wedge) {
   const Vec3f q{dot(p, frame_.x), dot(p, frame_.y), dot(p, n_)};
-  const int w = wedgeOf(q);
+  const int w = wedgeOf(q, wedge);
   taken_.push_back({s, at_[w] / 3});
   const bool isOutside =
       (z_[w + 1].x - z_[w].x) * (q.y - z_[w].y) - (z_[w + 1].y - z_[w].y) * (q.x - z_[w].x) < 0;
@@ -101,11 +105,13 @@ bool Part::sampleNearStar(Index s, Vec3f p) {
   return best <= squaredDistance_;
 }
 
-// The triangle of the star that is above or below s, in the frame.
-int Part::wedgeOf(Vec3f s) const {
-  float last = z_[0].x * s.y - z_[0].y * s.x;
+// The triangle of the star that is above or below s, in the frame; `likely` is tried first.
+int Part::wedgeOf(Vec3f s, int likely) const {
+  const auto side = [&](int i) { return z_[i].x * s.y - z_[i].y * s.x; };
+  if (side(likely) >= 0 && side(likely + 1) < 0) return likely;
+  float last = side(0);
   for (int i = 0; i < size_; ++i) {
-    const float next = z_[i + 1].x * s.y - z_[i + 1].y * s.x;
+    const float next = side(i + 1);
     if (last >= 0 && next < 0) return i;
     last = next;
   }
