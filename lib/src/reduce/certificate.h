@@ -30,11 +30,12 @@ struct Certificate {
 /// so that it reaches every point of the surface, and the same number bounds the way back. Nothing
 /// is projected and nothing is sampled; folds of the reference do no harm.
 ///
-/// Where a face has no such pieces within `expected` voxels, it is halved until a bound of the way
-/// forth is tight, and so are the triangles around it for the way back. The sums are in single
-/// precision: a millionth of the coordinates is left to rounding.
+/// Where a face has no such pieces within `expected` voxels, another owner is sought for one of its
+/// corners. If there is none, the face is halved until a bound of the way forth is tight, and so are
+/// the triangles around it for the way back. The sums are in single precision: a millionth of the
+/// coordinates is left to rounding.
 ///
-/// Cost: about 60 ns a reference vertex, and some 100 microseconds for each face that is halved.
+/// Cost: about 60 ns a reference vertex, and some milliseconds for each face that is halved.
 [[nodiscard]] Certificate certify(const Surface& surface, const ReferenceMesh& reference,
                                   float expected, base::Job& job);
 
