@@ -40,6 +40,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addVoxelizeCommand(app, chosen);
   addModelCommand(app, chosen);
   addImportCommand(app, chosen);
+  addPictureCommand(app, chosen);
   addInfoCommand(app, chosen);
   addAdviseCommand(app, chosen);
   addMeshCommand(app, chosen);

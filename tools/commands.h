@@ -21,6 +21,7 @@ void addMakeCommand(CLI::App& app, Command& chosen);
 void addVoxelizeCommand(CLI::App& app, Command& chosen);
 void addModelCommand(CLI::App& app, Command& chosen);
 void addImportCommand(CLI::App& app, Command& chosen);
+void addPictureCommand(CLI::App& app, Command& chosen);
 void addInfoCommand(CLI::App& app, Command& chosen);
 void addAdviseCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);

@@ -5,7 +5,6 @@
 #include <tufa/error.h>
 #include <tufa/implicit.h>
 #include <tufa/io.h>
-#include <tufa/memory.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,6 +20,7 @@
 #include "number_list.h"
 #include "paths.h"
 #include "progress_bar.h"
+#include "scene_input.h"
 #include "standard_streams.h"
 #include "volume.h"
 #include "written_grid.h"
@@ -40,16 +40,6 @@ struct ModelArguments {
   bool quiet = false;
 };
 
-implicit::Scene readSceneInput(const ModelArguments& arguments) {
-  std::optional<implicit::Box> bounds;
-  if (arguments.bounds) {
-    const auto n = numbersIn<6>("--bounds", *arguments.bounds);
-    bounds = {Position(n[0], n[1], n[2]), Position(n[3], n[4], n[5])};
-  }
-  if (isStandard(arguments.input)) return implicit::readScene(standardInput(), bounds);
-  return implicit::readScene(std::filesystem::path(arguments.input), bounds);
-}
-
 std::string shownPoint(const Position& p) {
   return "(" + formatNumber(p.x) + ", " + formatNumber(p.y) + ", " + formatNumber(p.z) + ")";
 }
@@ -57,7 +47,7 @@ std::string shownPoint(const Position& p) {
 /// What `--at` prints.
 int tellPoint(const ModelArguments& arguments) {
   const auto at = numbersIn<3>("--at", *arguments.at);
-  const implicit::Scene scene = readSceneInput(arguments);
+  const implicit::Scene scene = readSceneInput(arguments.input, arguments.bounds);
   const Position point(at[0], at[1], at[2]);
   const double value = scene.field->value(point);
   const Position gradient = scene.field->gradient(point);
@@ -76,16 +66,6 @@ int tellPoint(const ModelArguments& arguments) {
           "\ngradient " + shownPoint(gradient) + "\nnormal " + shownPoint(normal) + "\n");
   }
   return kDone;
-}
-
-/// What neither the command line nor the scene says: a hundred voxels along the longest side.
-double voxelSizeFor(const implicit::Field& field) {
-  constexpr double kVoxels = 100;
-  const implicit::Box box = field.extent();
-  const double longest = std::max(
-      {box.greatest.x - box.least.x, box.greatest.y - box.least.y, box.greatest.z - box.least.z});
-  // Where it has no end, voxelize() says so.
-  return std::isfinite(longest) && longest > 0 ? longest / kVoxels : 1;
 }
 
 void noteHidden(const VoxelizeReport& report) {
@@ -114,7 +94,7 @@ int runModel(const ModelArguments& arguments) {
   if (arguments.voxelSize) requireVoxelSize("--voxel", *arguments.voxelSize);
   requireVolumeOutput(arguments.output);
   requireDistinct(arguments.output, {arguments.input});
-  const implicit::Scene scene = readSceneInput(arguments);
+  const implicit::Scene scene = readSceneInput(arguments.input, arguments.bounds);
   VoxelizeOptions options = arguments.options;
   options.voxelSize =
       arguments.voxelSize.value_or(scene.voxelSize.value_or(voxelSizeFor(*scene.field)));

@@ -18,6 +18,15 @@ bool isPipeOrDevice(const std::filesystem::path& path) {
   return std::filesystem::exists(status) && std::filesystem::is_other(status);
 }
 
+void requireEnding(const std::string& output, const std::string& what, const std::string& ending) {
+  if (isStandard(output)) return;
+  if (endingOf(output) != ending && !isPipeOrDevice(output)) {
+    throw Error(ErrorCode::InvalidArgument,
+                what + " is written as " + ending + ", which " + output + " does not end in");
+  }
+  requireWritable(output);
+}
+
 }  // namespace
 
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -39,14 +48,9 @@ void requireDistinct(const std::filesystem::path& output,
   }
 }
 
-void requireVolumeOutput(const std::string& output) {
-  if (isStandard(output)) return;
-  if (endingOf(output) != ".vdb" && !isPipeOrDevice(output)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "a volume is written as .vdb, which " + output + " does not end in");
-  }
-  requireWritable(output);
-}
+void requireVolumeOutput(const std::string& output) { requireEnding(output, "a volume", ".vdb"); }
+
+void requirePictureOutput(const std::string& output) { requireEnding(output, "a picture", ".png"); }
 
 void requireMeshOutput(const std::string& output, const std::optional<std::string>& format) {
   if (isStandard(output) || format) {

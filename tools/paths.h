@@ -22,6 +22,9 @@ void requireDistinct(const std::filesystem::path& output,
 /// standard output, a pipe or a device; UnwritableFile if nothing can be written there.
 void requireVolumeOutput(const std::string& output);
 
+/// The same of a picture, which ends in .png.
+void requirePictureOutput(const std::string& output);
+
 /// Throws Error(InvalidArgument) if a mesh cannot be written in the format that a name and
 /// `--format` say; UnwritableFile if nothing can be written there.
 void requireMeshOutput(const std::string& output, const std::optional<std::string>& format);

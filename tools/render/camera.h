@@ -12,8 +12,7 @@ struct Camera {
   double halfWidth = 0;   ///< of the picture, in pixels
   double halfHeight = 0;
 
-  /// `azimuth` is the angle about z from the x axis; `elevation` is over the xy plane; both in
-  /// degrees. If `yUp`, y takes the place of z, z that of x, and x that of y.
+  /// From there as base::viewFrame() says, in degrees.
   static Camera looking(double azimuth, double elevation, bool yUp);
 
   [[nodiscard]] Vec3 project(const Vec3& p) const {

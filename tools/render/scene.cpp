@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "base/view_frame.h"
+
 namespace tufa::render {
 namespace {
 
@@ -268,14 +270,11 @@ void occlude(Layer& layer, int radius) {
 }  // namespace
 
 Camera Camera::looking(double azimuth, double elevation, bool yUp) {
-  const double a = azimuth * kPi / 180, e = elevation * kPi / 180;
+  const base::ViewFrame frame = base::viewFrame(azimuth, elevation, yUp);
   Camera camera;
-  camera.toEye = {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
-  camera.right = {-std::sin(a), std::cos(a), 0};
-  if (yUp) {
-    for (Vec3* v : {&camera.toEye, &camera.right}) *v = {(*v)[1], (*v)[2], (*v)[0]};
-  }
-  camera.up = camera.toEye.cross(camera.right);
+  camera.right = frame.right;
+  camera.up = frame.up;
+  camera.toEye = frame.toEye;
   camera.centre = Vec3(0);
   return camera;
 }

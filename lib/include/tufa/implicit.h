@@ -52,6 +52,10 @@ class TUFA_API Field {
   /// A bound of the length of gradient() over a box; infinite where there is none.
   [[nodiscard]] virtual double lipschitz(const Box& box) const = 0;
 
+  /// Bounds of gradient() over a box, component by component: the corners of a box of vectors. With
+  /// them rays find the surface by Newton's method. Default: lipschitz() each way.
+  [[nodiscard]] virtual Box gradientBound(const Box& box) const;
+
   /// Whether gradient() has length 1 all but everywhere, as with distances and with unions and
   /// intersections of them. Level sets take such values as they are. Default: no.
   [[nodiscard]] virtual bool hasUnitGradient() const;

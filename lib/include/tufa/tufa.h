@@ -17,7 +17,9 @@
 #include <tufa/memory.h>
 #include <tufa/mesh.h>
 #include <tufa/octree.h>
+#include <tufa/picture.h>
 #include <tufa/progress.h>
+#include <tufa/rays.h>
 #include <tufa/shapes.h>
 #include <tufa/version.h>
 #include <tufa/voxelize.h>

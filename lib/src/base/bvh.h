@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/box.h"
+#include "base/box_ray.h"
 #include "base/job.h"
 #include "base/vec3.h"
 
@@ -73,6 +74,32 @@ class Bvh {
          });
   }
 
+  /// Calls visit(item) for items whose boxes a ray may pass before `to`, nearer parts of the tree
+  /// first. visit() may lower `to`: what begins behind it is left out.
+  template <class Visit>
+  void itemsAlong(const BoxRay& ray, double& to, const Visit& visit) const {
+    if (empty()) return;
+    std::array<Passed, kMaxDepth> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {root(), ray.entry(boxOf(root()), to)};
+    while (depth > 0) {
+      const auto [node, entry] = stack[--depth];
+      if (!(entry <= to)) continue;
+      if (node.leaves == 1) {
+        const std::size_t end = std::min((node.firstLeaf + 1) * kLeafSize, items_.size());
+        for (std::size_t i = node.firstLeaf * kLeafSize; i < end; ++i) {
+          if (ray.entry(boxes_[i], to) <= to) visit(items_[i]);
+        }
+        continue;
+      }
+      Passed near{left(node), ray.entry(boxOf(left(node)), to)};
+      Passed far{right(node), ray.entry(boxOf(right(node)), to)};
+      if (far.entry < near.entry) std::swap(near, far);
+      stack[depth++] = far;
+      stack[depth++] = near;
+    }
+  }
+
   /// The item of least distanceSquared(item) among those nearer than `best`; kNone if there is
   /// none. `best` becomes the squared distance found.
   template <class DistanceSquared>
@@ -120,6 +147,11 @@ class Bvh {
   struct Candidate {
     Node node;
     double bound;
+  };
+  /// A node that a ray may pass, and where it enters it.
+  struct Passed {
+    Node node;
+    double entry;
   };
   [[nodiscard]] Node root() const { return {0, 0, leafCount()}; }
   [[nodiscard]] static Node left(const Node& node) {

@@ -3,6 +3,7 @@
 #include <tufa/implicit.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/vec3.h"
 #include "implicit/interval.h"
@@ -36,6 +37,16 @@ namespace tufa::implicit {
 }
 [[nodiscard]] inline Box grown(const Box& box, double by) {
   return {Vec3(box.least) - Vec3(by), Vec3(box.greatest) + Vec3(by)};
+}
+
+/// A box of three intervals.
+[[nodiscard]] inline Box boxOf(const std::array<Interval, 3>& sides) {
+  return {Vec3(sides[0].least, sides[1].least, sides[2].least),
+          Vec3(sides[0].greatest, sides[1].greatest, sides[2].greatest)};
+}
+/// Scalar products of the vectors in a box with a vector.
+[[nodiscard]] inline Interval dot(const Vec3& a, const Box& vectors) {
+  return a[0] * sideOf(vectors, 0) + a[1] * sideOf(vectors, 1) + a[2] * sideOf(vectors, 2);
 }
 
 /// Bounds over a box of a function with that value in its centre that changes by at most

@@ -66,6 +66,23 @@ class Combination final : public Field {
     return most;
   }
 
+  // Of all that may count: those of a sharp union that may be the least somewhere.
+  [[nodiscard]] Box gradientBound(const Box& box) const override {
+    double leastGreatest = kInfinity;
+    std::vector<double> least;
+    least.reserve(parts_.size());
+    for (const FieldPtr& part : parts_) {
+      const Interval bound = signedBound(*part, box);
+      least.push_back(bound.least);
+      leastGreatest = std::min(leastGreatest, bound.greatest);
+    }
+    Box all{Vec3(kInfinity), Vec3(-kInfinity)};
+    for (std::size_t n = 0; n < parts_.size(); ++n) {
+      if (radius_ > 0 || least[n] <= leastGreatest) all = hull(all, parts_[n]->gradientBound(box));
+    }
+    return all;
+  }
+
   [[nodiscard]] bool hasUnitGradient() const override {
     if (radius_ > 0) return false;
     for (const FieldPtr& part : parts_) {
@@ -181,6 +198,10 @@ class Shifted final : public Field {
     return (scale_ > 0 ? inner : -inner) - shift_;
   }
   [[nodiscard]] double lipschitz(const Box& box) const override { return part_->lipschitz(box); }
+  [[nodiscard]] Box gradientBound(const Box& box) const override {
+    const Box inner = part_->gradientBound(box);
+    return scale_ > 0 ? inner : Box{-Vec3(inner.greatest), -Vec3(inner.least)};
+  }
   [[nodiscard]] bool hasUnitGradient() const override { return part_->hasUnitGradient(); }
   [[nodiscard]] double distance(const Position& p, double reach) const override {
     return shift_ == 0 ? scale_ * part_->distance(p, reach) : Field::distance(p, reach);

@@ -34,6 +34,11 @@ double searched(const Field& field, const Vec3& from, const Vec3& outward, doubl
 Field::Field() = default;
 Field::~Field() = default;
 
+Box Field::gradientBound(const Box& box) const {
+  const double most = lipschitz(box);
+  return {Vec3(-most), Vec3(most)};
+}
+
 bool Field::hasUnitGradient() const { return false; }
 
 double Field::distance(const Position& point, double reach) const {

@@ -60,6 +60,14 @@ class FormulaField final : public Field {
     return std::sqrt(sum);
   }
 
+  [[nodiscard]] Box gradientBound(const Box& box) const override {
+    std::array<Interval, 3> slopes = overBox(box).slopes;
+    if constexpr (Formula::kUnitGradient) {
+      for (Interval& slope : slopes) slope = both(slope, {-1, 1});
+    }
+    return boxOf(slopes);
+  }
+
   [[nodiscard]] bool hasUnitGradient() const override { return Formula::kUnitGradient; }
   [[nodiscard]] Box extent() const override { return formula_.extent(); }
 

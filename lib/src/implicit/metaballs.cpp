@@ -45,6 +45,12 @@ struct Kernel {
     }
     return -22.0 / 9 + q * (34.0 / 9 - q * (12.0 / 9));
   }
+  /// Those by q over a range of s: each kernel's grows from its centre to its end.
+  [[nodiscard]] Interval slopes(const Interval& s) const {
+    const double least = std::max(s.least, 0.0);
+    const double most = s.greatest < reach() ? slope(square(s.greatest)) : 0;
+    return outward(slope(square(least)), most);
+  }
   /// Where its slope by s is steepest: it grows up to there and falls behind.
   [[nodiscard]] double steepest() const {
     switch (kind) {
@@ -137,6 +143,19 @@ class Metaballs final : public Field {
       steepest += steepnessOf(ball, distancesTo(ball.centre, box) / ball.radius);
     });
     return steepest;
+  }
+
+  [[nodiscard]] Box gradientBound(const Box& box) const override {
+    std::array<Interval, 3> sum{};
+    forNear(box, [&](const Metaball& ball) {
+      const Interval s = distancesTo(ball.centre, box) / ball.radius;
+      if (s.least >= kernel_.reach()) return;
+      const Interval factor = kernel_.slopes(s) * (-2 * ball.weight / (ball.radius * ball.radius));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        sum[axis] = sum[axis] + factor * (sideOf(box, axis) - ball.centre[axis]);
+      }
+    });
+    return boxOf(sum);
   }
 
   [[nodiscard]] Box extent() const override {

@@ -65,6 +65,15 @@ class Transformed final : public Field {
   [[nodiscard]] double lipschitz(const Box& box) const override {
     return stretch_ * part_->lipschitz(imageOf(toPart_, box));
   }
+  [[nodiscard]] Box gradientBound(const Box& box) const override {
+    const Box inner = part_->gradientBound(imageOf(toPart_, box));
+    std::array<Interval, 3> slopes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vec3 column(toPart_.rows[0][axis], toPart_.rows[1][axis], toPart_.rows[2][axis]);
+      slopes[axis] = scale_ * dot(column, inner);
+    }
+    return boxOf(slopes);
+  }
   [[nodiscard]] bool hasUnitGradient() const override {
     return keepsShapes_ && part_->hasUnitGradient();
   }
@@ -110,18 +119,21 @@ class Repeated final : public Field {
   }
   [[nodiscard]] Interval bound(const Box& box) const override {
     const Copies copies = around(box);
-    double count = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      count *= copies.last[axis] - copies.first[axis] + 1;
-    }
-    constexpr double kMost = 64;
-    if (!(count <= kMost)) return part_->bound(seenFrom(box));
+    if (!fewEnough(copies)) return part_->bound(seenFrom(box));
     Interval all{kInfinity, kInfinity};
     forCopies(copies, [&](const Vec3& shift) { all = min(all, part_->bound(moved(box, shift))); });
     return all;
   }
   [[nodiscard]] double lipschitz(const Box& box) const override {
     return part_->lipschitz(seenFrom(box));
+  }
+  [[nodiscard]] Box gradientBound(const Box& box) const override {
+    const Copies copies = around(box);
+    if (!fewEnough(copies)) return part_->gradientBound(seenFrom(box));
+    Box all{Vec3(kInfinity), Vec3(-kInfinity)};
+    forCopies(copies,
+              [&](const Vec3& shift) { all = hull(all, part_->gradientBound(moved(box, shift))); });
+    return all;
   }
   [[nodiscard]] bool hasUnitGradient() const override { return part_->hasUnitGradient(); }
   [[nodiscard]] Box extent() const override {
@@ -133,6 +145,15 @@ class Repeated final : public Field {
   }
 
  private:
+  /// To be looked at one by one.
+  static bool fewEnough(const Copies& copies) {
+    constexpr double kMost = 64;
+    double count = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      count *= copies.last[axis] - copies.first[axis] + 1;
+    }
+    return count <= kMost;
+  }
   static Box moved(const Box& box, const Vec3& shift) {
     return {Vec3(box.least) - shift, Vec3(box.greatest) - shift};
   }

@@ -122,6 +122,7 @@ class Mutator {
     return {{{"info", "FILE"}},
             {{"info", "FILE", "--json"}},
             {{"mesh", "FILE", "-o", at("o.ply"), "--iso", "auto", "--quiet"}},
+            {{"picture", "FILE", "-o", at("o.png"), "--iso", "auto", "--size", "9x9", "--quiet"}},
             {{"mesh", "FILE", "-o", at("o.glb"), "--uniform", "--iso", "0.1", "--nan", "outside"}},
             {{"mesh", "FILE", "-o", at("o.obj"), "--grid", "*", "--iso", "auto", "--quiet"}},
             {{"mesh", "FILE", "-o", at("o.ply"), "--iso", "0", "--tolerance-grid", "sphere"}, true},

@@ -87,13 +87,21 @@ TEST(Fields, BoundsHoldAllSamples) {
       const Box box = places.box();
       const Interval bound = field->bound(box);
       const double steepest = field->lipschitz(box);
+      const Box slopes = field->gradientBound(box);
       ASSERT_LE(bound.least, bound.greatest) << name;
       for (int k = 0; k < 60; ++k) {
         const Vec3 p = places.pointIn(box);
         const double value = field->value(p);
         ASSERT_GE(value, bound.least) << name;
         ASSERT_LE(value, bound.greatest) << name;
-        ASSERT_LE(Vec3(field->gradient(p)).length(), steepest * (1 + 1e-9) + 1e-12) << name;
+        const Vec3 gradient = field->gradient(p);
+        ASSERT_LE(gradient.length(), steepest * (1 + 1e-9) + 1e-12) << name;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const Interval side = implicit::sideOf(slopes, axis);
+          const double room = 1e-9 * (1 + gradient.length());
+          ASSERT_GE(gradient[axis], side.least - room) << name;
+          ASSERT_LE(gradient[axis], side.greatest + room) << name;
+        }
       }
     }
   }

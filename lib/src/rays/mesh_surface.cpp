@@ -1,0 +1,159 @@
+// Rays to the triangles of meshes.
+
+#include <tufa/rays.h>
+
+#include <tufa/error.h>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/box_ray.h"
+#include "base/bvh.h"
+#include "base/job.h"
+#include "rays/surface.h"
+
+namespace tufa {
+namespace rays {
+namespace {
+
+/// A ray turned and sheared so that it runs along z: both triangles at an edge then see the same
+/// numbers, and none is passed between them (Woop, Benthin and Wald 2013).
+class ShearedRay {
+ public:
+  explicit ShearedRay(const UnitRay& ray) : origin_(ray.origin) {
+    const Vec3& d = ray.direction;
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+      if (std::abs(d[axis]) > std::abs(d[z_])) z_ = axis;
+    }
+    x_ = (z_ + 1) % 3;
+    y_ = (z_ + 2) % 3;
+    if (d[z_] < 0) std::swap(x_, y_);
+    shearX_ = d[x_] / d[z_];
+    shearY_ = d[y_] / d[z_];
+    scale_ = 1 / d[z_];
+  }
+
+  /// Where it passes a triangle, on either side.
+  [[nodiscard]] std::optional<double> passes(const std::array<Vec3, 3>& corners) const {
+    std::array<Vec3, 3> p;
+    for (std::size_t n = 0; n < 3; ++n) p[n] = sheared(corners[n]);
+    const std::array<double, 3> shares{share(p[2], p[1]), share(p[0], p[2]), share(p[1], p[0])};
+    const bool below = shares[0] < 0 || shares[1] < 0 || shares[2] < 0;
+    const bool above = shares[0] > 0 || shares[1] > 0 || shares[2] > 0;
+    const double sum = shares[0] + shares[1] + shares[2];
+    if ((below && above) || sum == 0) return std::nullopt;
+    return (shares[0] * p[0][2] + shares[1] * p[1][2] + shares[2] * p[2][2]) / sum;
+  }
+
+ private:
+  [[nodiscard]] Vec3 sheared(const Vec3& corner) const {
+    const Vec3 v = corner - origin_;
+    return {v[x_] - shearX_ * v[z_], v[y_] - shearY_ * v[z_], scale_ * v[z_]};
+  }
+  static double share(const Vec3& a, const Vec3& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+  Vec3 origin_;
+  std::size_t x_ = 1, y_ = 2, z_ = 0;
+  double shearX_ = 0, shearY_ = 0, scale_ = 1;
+};
+
+base::Box boundsOfAll(const Mesh& mesh, const std::vector<Triangle>& triangles) {
+  base::Box all = base::Box::empty();
+  for (const Triangle& triangle : triangles) {
+    for (const VertexIndex vertex : triangle.vertices) {
+      if (vertex >= mesh.positions.size()) {
+        throw Error(ErrorCode::InvalidArgument,
+                    "the mesh has " + std::to_string(mesh.positions.size()) +
+                        " vertices, but a face names vertex " + std::to_string(vertex));
+      }
+      const Vec3 point = mesh.positions[vertex];
+      if (!point.isFinite()) {
+        throw Error(ErrorCode::InvalidArgument,
+                    "vertex " + std::to_string(vertex) + " of the mesh is not finite");
+      }
+      all.add(point);
+    }
+  }
+  return all;
+}
+
+class MeshSurface final : public RaySurface {
+ public:
+  MeshSurface(const Mesh& mesh, std::vector<Triangle> triangles, const base::Box& bounds,
+              base::Job& job)
+      : RaySurface(bounds, 1e-6 * bounds.size().length()),
+        positions_(mesh.positions),
+        triangles_(std::move(triangles)),
+        tree_(boxesOf(*this), job) {}
+
+  [[nodiscard]] std::unique_ptr<Caster> caster() const override;
+
+  [[nodiscard]] std::array<Vec3, 3> corners(std::size_t triangle) const {
+    const auto& v = triangles_[triangle].vertices;
+    return {positions_[v[0]], positions_[v[1]], positions_[v[2]]};
+  }
+  [[nodiscard]] const base::Bvh& tree() const { return tree_; }
+
+ private:
+  static std::vector<base::Box> boxesOf(const MeshSurface& mesh) {
+    std::vector<base::Box> boxes(mesh.triangles_.size(), base::Box::empty());
+    for (std::size_t n = 0; n < boxes.size(); ++n) {
+      for (const Vec3& corner : mesh.corners(n)) boxes[n].add(corner);
+    }
+    return boxes;
+  }
+
+  std::vector<Position> positions_;
+  std::vector<Triangle> triangles_;
+  base::Bvh tree_;
+};
+
+class MeshCaster final : public Caster {
+ public:
+  explicit MeshCaster(const MeshSurface& mesh) : mesh_(mesh) {}
+
+  [[nodiscard]] std::optional<RayHit> cast(const UnitRay& ray) override {
+    const ShearedRay sheared(ray);
+    double to = ray.greatest;
+    std::optional<std::uint32_t> nearest;
+    mesh_.tree().itemsAlong({ray.origin, ray.direction, ray.least}, to, [&](std::uint32_t n) {
+      const auto distance = sheared.passes(mesh_.corners(n));
+      if (!distance || !(*distance >= ray.least && *distance <= to)) return;
+      // Of two at one edge the first in the mesh, whatever the order of the tree.
+      if (*distance == to && nearest && *nearest < n) return;
+      to = *distance;
+      nearest = n;
+    });
+    if (!nearest) return std::nullopt;
+    const auto corners = mesh_.corners(*nearest);
+    Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (!normal.normalize(0)) normal = Vec3(0.0);
+    return RayHit{to, ray.at(to), static_cast<Normal>(normal), *nearest};
+  }
+
+ private:
+  const MeshSurface& mesh_;
+};
+
+std::unique_ptr<Caster> MeshSurface::caster() const { return std::make_unique<MeshCaster>(*this); }
+
+}  // namespace
+}  // namespace rays
+
+std::shared_ptr<const RaySurface> makeRaySurface(const Mesh& mesh,
+                                                 const RaySurfaceOptions& options) {
+  std::vector<Triangle> triangles = triangulate(mesh);
+  const base::Box bounds = rays::boundsOfAll(mesh, triangles);
+  base::Job job(options.threads, options.progress);
+  std::shared_ptr<const RaySurface> surface;
+  job.run([&] {
+    job.beginStage("tree", 1);
+    surface = std::make_shared<rays::MeshSurface>(mesh, std::move(triangles), bounds, job);
+  });
+  job.finish();
+  return surface;
+}
+
+}  // namespace tufa
