@@ -1,6 +1,7 @@
 #!/bin/sh
 # Installs the Debian packages (12 and 13) that the build and the tests need, and only those that are
-# missing. With the argument "gate" also what .ci/run needs. Asks for root through sudo if need be.
+# missing. With the argument "gate" also what .ci/run needs, with "package" what the command can do
+# without, but packages have: ITK, by which `tufa import` reads images. Asks for root through sudo if need be.
 set -eu
 
 packages="ca-certificates cmake g++ git ninja-build
@@ -10,8 +11,9 @@ packages="ca-certificates cmake g++ git ninja-build
 case "${1:-}" in
   "") ;;
   gate) packages="$packages clang clang-format doxygen libclang-rt-dev" ;;
+  package) packages="$packages libinsighttoolkit5-dev" ;;
   *)
-    echo "usage: $0 [gate]" >&2
+    echo "usage: $0 [gate|package]" >&2
     exit 2
     ;;
 esac

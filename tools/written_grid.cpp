@@ -43,7 +43,7 @@ std::string describe(const WrittenGrid& written) {
 
 }  // namespace
 
-void writeAndTell(const openvdb::FloatGrid::Ptr& grid, WrittenGrid written, Telling telling) {
+void writeAndTell(const openvdb::GridBase::Ptr& grid, WrittenGrid written, Telling telling) {
   written.grid = grid->getName();
   written.activeVoxels = grid->activeVoxelCount();
   written.writeSeconds = timed([&] {

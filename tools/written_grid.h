@@ -36,6 +36,6 @@ struct Telling {
 
 /// Writes a grid to `written.output` and tells of it, for people with a line on what was made and
 /// one on what was written. Fills in what the grid and the writing give.
-void writeAndTell(const openvdb::FloatGrid::Ptr& grid, WrittenGrid written, Telling telling);
+void writeAndTell(const openvdb::GridBase::Ptr& grid, WrittenGrid written, Telling telling);
 
 }  // namespace tufa::tools

@@ -22,6 +22,14 @@ if(NOT help MATCHES "no mesh checker")
   message(FATAL_ERROR "the help text of --check does not say that there is no checker")
 endif()
 
+# The same of images without ITK, in one line that names the way out.
+execute_process(COMMAND ${TUFA} import none.nii -o none.vdb
+  RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE error)
+if(NOT code EQUAL 2 OR NOT error MATCHES "^tufa: [^\n]*built without ITK[^\n]*--size[^\n]*\n$"
+    OR NOT out STREQUAL "")
+  message(FATAL_ERROR "tufa import: exit code ${code}, \"${out}\", \"${error}\"")
+endif()
+
 # What needs no checker works as ever.
 execute_process(COMMAND ${TUFA} mesh none.vdb -o none.ply RESULT_VARIABLE code ERROR_QUIET)
 if(NOT code EQUAL 3)

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,9 +33,38 @@ struct RawImport {
   std::array<double, 3> spacing{1, 1, 1};  ///< world units between voxels along x, y and z
   Position origin{0, 0, 0};                ///< of the first voxel, world units
   std::optional<double> threshold;         ///< values up to it are background; none: the least one
+  bool labels = false;                     ///< as SliceOptions::labels
   int threads = 0;                         ///< most threads; 0: all. Never changes the result.
   Progress progress;                       ///< called from the calling thread; may cancel
 };
+
+/// An image of three dimensions, slice by slice, from whatever reads it.
+struct ImageSlices {
+  std::array<std::int64_t, 3> size{};  ///< voxels along x, y and z: 1 to a million each
+  /// From a voxel to the next along x, y and z, world units: spacing times direction.
+  std::array<Position, 3> steps{Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)};
+  Position origin{0, 0, 0};  ///< of the first voxel, world units
+  /// Fills in the values of `count` slices from `first` on, x running fastest, then y: the vector
+  /// has room for just so many. Called from the calling thread, from the first slice to the last,
+  /// and once more from the first where the background has to be found.
+  std::function<void(std::int64_t first, std::int64_t count, std::vector<float>& values)> read;
+};
+
+/// Options of importSlices().
+struct SliceOptions {
+  /// Values up to it are background; unset: the least value. Not for labels.
+  std::optional<double> threshold = {};
+  /// The values name things: an Int32 grid of the name "labels", in which 0 is background.
+  bool labels = false;
+  int threads = 0;         ///< most threads; 0: all. Never changes the result.
+  Progress progress = {};  ///< called from the calling thread; may cancel
+};
+
+/// Makes a sparse grid of an image, eight slices at a time: of floats as importRaw() does, or of
+/// labels. Throws Error: InvalidArgument (size, steps, origin, threshold), UnreadableFile (labels
+/// that are not whole, or beyond 2^24), Cancelled, and what `read` throws.
+[[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> importSlices(
+    const ImageSlices& image, const SliceOptions& options = {});
 
 /// The type of that name ("u8", "u16", "i16" or "f32"), if there is one.
 [[nodiscard]] TUFA_API std::optional<RawType> rawTypeByName(std::string_view name);

@@ -36,8 +36,19 @@ std::uint64_t contentOf(const std::filesystem::path& file, std::uint64_t header)
 
 }  // namespace
 
+void requireImageSize(const std::array<std::int64_t, 3>& size) {
+  constexpr std::int64_t kMost = 1000000;
+  for (const std::int64_t side : size) {
+    if (side >= 1 && side <= kMost) continue;
+    throw Error(ErrorCode::InvalidArgument, "the image must have 1 to " + std::to_string(kMost) +
+                                                " voxels along each axis, not " +
+                                                std::to_string(side));
+  }
+}
+
 RawSlices::RawSlices(const std::vector<std::filesystem::path>& files, const RawImport& options)
     : files_(files), options_(options) {
+  requireImageSize(options.size);
   if (files.empty()) throw Error(ErrorCode::InvalidArgument, "there is no file to import");
   std::uint64_t due = bytesOf(options.type);
   for (const std::int64_t side : options.size) due *= static_cast<std::uint64_t>(side);

@@ -2,6 +2,7 @@
 
 #include <tufa/import.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -9,10 +10,14 @@
 
 namespace tufa::io {
 
+/// Throws Error(InvalidArgument) unless an image may have so many voxels along its axes.
+void requireImageSize(const std::array<std::int64_t, 3>& size);
+
 /// The values of a raw stack, slice by slice from the first.
 class RawSlices {
  public:
-  /// Throws Error(UnreadableFile) unless the files hold just the values of the image.
+  /// Throws Error: InvalidArgument (the size), UnreadableFile unless the files hold just the values
+  /// of the image.
   RawSlices(const std::vector<std::filesystem::path>& files, const RawImport& options);
 
   /// The next slices, as many as the vector has room for.
