@@ -136,6 +136,10 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
           "names of grids, or patterns with * and ?: .glb, .obj and .usda hold several meshes, and "
           "{} in the output's name makes a file for each; default: the first level set")
       ->allow_extra_args(false);
+  mesh->add_option(
+      "--labels", arguments->labels,
+      "all, or numbers with commas between them: mesh each label of a grid of integers "
+      "apart, as label_1 and so on");
   addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);
   addFilterOptions(*mesh, arguments->filters);

@@ -1,6 +1,7 @@
 #include "mesh_run.h"
 
 #include <tufa/error.h>
+#include <tufa/labels.h>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "attribute_options.h"
 #include "checker.h"
 #include "console.h"
+#include "number.h"
 #include "paths.h"
 #include "progress_bar.h"
 #include "standard_streams.h"
@@ -39,17 +41,17 @@ std::string outputOf(const std::string& output, const std::string& grid) {
   return (path.parent_path() / name).string();
 }
 
-GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string>& name,
-                 ProgressBar& bar) {
-  GridRun run;
-  std::shared_ptr<openvdb::GridBase> grid;
-  run.readSeconds = timed([&] { grid = readVolume(arguments.input, name); });
-  run.grid = name.value_or(nameOf(*grid));
+/// Meshes a grid that has been read, in `run.readSeconds`.
+void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBase> grid,
+                ProgressBar& bar, GridRun& run) {
   run.output = outputOf(arguments.output, run.grid);
   if (!arguments.allowEmpty) requireVoxels(*grid, arguments.input);
 
   ContourOptions options = arguments.contour;
-  options.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
+  // Half way between the voxels of a label and others.
+  constexpr double kOfLabels = 0.5;
+  options.isovalue =
+      arguments.labels ? kOfLabels : readIsovalue(arguments.isovalue, *grid, arguments.input);
   grid = filterVolume(grid, arguments.input, arguments.filters, options, bar, run.filters);
   options.tolerance = readTolerance("--tolerance", arguments.tolerance, *grid);
   if (arguments.toleranceGrid) {
@@ -69,6 +71,15 @@ GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string
       AttributeGrids(arguments.input, arguments.attributes).sample(run.mesh, options.threads);
     });
   }
+}
+
+GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string>& name,
+                 ProgressBar& bar) {
+  GridRun run;
+  std::shared_ptr<openvdb::GridBase> grid;
+  run.readSeconds = timed([&] { grid = readVolume(arguments.input, name); });
+  run.grid = name.value_or(nameOf(*grid));
+  meshVolume(arguments, std::move(grid), bar, run);
   return run;
 }
 
@@ -136,6 +147,56 @@ void requireRoomForAll(const std::vector<std::string>& grids, const MeshArgument
           "grid");
 }
 
+/// The labels that `--labels` names, all of the grid for "all".
+std::vector<std::int64_t> chooseLabels(const MeshArguments& arguments,
+                                       const openvdb::GridBase& grid) {
+  std::vector<std::int64_t> found;
+  for (const LabelCount& count : labelsIn(grid)) found.push_back(count.label);
+  if (found.empty()) {
+    throw Error(ErrorCode::UnsupportedGrid, "grid \"" + nameOf(grid) + "\" in " +
+                                                shownInput(arguments.input) + " has no labels");
+  }
+  if (*arguments.labels == "all") return found;
+  std::vector<std::int64_t> chosen;
+  std::string rest = *arguments.labels + ",";
+  while (!rest.empty()) {
+    const std::string word = rest.substr(0, rest.find(','));
+    rest.erase(0, word.size() + 1);
+    const auto label = numberIn<std::int64_t>(word);
+    if (!label) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "--labels takes all, or whole numbers with commas between them, not \"" +
+                      *arguments.labels + "\"");
+    }
+    if (!std::binary_search(found.begin(), found.end(), *label)) {
+      throw Error(ErrorCode::UnknownGrid,
+                  "there is no label " + word + " in " + shownInput(arguments.input) +
+                      "; there are " + std::to_string(found.size()) + ", from " +
+                      std::to_string(found.front()) + " to " + std::to_string(found.back()));
+    }
+    chosen.push_back(*label);
+  }
+  return chosen;
+}
+
+/// A volume for each label that was asked for.
+std::vector<std::shared_ptr<openvdb::GridBase>> readLabels(const MeshArguments& arguments) {
+  if (arguments.isovalue || arguments.grids.size() > 1) {
+    throw Error(ErrorCode::InvalidArgument, "--labels takes no --iso, and one --grid at most");
+  }
+  std::optional<std::string> name;
+  if (!arguments.grids.empty()) name = arguments.grids.front();
+  for (const GridInfo& info : describeVolumes(arguments.input)) {
+    if (!name && (info.valueType == "int32" || info.valueType == "int64")) name = info.name;
+  }
+  if (!name) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                shownInput(arguments.input) + " has no grid of 32- or 64-bit integers");
+  }
+  const auto grid = readVolume(arguments.input, name);
+  return labelVolumes(*grid, chooseLabels(arguments, *grid));
+}
+
 /// Of the calls that a run makes: how long each is likely to take.
 std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids) {
   std::vector<double> shares;
@@ -173,19 +234,31 @@ void requireFeasible(const MeshArguments& arguments) {
 MeshRun meshFile(const MeshArguments& arguments) {
   MeshRun run;
   std::vector<std::string> names;
-  if (!arguments.grids.empty()) {
+  std::vector<std::shared_ptr<openvdb::GridBase>> labels;
+  double labelSeconds = 0;
+  if (arguments.labels) {
+    labelSeconds = timed([&] { labels = readLabels(arguments); });
+    for (const auto& label : labels) names.push_back(nameOf(*label));
+  } else if (!arguments.grids.empty()) {
     names = chooseGrids(arguments.input, arguments.grids);
-    requireRoomForAll(names, arguments);
+  }
+  requireRoomForAll(names, arguments);
+  for (const std::string& name : names) {
+    requireDistinct(outputOf(arguments.output, name), {arguments.input});
   }
   ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, names.size())));
-  if (names.empty()) {
+  for (auto& label : labels) {
+    GridRun& grid = run.grids.emplace_back();
+    grid.grid = nameOf(*label);
+    meshVolume(arguments, std::move(label), bar, grid);
+  }
+  if (!labels.empty()) {
+    run.grids.front().readSeconds = labelSeconds;
+  } else if (names.empty()) {
     run.grids.push_back(meshGrid(arguments, {}, bar));
     if (!arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);
   } else {
-    for (const std::string& name : names) {
-      requireDistinct(outputOf(arguments.output, name), {arguments.input});
-      run.grids.push_back(meshGrid(arguments, name, bar));
-    }
+    for (const std::string& name : names) run.grids.push_back(meshGrid(arguments, name, bar));
   }
   if (arguments.check) {
     for (GridRun& grid : run.grids) checkMesh(grid, arguments, bar);

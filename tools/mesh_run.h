@@ -20,6 +20,7 @@ struct MeshArguments {
   std::string output;
   std::optional<std::string> format;  ///< of standard output
   std::vector<std::string> grids;     ///< names and patterns; none: the library chooses one
+  std::optional<std::string> labels;  ///< "all", or numbers with commas between them
   Method method = Method::Dual;
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
   FilterWords filters;

@@ -5,11 +5,12 @@
 
 #include <tufa/import.h>
 #include <tufa/io.h>
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -213,6 +214,64 @@ TEST_F(Images, KeepLabelsAsIntegers) {
   EXPECT_EQ(grid->getName(), "labels");
   EXPECT_EQ(grid->background(), 0);
   EXPECT_EQ(grid->tree().getValue(openvdb::Coord(4, 3, 5)), valueAt(4, 3, 5));
+}
+
+/// Raw values need no ITK.
+class LabelMeshes : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    // A block of 2 in one of 7, and a bar of 300 that touches both.
+    std::string bytes;
+    for (int z = 0; z < 20; ++z) {
+      for (int y = 0; y < 20; ++y) {
+        for (int x = 0; x < 20; ++x) {
+          const auto in = [&](int least, int most) {
+            return std::min({x, y, z}) >= least && std::max({x, y, z}) <= most;
+          };
+          const bool bar = x >= 10 && std::max(y, z) <= 11 && std::min(y, z) >= 9 && x <= 17;
+          bytes += bytesOf(static_cast<std::uint16_t>(bar         ? 300
+                                                      : in(6, 9)  ? 2
+                                                      : in(3, 14) ? 7
+                                                                  : 0));
+        }
+      }
+    }
+    writeBytes(folder / "l.raw", bytes);
+    ASSERT_EQ(run("import l.raw -o l.vdb --size 20,20,20 --type u16 --labels").exitCode, 0);
+  }
+};
+
+TEST_F(LabelMeshes, AreClosedEachOfItsOwn) {
+  const Outcome made = run("mesh l.vdb -o 'm_{}.ply' --labels all --check --json --uniform");
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  const auto json = nlohmann::json::parse(made.out);
+  const std::vector<std::string> names = {"label_2", "label_7", "label_300"};
+  // Voxels of each, less what the corners and edges lose.
+  const std::vector<double> voxels = {4 * 4 * 4, 12 * 12 * 12 - 64 - 5 * 9, 8 * 9};
+  ASSERT_EQ(json.at("grids").size(), names.size());
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const auto& grid = json.at("grids").at(n);
+    EXPECT_EQ(grid.at("grid"), names[n]);
+    EXPECT_EQ(grid.at("active_voxels"), voxels[n]);
+    const double volume = grid.at("check").at("volume");
+    EXPECT_GT(volume, 0.8 * voxels[n]) << names[n];
+    EXPECT_LT(volume, 1.05 * voxels[n]) << names[n];
+    EXPECT_TRUE(std::filesystem::exists(folder / ("m_" + names[n] + ".ply")));
+  }
+  EXPECT_EQ(run("mesh l.vdb -o m.obj --labels 300,2 --check").exitCode, 0);
+  EXPECT_EQ(run("mesh l.vdb -o m.ply --labels 7 --smooth gaussian --check").exitCode, 0);
+}
+
+TEST_F(LabelMeshes, RefuseWhatIsNoLabel) {
+  expectFailure("mesh l.vdb -o m.ply --labels 3", 3, "no label 3");
+  expectFailure("mesh l.vdb -o m.ply --labels x", 2, "--labels takes all");
+  expectFailure("mesh l.vdb -o m.ply --labels 2,2", 2, "asked for twice");
+  expectFailure("mesh l.vdb -o m.ply --labels all", 2, "would hold 3");
+  expectFailure("mesh l.vdb -o m.ply --labels 2 --iso 1", 2, "no --iso");
+  ASSERT_EQ(run("make sphere -o s.vdb --voxel 0.2").exitCode, 0);
+  expectFailure("mesh s.vdb -o m.ply --labels all", 3, "no grid of 32- or 64-bit integers");
+  expectFailure("mesh s.vdb -o m.ply --labels all --grid '*'", 3, "no grid");
 }
 
 TEST_F(Images, RefuseWhatIsNone) {

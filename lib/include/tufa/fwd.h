@@ -36,6 +36,7 @@ struct FloatMesh;
 struct FloatMeshOptions;
 struct GridInfo;
 struct GridName;
+struct LabelCount;
 struct LeafCell;
 struct ImageSlices;
 struct Lod;

@@ -13,6 +13,7 @@
 #include <tufa/implicit.h>
 #include <tufa/import.h>
 #include <tufa/io.h>
+#include <tufa/labels.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>
 #include <tufa/mesh.h>
