@@ -143,8 +143,7 @@ void addCompareCommand(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   compare
       ->add_option("--tolerance", arguments->tolerance,
-                   "of dual: largest distance to the uniform mesh, in voxels, or with the suffix w "
-                   "in world units")
+                   "of dual and octree-mc, in voxels, or with the suffix w in world units")
       ->capture_default_str();
   compare
       ->add_option("--sharp-angle", arguments->options.extract.sharpAngle,

@@ -49,9 +49,10 @@ int runMesh(const MeshArguments& arguments) {
 
 void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
   ContourOptions& options = arguments.contour;
-  app.add_option("--tolerance", arguments.tolerance,
-                 "largest distance to the uniform mesh, in voxels, or with the suffix w in world "
-                 "units")
+  app.add_option(
+         "--tolerance", arguments.tolerance,
+         "dual: largest distance to the uniform mesh, in voxels, or with the suffix w in world "
+         "units; octree-mc: about the largest to the surface")
       ->capture_default_str();
   app.add_option("--max-angle", options.maxAngle,
                  "largest angle between the normals in one cell, in degrees")
@@ -94,7 +95,7 @@ void addMethodOption(CLI::App& app, MeshArguments& arguments) {
          "--method",
          [&arguments](const std::string& name) { arguments.method = *methodByName(name); },
          "how the surface is extracted (default dual); all others make a triangle mesh or, "
-         "surface-nets, quads, of the finest cells: they are not adaptive")
+         "surface-nets, quads, of the finest cells, but octree-mc: they are not adaptive")
       ->check(CLI::IsMember(names));
   app.add_option("--sharp-angle", arguments.sharpAngle,
                  "--method emc: normals in a cell that differ by more, in degrees, mean a crease")
@@ -107,8 +108,12 @@ void requireMeaning(const CLI::App& app, Method method) {
     throw Error(ErrorCode::InvalidArgument, "--sharp-angle is for --method emc alone");
   }
   if (method == Method::Dual) return;
-  for (const char* name : {"--tolerance", "--max-angle", "--min-cell", "--max-cell",
-                           "--tolerance-grid", "--simplify", "--no-repair"}) {
+  if (method != Method::OctreeCubes && app.get_option("--tolerance")->count() > 0) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--tolerance is for --method dual and octree-mc alone; leave it out");
+  }
+  for (const char* name : {"--max-angle", "--min-cell", "--max-cell", "--tolerance-grid",
+                           "--simplify", "--no-repair"}) {
     if (app.get_option(name)->count() == 0) continue;
     throw Error(ErrorCode::InvalidArgument,
                 std::string(name) + " is for --method dual alone; leave it out");

@@ -28,18 +28,22 @@ enum class Method {
   MarchingTetrahedra6,   ///< six tetrahedra a cell, around its main diagonal
   MarchingTetrahedra24,  ///< 24 tetrahedra a cell, through the centres of cells and faces
   BodyCentred,           ///< tetrahedra of the body-centred cubic lattice
+  /// Marching cubes on the dual grid of an octree (Schaefer and Warren 2004): adaptive, with leaves
+  /// of up to 8 samples along an edge where the field is affine to half of the tolerance.
+  OctreeCubes,
 };
 
 /// The method of that name ("dual", "mc", ...), if there is one.
 [[nodiscard]] TUFA_API std::optional<Method> methodByName(std::string_view name);
 
 /// Names of all methods, in the order of the enum.
-[[nodiscard]] TUFA_API const std::array<std::string_view, 9>& methodNames();
+[[nodiscard]] TUFA_API const std::array<std::string_view, 10>& methodNames();
 
 /// Options of extract().
 struct ExtractOptions {
   /// What surface is meant, and how: `isovalue`, `inside`, `ambiguity`, `normals`, `nonFinite`,
-  /// `cap`, `tileFaces`, `threads` and `progress`. Method::Dual takes the others too.
+  /// `cap`, `tileFaces`, `threads` and `progress`; `tolerance` for Method::OctreeCubes.
+  /// Method::Dual takes the others too.
   ContourOptions contour;
   /// Extended marching cubes: normals at the crossings of a cell that differ by more, in degrees,
   /// mean a crease; 0 to 180. The default is that of the paper: a cosine of 0.9.
@@ -52,9 +56,10 @@ struct ExtractOptions {
 ///
 /// Surface nets gives quads, the others triangles. All meshes are closed, consistently
 /// oriented 2-manifolds wherever the surface does not reach the end of the data, but for
-/// Ambiguity::Original. They are neither adaptive nor searched for self-intersections. A cell whose
-/// sign changes are partly the end of the data gives no triangles. Of the report, what concerns
-/// neither certificates nor repair is filled.
+/// Ambiguity::Original. OctreeCubes alone are adaptive; their collapsed cells could touch in an edge
+/// of four triangles. None is searched for self-intersections. A cell whose sign changes are partly
+/// the end of the data gives no triangles. Of the report, what concerns neither certificates nor
+/// repair is filled.
 ///
 /// Throws Error as contour() does; InvalidArgument also for Ambiguity::Original with a method other
 /// than marching cubes.

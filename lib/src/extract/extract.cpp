@@ -1,5 +1,6 @@
 #include <tufa/error.h>
 #include <tufa/extract.h>
+#include <cmath>
 #include <string>
 
 #include "base/job.h"
@@ -10,6 +11,7 @@
 #include "extract/emc.h"
 #include "extract/marching_cubes.h"
 #include "extract/mc33.h"
+#include "extract/octree_mc.h"
 #include "extract/surface_nets.h"
 #include "extract/tetrahedra.h"
 #include "grid/volume.h"
@@ -34,6 +36,8 @@ Mesh meshOf(const grid::Volume& volume, Method method, const ExtractOptions& all
       return extraction::meshSharp(volume, all.sharpAngle, options, report, job);
     case Method::SurfaceNets:
       return extraction::meshSurfaceNets(volume, options, report, job);
+    case Method::OctreeCubes:
+      return extraction::meshOctree(volume, options, report, job);
     default:
       return extraction::meshTetrahedra(volume, method, options, report, job);
   }
@@ -43,6 +47,12 @@ void requireAngle(double degrees) {
   if (degrees >= 0 && degrees <= 180) return;
   throw Error(ErrorCode::InvalidArgument,
               "the sharp angle is " + std::to_string(degrees) + ", must be 0 to 180 degrees");
+}
+
+void requireTolerance(double voxels) {
+  if (voxels >= 0 && std::isfinite(voxels)) return;
+  throw Error(ErrorCode::InvalidArgument, "the tolerance is " + std::to_string(voxels) +
+                                              " voxels, must be 0 or a finite number above it");
 }
 
 // To world space and, where that is harmless, to single precision, as contour() does.
@@ -57,9 +67,9 @@ void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& 
 
 }  // namespace
 
-const std::array<std::string_view, 9>& methodNames() {
-  static constexpr std::array<std::string_view, 9> kNames = {
-      "dual", "mc", "mc33", "emc", "surface-nets", "mt5", "mt6", "mt24", "bcc"};
+const std::array<std::string_view, 10>& methodNames() {
+  static constexpr std::array<std::string_view, 10> kNames = {
+      "dual", "mc", "mc33", "emc", "surface-nets", "mt5", "mt6", "mt24", "bcc", "octree-mc"};
   return kNames;
 }
 
@@ -72,9 +82,10 @@ std::optional<Method> methodByName(std::string_view name) {
 
 Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions& options,
              ContourReport* report) {
-  base::requireKnown(method, Method::BodyCentred, "the method");
+  base::requireKnown(method, Method::OctreeCubes, "the method");
   requireAngle(options.sharpAngle);
   if (method == Method::Dual) return contour(grid, options.contour, report);
+  if (method == Method::OctreeCubes) requireTolerance(options.contour.tolerance);
   grid::requireMeshable(grid);
   const auto work = [&](ContourReport& out, base::Job& job) {
     job.beginStage("blocks", kBlocksEnd);

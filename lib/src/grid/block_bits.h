@@ -51,4 +51,20 @@ struct CornerWords {
   std::array<std::array<std::uint64_t, 4>, kBlockSize + 1> words;
 };
 
+/// Puts them together: slab(dx, dy, dz, x) is slab x of the block that many steps, 0 or 1, above.
+template <class Slab>
+CornerWords cornerWordsOf(const Slab& slab) {
+  CornerWords corners;
+  for (int x = 0; x <= kBlockSize; ++x) {
+    const int dx = x == kBlockSize ? 1 : 0;
+    const int local = x & 7;
+    const std::uint64_t here = slab(dx, 0, 0, local);
+    const std::uint64_t aboveY = slab(dx, 1, 0, local);
+    const std::uint64_t z = stepZ(here, slab(dx, 0, 1, local));
+    const std::uint64_t aboveYz = stepZ(aboveY, slab(dx, 1, 1, local));
+    corners.words[x] = {here, z, stepY(here, aboveY), stepY(z, aboveYz)};
+  }
+  return corners;
+}
+
 }  // namespace tufa::grid

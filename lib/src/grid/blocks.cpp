@@ -102,18 +102,8 @@ std::uint64_t Blocks::sides(const Neighbours& neighbours, int dx, int dy, int dz
 }
 
 CornerWords Blocks::cornerWords(const Neighbours& neighbours) const {
-  const auto slab = [&](int dx, int dy, int dz, int x) { return sides(neighbours, dx, dy, dz, x); };
-  CornerWords corners;
-  for (int x = 0; x <= kBlockSize; ++x) {
-    const int dx = x == kBlockSize ? 1 : 0;
-    const int local = x & 7;
-    const std::uint64_t here = slab(dx, 0, 0, local);
-    const std::uint64_t aboveY = slab(dx, 1, 0, local);
-    const std::uint64_t z = stepZ(here, slab(dx, 0, 1, local));
-    const std::uint64_t aboveYz = stepZ(aboveY, slab(dx, 1, 1, local));
-    corners.words[x] = {here, z, stepY(here, aboveY), stepY(z, aboveYz)};
-  }
-  return corners;
+  return cornerWordsOf(
+      [&](int dx, int dy, int dz, int x) { return sides(neighbours, dx, dy, dz, x); });
 }
 
 // Where a leaf's first layers differ from a tile below them, that tile's block holds surface cells.
