@@ -13,13 +13,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <utility>
 
 #include "console.h"
 #include "crash_guard.h"
 #include "image_reader.h"
+#include "paths.h"
 
 namespace tufa::tools {
 namespace {
@@ -65,6 +68,25 @@ ImageIo::Pointer readerOf(const std::string& file) {
   });
 }
 
+/// Throws Error if a NIfTI-1 file that is not compressed ends before its values do: ITK takes what
+/// is missing for 0.
+void requireWholeNifti(const std::string& file, const ImageIo& io) {
+  if (endingOf(file) != ".nii") return;
+  std::array<char, 112> head{};
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  const auto at = [&]<class Number>(std::size_t place, Number number) {
+    std::memcpy(&number, head.data() + place, sizeof(Number));
+    return number;
+  };
+  constexpr std::int32_t kHeadBytes = 348;
+  // Another version, or another order of bytes.
+  if (at(0, std::int32_t{}) != kHeadBytes) return;
+  const double bytes = static_cast<double>(io.GetImageSizeInPixels()) * at(72, std::int16_t{}) / 8;
+  const double size = static_cast<double>(std::filesystem::file_size(file));
+  if (static_cast<double>(at(108, 0.0F)) + bytes <= size) return;
+  fail(file, "it ends before the last of the values that it says it has");
+}
+
 /// The image in one file: its place and its values.
 class ImageFile {
  public:
@@ -73,6 +95,7 @@ class ImageFile {
       fail(file, "it has " + std::to_string(io_->GetNumberOfComponents()) +
                      " values for each voxel, such as a colour; one is needed");
     }
+    requireWholeNifti(file, *io_);
     dimensions_ = io_->GetNumberOfDimensions();
     for (unsigned n = 3; n < dimensions_; ++n) {
       if (io_->GetDimensions(n) != 1) fail(file, "it has more than three dimensions");
@@ -103,31 +126,50 @@ class ImageFile {
   /// Whether the file says where it lies.
   [[nodiscard]] bool hasPlace() const { return dimensions_ >= 3; }
 
+  /// Throws Error unless the file holds the last of the values that it claims: before memory is
+  /// filled with slices that are not there.
+  void requireWhole() { load(size_[2] - 1, 1); }
+
   /// Slices [first, first + count) to `values`.
   void read(std::int64_t first, std::int64_t count, float* values) {
     const auto area = static_cast<std::size_t>(size_[0] * size_[1]);
-    const std::size_t width = io_->GetComponentSize();
-    const bool inParts = io_->CanStreamRead() && size_[2] > 1;
-    if (inParts || whole_.empty()) {
-      itk::ImageIORegion region(dimensions_);
-      for (unsigned n = 0; n < dimensions_; ++n) region.SetSize(n, io_->GetDimensions(n));
-      if (inParts) {
-        region.SetIndex(2, first);
-        region.SetSize(2, static_cast<itk::ImageIORegion::SizeValueType>(count));
-      }
-      io_->SetIORegion(region);
-      const auto slices = static_cast<std::size_t>(inParts ? count : size_[2]);
-      whole_.resize(area * slices * width);
-      guarded(file_, [&] { io_->Read(whole_.data()); });
-    }
-    const std::size_t skipped = inParts ? 0 : area * static_cast<std::size_t>(first);
-    toFloats(whole_.data() + skipped * width, area * static_cast<std::size_t>(count), values);
+    load(first, count);
+    const std::size_t skipped = inParts() ? 0 : area * static_cast<std::size_t>(first);
+    toFloats(bytes_.get() + skipped * io_->GetComponentSize(),
+             area * static_cast<std::size_t>(count), values);
   }
 
  private:
+  [[nodiscard]] bool inParts() const { return size_[2] > 1 && io_->CanStreamRead(); }
+
+  /// Reads some slices; all of them, and only once, where the format has no parts.
+  void load(std::int64_t first, std::int64_t count) {
+    if (!inParts() && bytes_) return;
+    itk::ImageIORegion region(dimensions_);
+    for (unsigned n = 0; n < dimensions_; ++n) region.SetSize(n, io_->GetDimensions(n));
+    if (inParts()) {
+      region.SetIndex(2, first);
+      region.SetSize(2, static_cast<itk::ImageIORegion::SizeValueType>(count));
+    }
+    io_->SetIORegion(region);
+    const auto slices = static_cast<std::size_t>(inParts() ? count : size_[2]);
+    const std::size_t width = io_->GetComponentSize();
+    const std::size_t size = static_cast<std::size_t>(size_[0] * size_[1]) * slices * width;
+    bytes_ = std::make_unique_for_overwrite<char[]>(size);
+    // ITK does not say of all formats that a file ends early: what it leaves in the last value
+    // tells.
+    for (const char mark : {'\x5a', '\xa5'}) {
+      char* const last = bytes_.get() + size - width;
+      std::fill_n(last, width, mark);
+      guarded(file_, [&] { io_->Read(bytes_.get()); });
+      if (!std::all_of(last, last + width, [&](char c) { return c == mark; })) return;
+    }
+    fail(file_, "it ends before the last of the values that it says it has");
+  }
+
   template <class Value>
   static void convert(const char* bytes, std::size_t count, float* values) {
-    // The buffer of a vector of chars is aligned as any type needs.
+    // new gives memory that is aligned as any type needs.
     const auto* const from = reinterpret_cast<const Value*>(bytes);
     for (std::size_t n = 0; n < count; ++n) values[n] = static_cast<float>(from[n]);
   }
@@ -163,7 +205,7 @@ class ImageFile {
   ImageIo::Pointer io_;
   unsigned dimensions_ = 0;
   std::array<std::int64_t, 3> size_{1, 1, 1};
-  std::vector<char> whole_;  ///< what was read last: all of it, where the format has no parts
+  std::unique_ptr<char[]> bytes_;  ///< what was read last: all of it, where the format has no parts
 };
 
 /// The files of a DICOM series in a folder, in the order of their places.
@@ -198,8 +240,9 @@ ImageSlices openStack(const std::vector<std::string>& files) {
   std::vector<Position> origins;
   bool placed = true;
   for (const std::string& file : files) {
-    const ImageFile slice(file);
+    ImageFile slice(file);
     if (origins.empty()) {
+      slice.requireWhole();
       image.size = slice.size();
       for (unsigned axis = 0; axis < 3; ++axis) image.steps[axis] = slice.step(axis);
       image.origin = slice.origin();
@@ -254,6 +297,7 @@ ImageSlices openImage(const std::vector<std::string>& inputs,
   }
   if (files.size() > 1) return openStack(files);
   const auto file = std::make_shared<ImageFile>(files.front());
+  file->requireWhole();
   ImageSlices image;
   image.size = file->size();
   for (unsigned axis = 0; axis < 3; ++axis) image.steps[axis] = file->step(axis);

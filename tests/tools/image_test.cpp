@@ -21,6 +21,7 @@ namespace {
 
 using test::CommandTest;
 using test::Outcome;
+using test::readBytes;
 using test::writeBytes;
 
 constexpr std::array<int, 3> kSize = {5, 4, 6};
@@ -282,7 +283,20 @@ TEST_F(Images, RefuseWhatIsNone) {
   expectFailure("import none.nii -o o.vdb", 3, "there is no such file");
   expectFailure("import empty.nrrd -o o.vdb", 3, "cannot read empty.nrrd");
   expectFailure("import text.mhd -o o.vdb", 3, "cannot read text.mhd");
+  // Claims of gigabytes, and of a little more than there is.
+  const std::string claims = readBytes(folder / "m.mhd");
+  for (const std::string size : {"30000 30000 1000", "5 4 7"}) {
+    std::string more = claims.substr(0, claims.find("CompressedData"));
+    more.replace(more.find("5 4 6"), 5, size);
+    writeBytes(folder / "more.mhd", more + "ElementDataFile = m.raw\n");
+    expectFailure("import more.mhd -o o.vdb", 3, "cannot read more.mhd");
+  }
+  writeBytes(folder / "short.nii", nifti().substr(0, 500));
+  expectFailure("import short.nii -o o.vdb", 3, "cannot read short.nii");
+  writeBytes(folder / "short.tif", tiff(1).substr(0, 100));
+  expectFailure("import short.tif -o o.vdb", 3, "cannot read short.tif");
   expectFailure("import d -o o.vdb", 3, "no DICOM series in the folder");
+  writeMetaImage("m");
   expectFailure("import m.mhd -o o.vdb --type u8", 2, "--type is for raw values");
   expectFailure("import m.mhd -o o.vdb --labels --threshold 3", 2, "labels have no threshold");
   expectFailure("import m.mhd -o o.vdb --series 1.2", 2, "--series is for a folder");

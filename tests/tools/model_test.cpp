@@ -43,6 +43,14 @@ TEST_F(Model, SampleScenesBecomeClosedMeshes) {
     const Outcome meshed = run("mesh s.vdb -o s.ply --check --json");
     ASSERT_EQ(meshed.exitCode, 0) << scene << meshed.err << meshed.out;
     EXPECT_GT(Json::parse(meshed.out).at("triangles"), 100) << scene;
+    // Rays to the formulas see what was meshed.
+    const Outcome seen =
+        run("picture " + scene + " -o s.png --size 48x36 --samples 1 --json --compare s.ply " +
+            "--voxel " + std::to_string(2 * voxel));
+    ASSERT_EQ(seen.exitCode, 0) << scene << seen.err;
+    const Json picture = Json::parse(seen.out);
+    EXPECT_GT(picture.at("covered"), 0.1) << scene;
+    EXPECT_LT(picture.at("compare").at("share"), 0.05) << scene;
   }
   EXPECT_GE(scenes, 10);
 }
