@@ -29,8 +29,12 @@ constexpr double kHidden = 1e-14;
 
 class Search {
  public:
-  Search(const Field& field, const Stretch& stretch, bool inside)
-      : field_(field), stretch_(stretch), inside_(inside), unit_(field.hasUnitGradient()) {
+  Search(const Field& field, const Stretch& stretch, bool inside, int& looks)
+      : field_(field),
+        stretch_(stretch),
+        inside_(inside),
+        looks_(looks),
+        unit_(field.hasUnitGradient()) {
     const double ends = std::max(Vec3(at(stretch.begin)).length(), Vec3(at(stretch.end)).length());
     scale_ = std::max({ends, std::abs(stretch.begin), std::abs(stretch.end)});
   }
@@ -77,7 +81,9 @@ class Search {
       if (isOneSide(range, hidden < implicit::kInfinity ? hidden : 0)) return std::nullopt;
       if (isOneSide(field_.bound(box), 0)) return std::nullopt;
     }
-    if (half <= kShortest * scale_) {
+    const bool usedUp = looks_ == 0;
+    if (!usedUp) --looks_;
+    if (half <= kShortest * scale_ || (usedUp && !part.crosses)) {
       if (part.crosses) return part.end;
       return std::nullopt;
     }
@@ -123,6 +129,7 @@ class Search {
   const Field& field_;
   const Stretch& stretch_;
   bool inside_;
+  int& looks_;        ///< that are left
   double scale_ = 0;  ///< of coordinates and distances
   bool unit_;         ///< the field changes by no more than the distance
   // One part waits for each halving: of twice the scale at most, down to the shortest.
@@ -132,8 +139,9 @@ class Search {
 
 }  // namespace
 
-std::optional<double> firstCrossing(const Field& field, const Stretch& stretch, bool inside) {
-  return Search(field, stretch, inside).run();
+std::optional<double> firstCrossing(const Field& field, const Stretch& stretch, bool inside,
+                                    int& looks) {
+  return Search(field, stretch, inside, looks).run();
 }
 
 }  // namespace tufa::rays

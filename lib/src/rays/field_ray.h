@@ -18,8 +18,10 @@ struct Stretch {
 
 /// The first t on a stretch where the field changes to the other side than `inside` says of its
 /// beginning. Interval arithmetic tells of each part that it holds no such place, or one alone;
-/// else it is halved (Moore 1966; for rays Mitchell 1990).
+/// else it is halved (Moore 1966; for rays Mitchell 1990). Each part takes one of `looks`; once
+/// they are used up, parts that bounds do not decide are taken for empty: a field without bounds,
+/// such as 1/0, would be halved for ever.
 [[nodiscard]] std::optional<double> firstCrossing(const implicit::Field& field,
-                                                  const Stretch& stretch, bool inside);
+                                                  const Stretch& stretch, bool inside, int& looks);
 
 }  // namespace tufa::rays

@@ -140,9 +140,11 @@ class FieldCaster final : public Caster {
     const auto [begin, end] = boxRay.span(surface_.bounds(), ray.greatest);
     if (!(begin <= end)) return std::nullopt;
     const bool inside = surface_.field().value(ray.at(begin)) < 0;
+    // Some dozens are enough as a rule.
+    int looks = 5000;
     std::optional<double> found;
     surface_.forLeaves(boxRay, ray.greatest, [&](const Field& field, double from, double to) {
-      found = firstCrossing(field, {ray.origin, ray.direction, from, to}, inside);
+      found = firstCrossing(field, {ray.origin, ray.direction, from, to}, inside, looks);
       return found.has_value();
     });
     if (!found) return std::nullopt;

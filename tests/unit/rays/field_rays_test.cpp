@@ -129,6 +129,14 @@ TEST(FieldRays, MayRunInAFaceOrAlongAnEdge) {
   EXPECT_FALSE(castRay(*touching, {{-3, 0, 1}, {1, 0, 0}}));
 }
 
+/// Bounds say nothing of it at any length.
+TEST(FieldRays, EndInFieldsWithoutBounds) {
+  const auto bounds = implicit::makeBox({0, 0, 0}, {1, 1, 1}, 0);
+  const auto surface = makeRaySurface(implicit::combine(
+      implicit::Operation::Intersection, {implicit::makeExpression("1/0"), bounds}, 0));
+  EXPECT_FALSE(castRay(*surface, {{-3, 0.2, 0.1}, {1, 0, 0}}));
+}
+
 TEST(FieldRays, NoThinSheetIsSteppedOver) {
   constexpr double kThickness = 1e-7;
   const auto sheet = makeRaySurface(implicit::makeBox({0, 0, 0}, {1, 1, kThickness / 2}, 0));
