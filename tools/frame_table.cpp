@@ -52,7 +52,7 @@ std::optional<double> errorOf(const Json& result) {
 double secondsOf(const Json& result) {
   double sum = 0;
   for (const Json& grid : gridsOf(result)) {
-    for (const char* part : {"read", "filter", "contour", "check", "write"}) {
+    for (const char* part : {"read", "unite", "filter", "contour", "check", "write"}) {
       sum += grid["seconds"].value(part, 0.0);
     }
   }

@@ -141,6 +141,15 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
           "names of grids, or patterns with * and ?: .glb, .obj and .usda hold several meshes, and "
           "{} in the output's name makes a file for each; default: the first level set")
       ->allow_extra_args(false);
+  mesh->add_option_function<std::string>(
+          "--join",
+          [arguments](const std::string& word) {
+            arguments->join = word == "union" ? Join::Union : Join::Separate;
+          },
+          "of several grids: separate, a mesh each (the default), or union, one mesh of the union "
+          "of "
+          "level sets; without --grid of all that can be meshed")
+      ->check(CLI::IsMember({"separate", "union"}));
   mesh->add_option(
       "--labels", arguments->labels,
       "all, or numbers with commas between them: mesh each label of a grid of integers "

@@ -26,6 +26,7 @@ Json toJson(const Certificate& certificate) {
 /// Adds the keys of one grid, times aside.
 void addGrid(Json& json, const GridRun& run) {
   json["grid"] = run.grid;
+  if (!run.united.empty()) json["union"] = run.united;
   json["output"] = run.output;
   json["isovalue"] = run.contour.isovalue;
   json["inside"] = run.contour.insideIsBelow ? "below" : "above";
@@ -57,9 +58,13 @@ void addGrid(Json& json, const GridRun& run) {
 Json secondsOf(const GridRun& run) {
   Json stages = Json::object();
   for (const StageTime& stage : run.contour.stages) stages[stage.stage] = stage.seconds;
-  return {{"read", run.readSeconds},       {"filter", run.filters.seconds},
-          {"contour", run.contourSeconds}, {"attributes", run.attributeSeconds},
-          {"check", run.checkSeconds},     {"stages", stages}};
+  return {{"read", run.readSeconds},
+          {"unite", run.uniteSeconds},
+          {"filter", run.filters.seconds},
+          {"contour", run.contourSeconds},
+          {"attributes", run.attributeSeconds},
+          {"check", run.checkSeconds},
+          {"stages", stages}};
 }
 
 std::string describeCertificate(const Certificate& certificate) {
@@ -75,6 +80,12 @@ std::string describeCertificate(const Certificate& certificate) {
   return text + "\n";
 }
 
+std::string describeUnion(const GridRun& run) {
+  std::string names;
+  for (const std::string& name : run.united) names += (names.empty() ? "" : ", ") + shownGrid(name);
+  return "the union of " + names + ", made in " + shortNumber(run.uniteSeconds) + " s\n";
+}
+
 std::string describeGrid(const GridRun& run) {
   std::string text = shownGrid(run.grid) + ": " + formatCount(run.mesh.triangleCount()) +
                      " triangles (" + formatCount(run.mesh.quads.size()) + " quads), " +
@@ -85,6 +96,7 @@ std::string describeGrid(const GridRun& run) {
   text += "read " + shortNumber(run.readSeconds) + " s, contour " +
           shortNumber(run.contourSeconds) + " s" +
           (run.check ? ", check " + shortNumber(run.checkSeconds) + " s" : "") + "\n";
+  if (!run.united.empty()) text += describeUnion(run);
   text += tools::describe(run.filters);
   if (run.contour.certificate) text += describeCertificate(*run.contour.certificate);
   if (!run.mesh.attributes.empty()) {

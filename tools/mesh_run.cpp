@@ -2,6 +2,7 @@
 
 #include <tufa/error.h>
 #include <tufa/labels.h>
+#include <tufa/unite.h>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -21,6 +22,7 @@ namespace {
 
 constexpr double kCreaseAngle = 40;
 constexpr double kNoCreases = 180;
+constexpr const char* kUnionName = "union";
 
 /// Whether the output's file name has a place for the name of a grid.
 bool hasBraces(const std::string& output) {
@@ -79,6 +81,26 @@ GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string
   std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, name); });
   run.grid = name.value_or(nameOf(*grid));
+  meshVolume(arguments, std::move(grid), bar, run);
+  return run;
+}
+
+/// Meshes the union of some level sets of the file.
+GridRun meshUnion(const MeshArguments& arguments, const std::vector<std::string>& names,
+                  ProgressBar& bar) {
+  GridRun run;
+  run.grid = kUnionName;
+  run.united = names;
+  std::vector<std::shared_ptr<const openvdb::GridBase>> grids;
+  run.readSeconds = timed([&] {
+    for (const std::string& name : names) grids.push_back(readVolume(arguments.input, name));
+  });
+  UniteOptions options;
+  options.threads = arguments.contour.threads;
+  options.progress = bar.callback();
+  std::shared_ptr<openvdb::GridBase> grid;
+  run.uniteSeconds = timed([&] { grid = uniteLevelSets(grids, options); });
+  grids.clear();
   meshVolume(arguments, std::move(grid), bar, run);
   return run;
 }
@@ -200,6 +222,7 @@ std::vector<std::shared_ptr<openvdb::GridBase>> readLabels(const MeshArguments& 
 /// Of the calls that a run makes: how long each is likely to take.
 std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids) {
   std::vector<double> shares;
+  if (arguments.join == Join::Union) shares.push_back(kFilterShare);
   for (std::size_t i = 0; i < grids; ++i) {
     if (!arguments.filters.inOrder.empty()) shares.push_back(kFilterShare);
     shares.push_back(kContourShare);
@@ -214,6 +237,10 @@ std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids
 
 void requireFeasible(const MeshArguments& arguments) {
   if (arguments.check) requireChecker();
+  if (arguments.labels && arguments.join == Join::Union) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--join union is for level sets, and --labels for grids of integers");
+  }
   requireDistinct(arguments.output, {arguments.input});
   requireMeshOutput(arguments.output, arguments.format);
   if (!arguments.attributes.empty()) {
@@ -239,14 +266,18 @@ MeshRun meshFile(const MeshArguments& arguments) {
   if (arguments.labels) {
     labelSeconds = timed([&] { labels = readLabels(arguments); });
     for (const auto& label : labels) names.push_back(nameOf(*label));
+  } else if (arguments.join == Join::Union && arguments.grids.empty()) {
+    names = chooseGrids(arguments.input, {"*"});
   } else if (!arguments.grids.empty()) {
     names = chooseGrids(arguments.input, arguments.grids);
   }
-  requireRoomForAll(names, arguments);
-  for (const std::string& name : names) {
+  const bool united = arguments.join == Join::Union;
+  const std::vector<std::string> meshes = united ? std::vector<std::string>{kUnionName} : names;
+  requireRoomForAll(meshes, arguments);
+  for (const std::string& name : meshes) {
     requireDistinct(outputOf(arguments.output, name), {arguments.input});
   }
-  ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, names.size())));
+  ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, meshes.size())));
   for (auto& label : labels) {
     GridRun& grid = run.grids.emplace_back();
     grid.grid = nameOf(*label);
@@ -254,6 +285,8 @@ MeshRun meshFile(const MeshArguments& arguments) {
   }
   if (!labels.empty()) {
     run.grids.front().readSeconds = labelSeconds;
+  } else if (united) {
+    run.grids.push_back(meshUnion(arguments, names, bar));
   } else if (names.empty()) {
     run.grids.push_back(meshGrid(arguments, {}, bar));
     if (!arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);

@@ -14,12 +14,19 @@
 
 namespace tufa::tools {
 
+/// What several grids of a file become.
+enum class Join {
+  Separate,  ///< a mesh each
+  Union,     ///< one mesh, of the union of level sets
+};
+
 /// What `tufa mesh` was asked for.
 struct MeshArguments {
   std::string input;
   std::string output;
   std::optional<std::string> format;  ///< of standard output
   std::vector<std::string> grids;     ///< names and patterns; none: the library chooses one
+  Join join = Join::Separate;
   std::optional<std::string> labels;  ///< "all", or numbers with commas between them
   Method method = Method::Dual;
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
@@ -42,12 +49,14 @@ struct MeshArguments {
 /// The mesh of one grid: what was found and how long its parts took.
 struct GridRun {
   std::string grid;
-  std::string output;  ///< the file it went into
+  std::vector<std::string> united;  ///< the grids that it is the union of, if it is one
+  std::string output;               ///< the file it went into
   FilterRun filters;
   Mesh mesh;
   ContourReport contour;
   std::optional<CheckReport> check;
   double readSeconds = 0;
+  double uniteSeconds = 0;
   double contourSeconds = 0;
   double attributeSeconds = 0;
   double checkSeconds = 0;

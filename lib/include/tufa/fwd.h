@@ -66,6 +66,7 @@ struct SliceOptions;
 struct SurfaceComparison;
 struct Triangle;
 struct TruthReport;
+struct UniteOptions;
 struct VoxelizeOptions;
 struct VoxelizeReport;
 struct WriteOptions;

@@ -22,5 +22,6 @@
 #include <tufa/progress.h>
 #include <tufa/rays.h>
 #include <tufa/shapes.h>
+#include <tufa/unite.h>
 #include <tufa/version.h>
 #include <tufa/voxelize.h>

@@ -116,6 +116,22 @@ void offset(GridT& grid, const std::vector<double>& distances, ProgressInterrupt
 }
 
 template <class GridT>
+void sampleOnto(const GridT& source, GridT& result, ProgressInterrupter& interrupter) {
+  // OpenVDB rebuilds level sets through a mesh in single precision: near the origin.
+  const openvdb::Vec3d centre =
+      source.transform().indexToWorld(source.evalActiveVoxelBoundingBox().getCenter());
+  const auto transform = result.transform().copy();
+  auto nearby = source.transform().copy();
+  nearby->postTranslate(-centre);
+  const auto moved = source.copyReplacingMetadataAndTransform(source, nearby);  // of the same tree
+  result.setTransform(transform->copy());
+  result.transform().postTranslate(-centre);
+  openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(
+      *moved, result, static_cast<openvdb::util::NullInterrupter&>(interrupter));
+  result.setTransform(transform);
+}
+
+template <class GridT>
 typename GridT::Ptr resample(const GridT& grid, const Resample& step, double mostVoxels,
                              ProgressInterrupter& interrupter) {
   base::requireVoxelSize(step.voxelSize);
@@ -136,23 +152,15 @@ typename GridT::Ptr resample(const GridT& grid, const Resample& step, double mos
   result->setGridClass(grid.getGridClass());
   auto transform = grid.transform().copy();
   transform->preScale(factor);
-  // OpenVDB rebuilds level sets through a mesh in single precision: near the origin.
-  const openvdb::Vec3d centre =
-      grid.transform().indexToWorld(grid.evalActiveVoxelBoundingBox().getCenter());
-  auto nearby = grid.transform().copy();
-  nearby->postTranslate(-centre);
-  const auto source = grid.copyReplacingMetadataAndTransform(grid, nearby);  // of the same tree
-  result->setTransform(transform->copy());
-  result->transform().postTranslate(-centre);
-  openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(
-      *source, *result, static_cast<openvdb::util::NullInterrupter&>(interrupter));
   result->setTransform(transform);
+  sampleOnto(grid, *result, interrupter);
   return result;
 }
 
 #define TUFA_STEPS(GridT)                                                         \
   template void smooth(GridT&, const Smooth&, ProgressInterrupter&);              \
   template void offset(GridT&, const std::vector<double>&, ProgressInterrupter&); \
+  template void sampleOnto(const GridT&, GridT&, ProgressInterrupter&);           \
   template GridT::Ptr resample(const GridT&, const Resample&, double, ProgressInterrupter&)
 TUFA_STEPS(openvdb::FloatGrid);
 TUFA_STEPS(openvdb::DoubleGrid);

@@ -22,6 +22,11 @@ void smooth(GridT& grid, const Smooth& step, ProgressInterrupter& interrupter);
 template <class GridT>
 void offset(GridT& grid, const std::vector<double>& distances, ProgressInterrupter& interrupter);
 
+/// Fills an empty grid, of the class and the background that it is to have, with the values of
+/// another one at its places in world space.
+template <class GridT>
+void sampleOnto(const GridT& source, GridT& result, ProgressInterrupter& interrupter);
+
 template <class GridT>
 typename GridT::Ptr resample(const GridT& grid, const Resample& step, double mostVoxels,
                              ProgressInterrupter& interrupter);
