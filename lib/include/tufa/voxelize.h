@@ -16,8 +16,9 @@ struct VoxelizeOptions {
   double halfWidth = 3;  ///< of the narrow band, in voxels: 1 to 1000
   int threads = 0;       ///< most threads; 0: all
   Progress progress;     ///< called from the calling thread; may cancel
-  /// Most voxels of the band, of a mesh in estimate from its area: more are refused as
-  /// LimitExceeded. One vertex far away makes gigabytes of them.
+  /// Most voxels of the band, of a mesh in estimate from its faces: more are refused as
+  /// LimitExceeded. One vertex far away makes gigabytes of them. A needle counts three times, as
+  /// it fills its blocks of voxels less; so memory stays at about 40 bytes a voxel of the limit.
   double bandVoxels = 1 << 27;
   /// A fog volume in place of a level set: 1 inside, and less within the half width of the surface,
   /// down to 0 on it. Its isovalue for a surface near the true one is small.

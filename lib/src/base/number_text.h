@@ -2,7 +2,9 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string>
+#include <system_error>
 
 namespace tufa::base {
 
@@ -12,6 +14,18 @@ inline std::string numberText(double value) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   return {text.data(), end};
+}
+
+/// An estimate for a message: three significant digits, without an exponent.
+inline std::string roughNumberText(double value) {
+  std::array<char, 64> text;
+  const double size = std::abs(value);
+  const double step = size < 1e-9 ? 1 : std::pow(10, std::floor(std::log10(size)) - 2);
+  const double rounded = std::round(value / step) * step;
+  const int decimals = step < 1 ? static_cast<int>(std::lround(-std::log10(step))) : 0;
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), rounded,
+                                          std::chars_format::fixed, decimals);
+  return error == std::errc() ? std::string(text.data(), end) : numberText(value);
 }
 
 }  // namespace tufa::base

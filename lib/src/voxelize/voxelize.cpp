@@ -4,6 +4,7 @@
 
 #include <tufa/error.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -75,21 +76,38 @@ void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
                   base::numberText(kLimit));
 }
 
+/// An estimate of the voxels of the band, on the high side where faces overlap. Memory goes by the
+/// blocks of 8^3 voxels that the band passes, which hold less of it around a needle than around a
+/// plane: so a needle counts as the plane whose blocks take as much.
+double bandVoxelsOf(const Mesh& mesh, const VoxelizeOptions& options) {
+  constexpr double kBlockReach = 6;  // the band's blocks reach about so much farther than the band
+  constexpr double kLong = 64;       // of shorter faces the blocks are those of others, too
+  const double reach = options.halfWidth + kBlockReach;
+  double area = 0, lengths = 0;
+  for (const Triangle& t : triangulate(mesh)) {
+    std::array<Vec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = Vec3(mesh.positions[t.vertices[k]]) / options.voxelSize;
+    }
+    area += (p[1] - p[0]).cross(p[2] - p[0]).length() / 2;
+    const std::array<double, 3> sides{(p[1] - p[0]).length(), (p[2] - p[1]).length(),
+                                      (p[0] - p[2]).length()};
+    if (*std::max_element(sides.begin(), sides.end()) > kLong) {
+      lengths += sides[0] + sides[1] + sides[2];
+    }
+  }
+  // The volume within a distance of a triangle: a slab, half a tube along each side, and a ball.
+  const double tubes = std::numbers::pi / 2 * reach * options.halfWidth * lengths;
+  const double ball = 4.0 / 3 * std::numbers::pi * std::pow(options.halfWidth, 3);
+  return 2 * options.halfWidth * area + tubes + ball;
+}
+
 /// Throws for bands of more voxels than the options allow.
 void requireUsableBand(const Mesh& mesh, const VoxelizeOptions& options) {
-  double area = 0;
-  for (const Triangle& t : triangulate(mesh)) {
-    const auto corner = [&](std::size_t k) {
-      return Vec3(mesh.positions[t.vertices[k]]) / options.voxelSize;
-    };
-    area += (corner(1) - corner(0)).cross(corner(2) - corner(0)).length() / 2;
-  }
-  // Around faces, and around a mesh much smaller than the band is wide.
-  const double ball = 4.0 / 3 * std::numbers::pi * std::pow(options.halfWidth, 3);
-  const double voxels = 2 * options.halfWidth * area + ball;
+  const double voxels = bandVoxelsOf(mesh, options);
   if (voxels <= options.bandVoxels) return;
   throw Error(ErrorCode::LimitExceeded,
-              "the band around the mesh has about " + base::numberText(voxels) +
+              "the band around the mesh has about " + base::roughNumberText(voxels) +
                   " voxels, more than " + base::numberText(options.bandVoxels) +
                   "; take larger voxels, or raise the limit (--band-voxels)");
 }

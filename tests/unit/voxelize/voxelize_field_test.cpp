@@ -220,7 +220,7 @@ TEST(VoxelizeField, CreasesStayWithinATenthOfAVoxel) {
   // An adaptive mesh may be a tolerance of 0.1 away from that.
   const auto [rimAdaptive, sideAdaptive] = worstOf(adaptive);
   EXPECT_LT(rimAdaptive, 0.15);
-  EXPECT_LT(sideAdaptive, 0.02);
+  EXPECT_LT(sideAdaptive, 0.12);
 }
 
 /// Balls of a fifth of a voxel in the middle of cells, sheets of a tenth between samples.

@@ -114,6 +114,10 @@ TEST(Voxelize, RefusesBandsOfTooManyVoxels) {
   EXPECT_GT(voxelize(mesh, options)->activeVoxelCount(), 0U);
   mesh.positions[3] = {0, 0, 1e6};
   expectError(ErrorCode::LimitExceeded, "--band-voxels", [&] { (void)voxelize(mesh, options); });
+  // A needle of two million voxels has few of them for its blocks.
+  mesh.positions[3] = {0, 0, 2e5};
+  expectError(ErrorCode::LimitExceeded, "more than 134217728; ",
+              [&] { (void)voxelize(mesh, options); });
   mesh.positions[3] = {0, 0, 1};
   options.halfWidth = 1000;
   expectError(ErrorCode::LimitExceeded, "--band-voxels", [&] { (void)voxelize(mesh, options); });
