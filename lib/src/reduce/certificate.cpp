@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "reduce/halving.h"
 #include "reduce/overlay_path.h"
@@ -114,12 +115,11 @@ class Measure {
     for (std::size_t i = 0; i < 3; ++i) {
       const Index r = face.vertices[i];
       if (reference_.isAtBorder(r)) continue;
-      for (const Index t : around) {
-        const float d = distance(face.corners[i], t);
-        if (t == face.owners[i] || d > expected_) continue;
+      for (const auto& [d, t] : nearest(face.corners[i], around)) {
         owner_[r] = t;
         Measured there;
-        if (reference_.allAround(r, [&](Index g) { return passes(g, there); })) {
+        if (t != face.owners[i] && passes(f, there) &&
+            reference_.allAround(r, [&](Index g) { return passes(g, there); })) {
           regions_.see(t, d);
           measured.see(std::max(d, there.largest), f, expected_);
           return true;
@@ -213,6 +213,20 @@ class Measure {
   [[nodiscard]] OwnedFace owned(Index f) const {
     const auto& v = reference_.faces()[f].vertex;
     return {reference_.cornersOf(f), v, {owner_[v[0]], owner_[v[1]], owner_[v[2]]}};
+  }
+
+  // The nearest of some triangles that are as near as expected, with their distances.
+  [[nodiscard]] std::vector<std::pair<float, Index>> nearest(
+      Vec3f p, const std::vector<Index>& triangles) const {
+    constexpr std::size_t kMost = 6;
+    std::vector<std::pair<float, Index>> found;
+    for (const Index t : triangles) {
+      const float d = distance(p, t);
+      if (d <= expected_) found.emplace_back(d, t);
+    }
+    std::sort(found.begin(), found.end());
+    found.resize(std::min(found.size(), kMost));
+    return found;
   }
 
   // Whether there is a way from a face to its owners within what is expected.
