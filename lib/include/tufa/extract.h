@@ -56,10 +56,10 @@ struct ExtractOptions {
 ///
 /// Surface nets gives quads, the others triangles. All meshes are closed, consistently
 /// oriented 2-manifolds wherever the surface does not reach the end of the data, but for
-/// Ambiguity::Original. OctreeCubes alone are adaptive; their collapsed cells could touch in an edge
-/// of four triangles. None is searched for self-intersections. A cell whose sign changes are partly
-/// the end of the data gives no triangles. Of the report, what concerns neither certificates nor
-/// repair is filled.
+/// Ambiguity::Original. OctreeCubes alone are adaptive; their collapsed cells could touch in an
+/// edge of four triangles. None is searched for self-intersections. A cell whose sign changes are
+/// partly the end of the data gives no triangles. Of the report, what concerns neither certificates
+/// nor repair is filled.
 ///
 /// Throws Error as contour() does; InvalidArgument also for Ambiguity::Original with a method other
 /// than marching cubes.
