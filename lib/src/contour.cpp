@@ -52,7 +52,8 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
     extracted = std::move(adaptive.extracted);
   }
   job.beginStage("finish", 1.0);
-  refine::finishMesh(model, options, extracted, report, job);
+  const double moved = refine::finishMesh(model, options, extracted, report, job);
+  if (report.certificate) refine::widen(*report.certificate, moved, model.affine().voxelSize());
   return std::move(extracted.mesh);
 }
 

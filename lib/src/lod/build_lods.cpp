@@ -210,7 +210,8 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
       lod.dropped.push_back({model.affine().toWorld(piece.centre), piece.size});
       if (target.triangles > 0) lod.tolerance = std::max(lod.tolerance, piece.size);
     }
-    refine::finishMesh(model, contour, adaptive.extracted, report, job);
+    const double moved = refine::finishMesh(model, contour, adaptive.extracted, report, job);
+    refine::widen(lod.certificate, moved, chain.voxelSize);
     lod.mesh = std::move(adaptive.extracted.mesh);
     lod.intersectionsLeft = report.intersectionsLeft;
     lod.seconds = secondsSince(begin);

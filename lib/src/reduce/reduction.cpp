@@ -82,8 +82,10 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     nextTree_ = 0;
     descendTo(tolerance);
     measure(tolerance_);
-    if (certificate_.beyond.empty() || attempt_ == options_.attempts) break;
-    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance + kHeldVoxels);
+    std::vector<Index> held = certificate_.beyond;
+    if (options_.faults) addFacesNear(options_.faults(mesh()), held);
+    if (held.empty() || attempt_ == options_.attempts) break;
+    reference_.hold(held, kHeldTolerances * tolerance + kHeldVoxels);
     tolerance_ = toleranceBefore;
     if (before) {
       surface_ = *before;
@@ -93,6 +95,15 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   }
   reference_.releaseAll();
   reference_.setScales(scales);
+}
+
+// The faces of the reference below the corners of some triangles.
+void Reduction::addFacesNear(const std::vector<Index>& triangles, std::vector<Index>& faces) const {
+  for (const Index t : triangles) {
+    for (const Index v : surface_.triangles[t].vertices) {
+      if (surface_.face[v] != kNone) faces.push_back(surface_.face[v]);
+    }
+  }
 }
 
 void Reduction::setRegions(const Regions& regions) { reduce::setRegions(surface_, regions); }

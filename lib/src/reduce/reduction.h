@@ -50,7 +50,10 @@ struct Options {
   int phases = 8;              ///< most at one tolerance
   float firstShare = 0.5f;     ///< of the tolerance, for the first phase
   bool flips = true;
-  int attempts = 6;     ///< most to reduce less where the certificate is beyond the tolerance
+  /// Triangles of a result that may not be, say as they intersect once they are written in another
+  /// precision. Around them less is reduced. Empty: none.
+  std::function<std::vector<Index>(const ReducedMesh&)> faults;
+  int attempts = 6;     ///< most to reduce less where the certificate or `faults` ask for it
   float clearance = 4;  ///< of other surface, in tolerances, that needs no intersection test
   /// Of the tolerance that guards allow. The rest is for crossings that walks along an axis do not
   /// see exactly.
@@ -128,6 +131,7 @@ class Reduction {
   void descendTo(float tolerance);
   void buildParts();
   void beginLines();
+  void addFacesNear(const std::vector<Index>& triangles, std::vector<Index>& faces) const;
   void reduce(float tolerance, Index count, int phases);
   void runPhase(const PhaseLimits& limits, Index count);
   [[nodiscard]] std::vector<Index> quotas(Index count) const;

@@ -124,6 +124,11 @@ AdaptiveMesh adapt(const SurfaceModel& model, const octree::CutRule& rule,
   return finish(model, rule, std::move(mesh), std::move(adaptive), job);
 }
 
+void widen(Certificate& certificate, double moved, double voxelSize) {
+  certificate.maxErrorVoxels += moved;
+  certificate.maxErrorWorld += moved * voxelSize;
+}
+
 Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves) {
   Certificate certificate;
   certificate.maxErrorVoxels = adaptive.largestError;

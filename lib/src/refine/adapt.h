@@ -39,4 +39,7 @@ struct AdaptiveMesh {
 /// they are to be kept.
 [[nodiscard]] Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves);
 
+/// Adds to a certificate what vertices have moved since, in voxels.
+void widen(Certificate& certificate, double moved, double voxelSize);
+
 }  // namespace tufa::refine

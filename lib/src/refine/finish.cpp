@@ -67,10 +67,11 @@ Source worldSource(const SurfaceModel& model, const ExtractedMesh& extracted, ba
 
 }  // namespace
 
-void finishMesh(const SurfaceModel& model, const ContourOptions& options, ExtractedMesh& extracted,
-                ContourReport& report, base::Job& job) {
+double finishMesh(const SurfaceModel& model, const ContourOptions& options,
+                  ExtractedMesh& extracted, ContourReport& report, base::Job& job) {
   const grid::Affine& affine = model.affine();
   Mesh& mesh = extracted.mesh;
+  double moved = 0;
   job.forRanges(mesh.positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);
   });
@@ -78,14 +79,22 @@ void finishMesh(const SurfaceModel& model, const ContourOptions& options, Extrac
   if (options.repair) {
     Source source = worldSource(model, extracted, job);
     source.singlePrecision = single;
+    const std::vector<Position> before =
+        extracted.candidates.empty() ? std::vector<Position>() : mesh.positions;
     const RepairReport repaired = repairIntersections(mesh, extracted.candidates, source, job);
     report.intersectionsLeft = repaired.left.size();
     report.movedVertices += repaired.movedVertices;
     report.flippedDiagonals += repaired.flippedDiagonals;
     report.fannedQuads += repaired.fannedQuads;
+    if (repaired.movedVertices > 0) {
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        moved = std::max(moved, (Vec3(mesh.positions[i]) - Vec3(before[i])).length());
+      }
+    }
   }
   if (options.normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
   if (options.normals == Normals::None) mesh.normals = {};
+  return moved / affine.voxelSize();
 }
 
 }  // namespace tufa::refine

@@ -11,8 +11,8 @@ namespace tufa::refine {
 /// The last step of every mesh: to world space; to single precision where that moves nothing far;
 /// and without the self-intersections that rounding makes or only additional vertices remove.
 /// Replaces the normals if the options ask for others than the gradient's. Adds to the counts of
-/// the repair in `report`.
-void finishMesh(const SurfaceModel& model, const ContourOptions& options, ExtractedMesh& extracted,
-                ContourReport& report, base::Job& job);
+/// the repair in `report`. Returns how far the repair has moved a vertex at most, in voxels.
+double finishMesh(const SurfaceModel& model, const ContourOptions& options,
+                  ExtractedMesh& extracted, ContourReport& report, base::Job& job);
 
 }  // namespace tufa::refine

@@ -36,6 +36,8 @@ class SurfaceModel {
   /// Candidates of the uniform mesh: each pair of its quads that intersects, even after rounding,
   /// contains one. Sorted.
   [[nodiscard]] const std::vector<std::uint32_t>& candidates() const { return candidates_; }
+  /// Whether intersections are to be repaired.
+  [[nodiscard]] bool repairs() const { return repairs_; }
   /// How meshes taken from this one are repaired; nothing if they are not to be.
   [[nodiscard]] std::optional<Repair> repair(base::Job& job) const;
   /// What was read and found, without the times of stages.
@@ -46,6 +48,8 @@ class SurfaceModel {
   [[nodiscard]] Mesh takeMesh() { return std::move(surface_.mesh); }
 
  private:
+  void settle(base::Job& job);
+
   bool repairs_;
   uniform::UniformSurface surface_;
   std::vector<std::uint32_t> candidates_;

@@ -7,7 +7,10 @@
 
 #include "base/box.h"
 #include "base/polygons.h"
+#include "base/single_precision.h"
 #include "distance/certifier.h"
+#include "intersect/surface.h"
+#include "refine/rounding.h"
 #include "topology/misplaced.h"
 
 namespace tufa::refine {
@@ -78,16 +81,46 @@ SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutR
     }
   });
   const reduce::MeshView view{positions, faces_};
+  reduce::Options options;
+  if (model.repairs()) {
+    options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
+  }
   reduction_.emplace(view, view, std::span<const reduce::Index>(),
-                     scalesOf(mesh, model.affine(), rule, job), reduce::Options(), job);
+                     scalesOf(mesh, model.affine(), rule, job), std::move(options), job);
 }
 
-Position SurfaceReduction::positionOf(const Vec3f& local) const {
-  const Vec3 p = middle_ + Vec3(local) * model_.affine().voxelSize();
+Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
+                                      std::size_t vertex) const {
+  const reduce::Index source = reduced.sources[vertex];
+  if (source != reduce::kNone) return model_.mesh().positions[source];
+  const Vec3 p = middle_ + Vec3(reduced.positions[vertex]) * model_.affine().voxelSize();
   return {p[0], p[1], p[2]};
 }
 
+// The triangles that intersect once the mesh is finished as finishMesh() does. Guards in single
+// precision may take a star of slivers along a crease for simple whose vertices are out of order by
+// less than they can tell.
+std::vector<reduce::Index> SurfaceReduction::findIntersecting(const reduce::ReducedMesh& reduced) {
+  Mesh mesh;
+  mesh.positions.resize(reduced.positions.size());
+  const grid::Affine& affine = model_.affine();
+  job_.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      mesh.positions[i] = affine.toWorld(positionOf(reduced, i));
+    }
+  });
+  (void)base::roundToSingle(mesh, kMostRounding * affine.leastHeight(), job_);
+  mesh.triangles = reduced.triangles;
+  std::vector<intersect::PolygonIndex> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<intersect::PolygonIndex> found =
+      intersect::polygonsOf(intersect::findPairs(intersect::Surface(mesh, job_), all, job_));
+  isSearched_ = found.empty();
+  return {found.begin(), found.end()};
+}
+
 AdaptiveMesh SurfaceReduction::toTolerance(double tolerance, bool drops) {
+  isSearched_ = false;
   reduction_->toTolerance(static_cast<float>(tolerance));
   AdaptiveMesh adaptive;
   const reduce::ReducedMesh reduced = extract(adaptive);
@@ -104,6 +137,7 @@ AdaptiveMesh SurfaceReduction::toTolerance(double tolerance, bool drops) {
 AdaptiveMesh SurfaceReduction::toCount(std::size_t triangles, bool drops) {
   const auto count = static_cast<reduce::Index>(
       std::min<std::size_t>(triangles, std::numeric_limits<reduce::Index>::max()));
+  isSearched_ = false;
   reduction_->toCount(count, static_cast<float>(size_));
   AdaptiveMesh adaptive;
   const reduce::ReducedMesh reduced = extract(adaptive);
@@ -143,18 +177,17 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
   for (std::size_t i = 0; i < count; ++i) {
     const reduce::Index source = reduced.sources[i];
     extracted.baseVertices[i] = source == reduce::kNone ? octree::kNone : source;
-    if (source != reduce::kNone) {
-      mesh.positions[i] = base.positions[source];
-      mesh.normals[i] = base.normals[source];
-      continue;
-    }
-    mesh.positions[i] = positionOf(reduced.positions[i]);
-    mesh.normals[i] = normalOn(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
+    mesh.positions[i] = positionOf(reduced, i);
+    mesh.normals[i] = source != reduce::kNone
+                          ? base.normals[source]
+                          : normalOn(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
   }
   mesh.triangles = reduced.triangles;
   extracted.baseQuads.assign(mesh.triangles.size(), octree::kNone);
-  extracted.candidates.resize(mesh.triangles.size());
-  std::iota(extracted.candidates.begin(), extracted.candidates.end(), 0);
+  if (!isSearched_) {
+    extracted.candidates.resize(mesh.triangles.size());
+    std::iota(extracted.candidates.begin(), extracted.candidates.end(), 0);
+  }
   return reduced;
 }
 
@@ -213,7 +246,7 @@ void SurfaceReduction::drop(const std::vector<std::uint8_t>& isDropped,
   }
   const std::size_t left = extracted.mesh.triangles.size();
   extracted.baseQuads.resize(left);
-  extracted.candidates.resize(left);
+  extracted.candidates.resize(isSearched_ ? 0 : left);
   (void)removeUnused(extracted.mesh, extracted.baseVertices);
 }
 

@@ -44,7 +44,8 @@ class SurfaceReduction {
     bool isTold = false;  ///< that it was left out
   };
 
-  [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
+  [[nodiscard]] Position positionOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
+  [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
   [[nodiscard]] reduce::ReducedMesh extract(AdaptiveMesh& adaptive) const;
   [[nodiscard]] Normal normalAt(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   void findComponents();
@@ -64,6 +65,7 @@ class SurfaceReduction {
   double size_ = 0;              ///< diagonal of the mesh's box, voxels
   std::vector<Triangle> faces_;  ///< the uniform mesh's, two for each quad
   std::optional<reduce::Reduction> reduction_;
+  bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
   std::vector<std::uint32_t> componentOf_;  ///< of each uniform vertex
   std::vector<Component> components_;       ///< empty until needed
 };
