@@ -97,7 +97,8 @@ AdaptiveMesh finish(const SurfaceModel& model, const octree::CutRule& rule, Meas
   }
   adaptive.repaired = std::move(mesh.repaired);
   ExtractedMesh& extracted = adaptive.extracted;
-  extracted.candidates = std::move(mesh.candidates);
+  // What is free of intersections need not be searched for them again.
+  if (!adaptive.repaired.left.empty()) extracted.candidates = std::move(mesh.candidates);
   extracted.baseVertices = baseVerticesOf(mesh.cut);
   extracted.baseQuads = std::move(mesh.made.quadSources);
   extracted.baseQuads.insert(extracted.baseQuads.end(), mesh.made.triangleSources.begin(),

@@ -1,8 +1,10 @@
 #include "refine/measured.h"
 
-#include "base/polygons.h"
-
 #include <algorithm>
+#include <utility>
+
+#include "base/polygons.h"
+#include "refine/repair_rounded.h"
 
 namespace tufa::refine {
 namespace {
@@ -29,7 +31,6 @@ RepairReport repairCut(const Repair& repair, const octree::Cut& cut,
                        const std::vector<intersect::PolygonIndex>& candidates, Mesh& mesh,
                        base::Job& job) {
   Source source = repair.source;
-  source.crossings = nullptr;
   source.lastResort = false;
   source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
     std::vector<Position> points;
@@ -37,7 +38,7 @@ RepairReport repairCut(const Repair& repair, const octree::Cut& cut,
     return points;
   };
   source.isFixed = [&](VertexIndex vertex) { return cut.clusters[vertex].level == 0; };
-  return repairIntersections(mesh, candidates, source, job);
+  return repairRounded(mesh, candidates, std::move(source), *repair.affine, job);
 }
 
 }  // namespace

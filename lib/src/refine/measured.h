@@ -13,6 +13,7 @@ namespace tufa::refine {
 struct Repair {
   std::vector<std::uint32_t> candidates;  ///< of the uniform mesh, see intersect::findCandidates()
   Source source;                          ///< of the uniform mesh
+  const grid::Affine* affine;             ///< to world space
 };
 
 /// A mesh that stands for the uniform mesh, and what was found on it.

@@ -1,0 +1,41 @@
+#include "refine/repair_rounded.h"
+
+#include <utility>
+
+#include "base/single_precision.h"
+#include "refine/rounding.h"
+
+namespace tufa::refine {
+
+RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonIndex>& candidates,
+                           Source source, const grid::Affine& affine, base::Job& job) {
+  constexpr std::size_t kGrain = 4096;
+  Mesh world;
+  world.positions.resize(mesh.positions.size());
+  job.forRanges(world.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      world.positions[i] = affine.toWorld(mesh.positions[i]);
+  });
+  world.quads = mesh.quads;
+  world.triangles = mesh.triangles;
+  source.singlePrecision = base::roundToSingle(world, kMostRounding * affine.leastHeight(), job);
+  source.massPoints = [&affine,
+                       points = source.massPoints](const std::vector<VertexIndex>& vertices) {
+    std::vector<Position> all = points(vertices);
+    for (Position& point : all) point = affine.toWorld(point);
+    return all;
+  };
+  source.crossings = nullptr;
+  const std::vector<Position> before = world.positions;
+  RepairReport repaired = repairIntersections(world, candidates, source, job);
+  if (repaired.changed.empty()) return repaired;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (!(world.positions[i] == before[i]))
+      mesh.positions[i] = affine.fromWorld(world.positions[i]);
+  }
+  mesh.quads = std::move(world.quads);
+  mesh.triangles = std::move(world.triangles);
+  return repaired;
+}
+
+}  // namespace tufa::refine
