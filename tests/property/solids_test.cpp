@@ -1,0 +1,63 @@
+// Random solids with sharp edges of any angle, at any place and turn, at three tolerances.
+// TUFA_RANDOM_SOLIDS sets how many; each costs about a second.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <tufa/check.h>
+#include <tufa/contour.h>
+#include <tufa/implicit.h>
+#include <tufa/memory.h>
+#include <tufa/voxelize.h>
+#include <cstdlib>
+#include <string>
+
+#include "support/nearest_triangle.h"
+#include "support/random_solid.h"
+#include "support/uniform_mesh.h"
+
+namespace tufa {
+namespace {
+
+constexpr double kVoxel = 0.03;
+
+void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform, double tolerance) {
+  SCOPED_TRACE("tolerance " + std::to_string(tolerance));
+  ContourOptions options;
+  options.tolerance = tolerance;
+  ContourReport report;
+  const Mesh mesh = contour(grid, options, &report);
+  const double certified = report.certificate->maxErrorVoxels;
+  EXPECT_LE(certified, tolerance);
+  EXPECT_EQ(report.intersectionsLeft, 0u);
+
+  const CheckReport found = check(mesh);
+  EXPECT_TRUE(found.watertight());
+  EXPECT_EQ(found.selfIntersectingPairs, 0u);
+  EXPECT_EQ(found.eulerCharacteristic, check(uniform).eulerCharacteristic);
+
+  const double most = 1.005 * certified + 0.0005;  // positions are in single precision
+  const double reach = 3 * kVoxel;
+  EXPECT_LE(test::largestDistance(uniform, mesh, reach) / kVoxel, most);
+  EXPECT_LE(test::largestDistance(mesh, uniform, reach) / kVoxel, most);
+}
+
+void expectKeptPromises(unsigned seed) {
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  const std::string text = test::randomSolid(seed);
+  VoxelizeOptions options;
+  options.voxelSize = kVoxel;
+  const auto grid = voxelize(*implicit::readScene(FileBytes{text, "solid"}).field, options);
+  const Mesh uniform = test::uniformMesh(*grid);
+  if (uniform.positions.empty()) return;  // cut away, or outside what it was intersected with
+  for (const double tolerance : {0.1, 0.5, 2.0}) expectKeptPromises(*grid, uniform, tolerance);
+}
+
+TEST(Solids, KeepTheirPromises) {
+  const char* const asked = std::getenv("TUFA_RANDOM_SOLIDS");
+  const unsigned long count = asked != nullptr ? std::stoul(asked) : 6;
+  for (unsigned seed = 0; seed < count; ++seed) expectKeptPromises(seed);
+}
+
+}  // namespace
+}  // namespace tufa

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace tufa::test {
+
+/// The text of a scene for implicit::readScene(): up to six primitives (boxes, spheres, cylinders,
+/// tori, wedges of 20 to 80 degrees), turned and moved anyhow, joined, cut and intersected. About
+/// two units across. The same for a seed on every machine; some are empty.
+[[nodiscard]] std::string randomSolid(unsigned seed);
+
+}  // namespace tufa::test
