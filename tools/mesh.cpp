@@ -100,6 +100,11 @@ void addMethodOption(CLI::App& app, MeshArguments& arguments) {
   app.add_option("--sharp-angle", arguments.sharpAngle,
                  "--method emc: normals in a cell that differ by more, in degrees, mean a crease")
       ->capture_default_str();
+  app.add_option(
+         "--refine", arguments.refine,
+         "split triangles whose middle is farther from the trilinear surface, in voxels, or "
+         "with the suffix w in world units; 0: none")
+      ->capture_default_str();
 }
 
 /// Throws Error for options that mean nothing to the method.

@@ -23,6 +23,14 @@ Json toJson(const Certificate& certificate) {
           {"rounds", certificate.rounds}};
 }
 
+Json toJson(const Refinement& refinement) {
+  return {{"rounds", refinement.rounds},
+          {"added_vertices", refinement.addedVertices},
+          {"largest_voxels", refinement.largestVoxels},
+          {"triangles_left", refinement.trianglesLeft},
+          {"crease_triangles", refinement.creaseTriangles}};
+}
+
 /// Adds the keys of one grid, times aside.
 void addGrid(Json& json, const GridRun& run) {
   json["grid"] = run.grid;
@@ -53,6 +61,7 @@ void addGrid(Json& json, const GridRun& run) {
     }
   }
   if (run.contour.certificate) json["certificate"] = toJson(*run.contour.certificate);
+  if (run.contour.refinement) json["refinement"] = toJson(*run.contour.refinement);
 }
 
 Json secondsOf(const GridRun& run) {
@@ -86,6 +95,20 @@ std::string describeUnion(const GridRun& run) {
   return "the union of " + names + ", made in " + shortNumber(run.uniteSeconds) + " s\n";
 }
 
+std::string describeRefinement(const Refinement& refinement) {
+  std::string text = "refined in " + std::to_string(refinement.rounds) + " rounds: within " +
+                     shortNumber(refinement.largestVoxels) +
+                     " voxels of the trilinear surface at corners and middles";
+  if (refinement.trianglesLeft > 0) {
+    text += ", " + formatCount(refinement.trianglesLeft) + " triangles farther than asked for";
+  }
+  if (refinement.creaseTriangles > 0) {
+    text += "; " + formatCount(refinement.creaseTriangles) +
+            " left alone at corners off it, as on creases";
+  }
+  return text + "\n";
+}
+
 std::string describeGrid(const GridRun& run) {
   std::string text = shownGrid(run.grid) + ": " + formatCount(run.mesh.triangleCount()) +
                      " triangles (" + formatCount(run.mesh.quads.size()) + " quads), " +
@@ -99,6 +122,7 @@ std::string describeGrid(const GridRun& run) {
   if (!run.united.empty()) text += describeUnion(run);
   text += tools::describe(run.filters);
   if (run.contour.certificate) text += describeCertificate(*run.contour.certificate);
+  if (run.contour.refinement) text += describeRefinement(*run.contour.refinement);
   if (!run.mesh.attributes.empty()) {
     text += "attributes: " + tools::describe(run.mesh.attributes) + ", sampled in " +
             shortNumber(run.attributeSeconds) + " s\n";

@@ -61,7 +61,9 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
   }
   options.progress = bar.callback();
   run.contourSeconds = timed([&] {
-    run.mesh = extract(*grid, arguments.method, {options, arguments.sharpAngle}, &run.contour);
+    const double refine = readTolerance("--refine", arguments.refine, *grid);
+    run.mesh =
+        extract(*grid, arguments.method, {options, arguments.sharpAngle, refine}, &run.contour);
   });
   if (!arguments.quiet) noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
   if (!arguments.allowEmpty) {

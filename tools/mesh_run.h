@@ -30,6 +30,7 @@ struct MeshArguments {
   std::optional<std::string> labels;  ///< "all", or numbers with commas between them
   Method method = Method::Dual;
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
+  std::string refine = "0";                         ///< a length; not for dual
   FilterWords filters;
   std::vector<std::string> attributes;  ///< words for AttributeGrids
   ContourOptions contour;

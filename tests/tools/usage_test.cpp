@@ -253,6 +253,10 @@ TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
   expectFailure("mesh s.vdb -o m.ply --method cubes", 2, "cubes");
   expectFailure("mesh s.vdb -o m.ply --method mc --tolerance 1", 2, "--tolerance");
   expectFailure("mesh s.vdb -o m.ply --method mc --sharp-angle 20", 2, "--sharp-angle");
+  expectFailure("mesh s.vdb -o m.ply --method mc --refine -1", 2, "refine");
+  expectFailure("mesh s.vdb -o m.ply --method mc --refine x", 2, "--refine");
+  EXPECT_EQ(run("mesh s.vdb -o m.ply --method mc --refine 0.01 --check --quiet").exitCode, 0);
+  std::filesystem::remove(folder / "m.ply");
   expectFailure("mesh s.vdb -o m.ply --method emc --sharp-angle 200", 2, "sharp angle");
   expectFailure("mesh s.vdb -o m.ply --ambiguity original", 2, "original");
   EXPECT_EQ(run("mesh s.vdb -o m.ply --method mc --ambiguity original --quiet").exitCode, 0);

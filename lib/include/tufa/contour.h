@@ -111,6 +111,18 @@ struct Certificate {
   int rounds = 0;                ///< meshes made and measured until the tolerance held
 };
 
+/// What splitting triangles came to, see ExtractOptions::refine. Distances are those of the corners
+/// of triangles and of the middles of their edges and their own from the trilinear surface: to
+/// first order where that is within what was asked for, else along the gradient, and 1 where there
+/// is no surface within a voxel.
+struct Refinement {
+  int rounds = 0;                   ///< of splitting edges
+  std::size_t addedVertices = 0;    ///< in the middle of edges
+  double largestVoxels = 0;         ///< of all triangles but crease triangles
+  std::size_t trianglesLeft = 0;    ///< of these: farther than asked for, but not to be split
+  std::size_t creaseTriangles = 0;  ///< left alone for a corner that stays off, as on creases
+};
+
 /// What contour() did, beside the mesh.
 struct ContourReport {
   double isovalue = 0;              ///< as used
@@ -123,6 +135,7 @@ struct ContourReport {
   std::size_t faceFlips = 0;    ///< ambiguous faces joined against the rule to stay manifold
   std::size_t openEdges = 0;    ///< sign changes where the data ends, left open
   std::optional<Certificate> certificate;  ///< of an adaptive mesh
+  std::optional<Refinement> refinement;    ///< of a mesh with ExtractOptions::refine
   std::size_t intersectionsFound = 0;      ///< pairs of intersecting polygons
   std::size_t intersectionsLeft = 0;       ///< pairs that still intersect
   std::size_t movedVertices = 0;           ///< by the repair

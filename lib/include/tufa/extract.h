@@ -48,6 +48,13 @@ struct ExtractOptions {
   /// Extended marching cubes: normals at the crossings of a cell that differ by more, in degrees,
   /// mean a crease; 0 to 180. The default is that of the paper: a cosine of 0.9.
   double sharpAngle = 25.84;
+  /// Split triangles where their middle, or that of an edge, is farther from the trilinear surface,
+  /// in voxels, with the new vertices on it, down to edges of a sixteenth of a voxel; 0: off.
+  /// Vertices that are off the surface are moved onto it first, but for those on creases, which
+  /// stay with the edges at them: the trilinear surface rounds creases off. Gives triangles alone;
+  /// ContourReport::refinement tells what was reached. A mesh of Method::Dual has no certificate
+  /// then, and triangles may intersect.
+  double refine = 0;
 };
 
 /// Meshes the surface of `grid` at the isovalue by the method asked for. Grids, transforms, what is

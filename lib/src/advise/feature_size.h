@@ -1,9 +1,7 @@
 #pragma once
 
-#include <memory>
-
 #include "base/vec3.h"
-#include "grid/volume.h"
+#include "grid/trilinear_reader.h"
 
 namespace tufa::advise {
 
@@ -13,7 +11,7 @@ namespace tufa::advise {
 class FeatureSize {
  public:
   FeatureSize(const grid::Volume& volume, double reach)
-      : volume_(volume), accessor_(volume.blocks.accessor()), reach_(reach) {}
+      : volume_(volume), field_(volume), reach_(reach) {}
 
   /// The smaller of the two at a point near the surface, counted from the volume's
   /// affine.origin(), with the mean of the unit normals around it; in voxels, at most `reach`.
@@ -23,18 +21,12 @@ class FeatureSize {
   /// The length of a line that begins near the surface, on the side that it goes into. `step` is a
   /// voxel of it in lattice coordinates.
   [[nodiscard]] double alongLine(const Vec3& start, const Vec3& step, bool intoSolid);
-  /// The trilinear value, in voxels and negative inside.
-  [[nodiscard]] double value(const Vec3& point);
   /// The cosine of the angle between a line and the field's gradient at a point.
   [[nodiscard]] double cosineAt(const Vec3& point, const Vec3& step);
-  void load(const Coord& cell);
 
   const grid::Volume& volume_;
-  std::unique_ptr<grid::Accessor> accessor_;
+  grid::TrilinearReader field_;
   double reach_;
-  Coord cell_{0};
-  bool isLoaded_ = false;
-  double corners_[8] = {};
 };
 
 }  // namespace tufa::advise

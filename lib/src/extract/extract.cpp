@@ -1,10 +1,14 @@
 #include <tufa/error.h>
 #include <tufa/extract.h>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 
 #include "base/job.h"
 #include "base/known_enum.h"
+#include "base/part_of_progress.h"
 #include "base/run_call.h"
 #include "base/single_precision.h"
 #include "extract/cube_mesher.h"
@@ -12,6 +16,7 @@
 #include "extract/marching_cubes.h"
 #include "extract/mc33.h"
 #include "extract/octree_mc.h"
+#include "extract/refine_triangles.h"
 #include "extract/surface_nets.h"
 #include "extract/tetrahedra.h"
 #include "grid/volume.h"
@@ -21,7 +26,9 @@
 namespace tufa {
 namespace {
 
-constexpr double kBlocksEnd = 0.1;
+constexpr double kBlocksEnd = 0.1, kRefineEnd = 0.98;
+// Of a dual mesh: when it is there, to be refined.
+constexpr double kDualEnd = 0.6;
 
 Mesh meshOf(const grid::Volume& volume, Method method, const ExtractOptions& all,
             ContourReport& report, base::Job& job) {
@@ -49,9 +56,9 @@ void requireAngle(double degrees) {
               "the sharp angle is " + std::to_string(degrees) + ", must be 0 to 180 degrees");
 }
 
-void requireTolerance(double voxels) {
+void requireTolerance(const std::string& what, double voxels) {
   if (voxels >= 0 && std::isfinite(voxels)) return;
-  throw Error(ErrorCode::InvalidArgument, "the tolerance is " + std::to_string(voxels) +
+  throw Error(ErrorCode::InvalidArgument, what + " is " + std::to_string(voxels) +
                                               " voxels, must be 0 or a finite number above it");
 }
 
@@ -63,6 +70,57 @@ void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& 
   base::roundToSingle(mesh, refine::kMostRounding * affine.leastHeight(), job);
   if (normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
   if (normals == Normals::None) mesh.normals = {};
+}
+
+// How far off the surface vertices are moved onto it: those beyond are on creases, see RefineRule.
+double stayBeyond(Method method, const ExtractOptions& options) {
+  switch (method) {
+    case Method::Dual: {
+      // Other vertices are nearer, by about what the mesh is off the uniform one.
+      constexpr double kOfCreases = 0.2;
+      const double merged = options.contour.uniform ? 0 : options.contour.tolerance;
+      return std::max({options.refine, merged, kOfCreases});
+    }
+    // Off the surface are crossings found to the sub-cell, beside creases, and vertices on them.
+    case Method::MarchingCubes:
+    case Method::MarchingCubes33:
+    case Method::ExtendedMarchingCubes:
+      return options.refine;
+    default:
+      return std::numeric_limits<double>::infinity();
+  }
+}
+
+void refineMesh(const grid::Volume& volume, const extraction::RefineRule& rule, Mesh& mesh,
+                ContourReport& report, base::Job& job) {
+  job.beginStage("refine", kRefineEnd, base::Length::Unknown);
+  report.refinement = extraction::refineTriangles(volume, rule, mesh, job);
+}
+
+// Contours, and refines that mesh in a second call.
+Mesh refinedDual(const openvdb::GridBase& grid, const ExtractOptions& options,
+                 ContourReport* report) {
+  ContourOptions first = options.contour, second = options.contour;
+  first.progress = base::partOf(options.contour.progress, 0, kDualEnd);
+  second.progress = base::partOf(options.contour.progress, kDualEnd, 1);
+  ContourReport made, refined;
+  Mesh mesh = contour(grid, first, &made);
+  const auto work = [&](ContourReport& out, base::Job& job) {
+    job.beginStage("blocks of refining", kBlocksEnd);
+    const grid::Volume volume = grid::openVolume(grid, second, job);
+    const grid::Affine& affine = volume.affine;
+    for (Position& position : mesh.positions) position = affine.fromWorld(position);
+    refineMesh(volume, {options.refine, stayBeyond(Method::Dual, options)}, mesh, out, job);
+    job.beginStage("finish", 1.0);
+    finish(affine, second.normals, mesh, job);
+    return std::move(mesh);
+  };
+  mesh = base::runCall(second, &refined, work);
+  made.certificate.reset();
+  made.refinement = refined.refinement;
+  made.stages.insert(made.stages.end(), refined.stages.begin(), refined.stages.end());
+  if (report != nullptr) *report = std::move(made);
+  return mesh;
 }
 
 }  // namespace
@@ -84,13 +142,20 @@ Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions&
              ContourReport* report) {
   base::requireKnown(method, Method::OctreeCubes, "the method");
   requireAngle(options.sharpAngle);
-  if (method == Method::Dual) return contour(grid, options.contour, report);
-  if (method == Method::OctreeCubes) requireTolerance(options.contour.tolerance);
+  requireTolerance("the distance to refine to", options.refine);
+  if (method == Method::Dual) {
+    if (options.refine > 0) return refinedDual(grid, options, report);
+    return contour(grid, options.contour, report);
+  }
+  if (method == Method::OctreeCubes) requireTolerance("the tolerance", options.contour.tolerance);
   grid::requireMeshable(grid);
   const auto work = [&](ContourReport& out, base::Job& job) {
     job.beginStage("blocks", kBlocksEnd);
     const grid::Volume volume = grid::openVolume(grid, options.contour, job);
     Mesh mesh = meshOf(volume, method, options, out, job);
+    if (options.refine > 0) {
+      refineMesh(volume, {options.refine, stayBeyond(method, options)}, mesh, out, job);
+    }
     job.beginStage("finish", 1.0);
     finish(volume.affine, options.contour.normals, mesh, job);
     return mesh;
