@@ -1,9 +1,11 @@
 #include "extract/emc.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/huge_pages.h"
+#include "extract/crease_point.h"
 #include "extract/cube_mesher.h"
 #include "extract/loop_crossings.h"
 #include "extract/marching_cubes.h"
@@ -19,9 +21,6 @@ namespace {
 
 // Shares of the time that stages took on the sample volumes.
 constexpr double kVerticesEnd = 0.65, kFeaturesEnd = 0.8, kTrianglesEnd = 0.95;
-// Vertices keep this distance from the faces of their cell, as those of dual contouring do.
-constexpr float kHalfCell = 0.499F;
-
 // The face that holds two edges, as consecutive crossings of a loop are.
 constexpr auto kFaceOf = [] {
   std::array<std::array<std::int8_t, kEdges>, kEdges> faces{};
@@ -53,11 +52,12 @@ struct Feature {
   Normal normal;
 };
 
-// Which loops of a cell have one, and the number of the first.
+// Which loops of a cell have one, and the number of the first: of a vertex, or of tangent planes.
 struct CellFeatures {
   VertexIndex first = 0;
   std::uint8_t loops = 0;
 
+  void add(int loop) { loops = static_cast<std::uint8_t>(loops | 1 << loop); }
   [[nodiscard]] bool has(int loop) const { return ((loops >> loop) & 1) != 0; }
   [[nodiscard]] VertexIndex of(int loop) const {
     return first + static_cast<VertexIndex>(base::countBits(loops & base::bitsBelow(loop)));
@@ -79,7 +79,8 @@ class SharpMesher {
     base::resizeLarge(mesh_.normals, cells_.edgeCount, job_);
     placeCrossings(volume_, topology_, cells_.edges, mesh_, job_);
     job_.beginStage("features", kFeaturesEnd);
-    findFeatures();
+    findSharp();
+    placeFeatures();
     number();
     job_.beginStage("triangles", kTrianglesEnd);
     base::resizeLarge(mesh_.triangles, triangleCount_, job_);
@@ -92,6 +93,7 @@ class SharpMesher {
 
  private:
   struct BlockFeatures {
+    std::vector<uniform::Qef> planes;  ///< of loops whose own normals differ
     std::vector<Feature> features;
     std::uint64_t firstTriangle = 0;
     std::uint64_t firstVertex = 0;  ///< features first, then the means of other loops
@@ -111,45 +113,112 @@ class SharpMesher {
     });
   }
 
-  void findFeatures() {
+  [[nodiscard]] Coord cornerOf(const SurfaceBlock& block, const std::array<int, 3>& at) const {
+    return volume_.blocks.origin(block.block).offsetBy(at[0], at[1], at[2]);
+  }
+
+  // Finds the loops whose normals differ enough.
+  void findSharp() {
     blocks_.resize(topology_.blocks.size());
-    base::resizeLarge(features_, topology_.cellCount, job_);
+    base::resizeLarge(sharp_, topology_.cellCount, job_);
     forBlocks([&](const SurfaceBlock& block, std::size_t i, const CubeTable& table) {
-      BlockFeatures& own = blocks_[i];
-      CellFeatures* features = features_.data() + block.firstVertex;
+      std::vector<uniform::Qef>& planes = blocks_[i].planes;
+      CellFeatures* sharp = sharp_.data() + block.firstVertex;
       cells_.forCells(block, [&](int x, int bit, CaseCode code) {
-        const CubeCase& cell = caseOf(code);
         const std::array<int, 3> at = {x, bit >> 3, bit & 7};
-        features->first = static_cast<VertexIndex>(own.features.size());
+        sharp->first = static_cast<VertexIndex>(planes.size());
+        const CubeCase& cell = caseOf(code);
+        const int place = CubeTable::placeOf(at[0], at[1], at[2]);
         for (int loop = 0; loop < cell.loopCount; ++loop) {
-          if (addFeature(block, cell, loop, at, table, own.features)) {
-            features->loops = static_cast<std::uint8_t>(features->loops | 1 << loop);
-          }
+          const LoopCrossings crossings(cell, loop, place, table, mesh_);
+          if (crossings.leastCosine() >= leastCosine_) continue;
+          sharp->add(loop);
+          planes.push_back(crossings.planes(volume_.affine, cornerOf(block, at)));
         }
-        countTriangles(cell, *features++, own);
+        ++sharp;
       });
     });
   }
 
-  // Adds the feature of a loop if its normals differ enough.
-  bool addFeature(const SurfaceBlock& block, const CubeCase& cell, int loop,
-                  const std::array<int, 3>& at, const CubeTable& table,
-                  std::vector<Feature>& features) const {
-    const int place = CubeTable::placeOf(at[0], at[1], at[2]);
-    const LoopCrossings crossings(cell, loop, place, table, mesh_);
-    if (crossings.leastCosine() >= leastCosine_) return false;
-    const grid::Affine& affine = volume_.affine;
-    const Coord corner = volume_.blocks.origin(block.block).offsetBy(at[0], at[1], at[2]);
+  void placeFeatures() {
+    base::resizeLarge(features_, topology_.cellCount, job_);
+    forBlocks([&](const SurfaceBlock& block, std::size_t i, const CubeTable& table) {
+      BlockFeatures& own = blocks_[i];
+      CellFeatures* features = features_.data() + block.firstVertex;
+      const CellFeatures* sharp = sharp_.data() + block.firstVertex;
+      // Outside of distance fields planes are not exact enough to follow them.
+      const bool follows = volume_.scale.distance && isNearSharp(block);
+      cells_.forCells(block, [&](int x, int bit, CaseCode code) {
+        const CubeCase& cell = caseOf(code);
+        const std::array<int, 3> at = {x, bit >> 3, bit & 7};
+        features->first = static_cast<VertexIndex>(own.features.size());
+        const int place = CubeTable::placeOf(at[0], at[1], at[2]);
+        for (int loop = 0; loop < cell.loopCount; ++loop) {
+          if (!sharp->has(loop) && !follows) continue;
+          const LoopCrossings crossings(cell, loop, place, table, mesh_);
+          const auto point = sharp->has(loop) ? pointFor(own.planes[sharp->of(loop)])
+                                              : creaseThrough(block, at, cell, loop, crossings);
+          if (!point) continue;
+          features->add(loop);
+          own.features.push_back(featureAt(*point, cornerOf(block, at), crossings));
+        }
+        countTriangles(cell, *features++, own);
+        ++sharp;
+      });
+    });
+  }
+
+  [[nodiscard]] std::optional<uniform::Vector> pointFor(const uniform::Qef& planes) const {
+    if (!volume_.scale.distance) return uniform::solve(planes, CreasePoint::kHalfCell);
+    // A crease may leave the cell and come back.
+    const CreasePoint best(planes);
+    return best.isInside ? best.inside : best.beyond;
+  }
+
+  // Whether a loop of a block, or of one beside it, has normals that differ enough.
+  [[nodiscard]] bool isNearSharp(const SurfaceBlock& block) const {
+    constexpr std::array<std::array<int, 3>, 7> kSteps = {
+        {{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+    return std::any_of(kSteps.begin(), kSteps.end(), [&](const std::array<int, 3>& step) {
+      const auto index = topology_.neighbour(block, step[0], step[1], step[2]);
+      return index != uniform::kNoSurfaceBlock && !blocks_[index].planes.empty();
+    });
+  }
+
+  [[nodiscard]] Feature featureAt(const uniform::Vector& point, const Coord& corner,
+                                  const LoopCrossings& crossings) const {
     Vec3 sum(0);
     for (int i = 0; i < crossings.size(); ++i) sum += Vec3(crossings.normal(i));
-    const uniform::Qef planes = crossings.planes(affine, corner);
-    const uniform::Vector best = uniform::solve(planes, kHalfCell);
     if (!sum.normalize()) sum = Vec3(0);
-    features.push_back(
-        {affine.position(corner, 0.5 + static_cast<double>(best[0]),
-                         0.5 + static_cast<double>(best[1]), 0.5 + static_cast<double>(best[2])),
-         {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])}});
-    return true;
+    return {volume_.affine.position(corner, 0.5 + static_cast<double>(point[0]),
+                                    0.5 + static_cast<double>(point[1]),
+                                    0.5 + static_cast<double>(point[2])),
+            Normal(sum)};
+  }
+
+  // A crease may clip a cell whose own crossings all lie on one sheet. The loops beyond its arcs
+  // tell of the other: where the sheets meet in this cell there is a vertex, too.
+  [[nodiscard]] std::optional<uniform::Vector> creaseThrough(const SurfaceBlock& block,
+                                                             const std::array<int, 3>& at,
+                                                             const CubeCase& cell, int loop,
+                                                             const LoopCrossings& crossings) const {
+    std::optional<uniform::Qef> planes;
+    forLoop(cell, loop, [&](int edge) {
+      const Beyond beyond = loopBeyond(block, at, cell, edge);
+      if (beyond.loop < 0 || !sharp_[beyond.cell].has(beyond.loop)) return;
+      if (!planes) planes = crossings.planes(volume_.affine, cornerOf(block, at));
+      uniform::Vector here{};
+      here[beyond.face / 2] = (beyond.face & 1) != 0 ? -1.0F : 1.0F;
+      *planes += blocks_[beyond.block].planes[sharp_[beyond.cell].of(beyond.loop)].seenFrom(here);
+    });
+    if (!planes) return std::nullopt;
+    // Along the crease the vertex is nearest to the crossings of this loop.
+    const uniform::Qef own = crossings.planes(volume_.affine, cornerOf(block, at));
+    for (int i = 0; i < 3; ++i) planes->points[i] = own.points[i] * planes->count / own.count;
+    if (!CreasePoint::mayBeInside(*planes)) return std::nullopt;
+    const CreasePoint best(*planes);
+    if (!best.isInside) return std::nullopt;
+    return best.inside;
   }
 
   // Whether a triangle of the case belongs to a loop without a feature. Its first corner is an
@@ -241,31 +310,49 @@ class SharpMesher {
     });
   }
 
+  // The loop of the next cell that shares an arc.
+  struct Beyond {
+    std::size_t block = 0;   ///< of the surface blocks
+    std::uint64_t cell = 0;  ///< of all surface cells
+    int face = 0;            ///< between the two cells, as the first one numbers it
+    int loop = -1;           ///< -1 for none
+  };
+
+  // That of the arc from a crossing to the next.
+  [[nodiscard]] Beyond loopBeyond(const SurfaceBlock& block, std::array<int, 3> at,
+                                  const CubeCase& cell, int edge) const {
+    Beyond beyond;
+    beyond.face = kFaceOf[edge][cell.next[edge]];
+    const int axis = beyond.face / 2;
+    at[axis] += (beyond.face & 1) != 0 ? 1 : -1;
+    const uniform::SurfaceBlockIndex index =
+        topology_.neighbour(block, at[0] >> 3, at[1] >> 3, at[2] >> 3);
+    if (index == uniform::kNoSurfaceBlock) return beyond;
+    const SurfaceBlock& owner = topology_.blocks[index];
+    const int local = grid::cellIndex(at[0] & 7, at[1] & 7, at[2] & 7);
+    beyond.block = index;
+    beyond.cell = owner.firstVertex + topology_.firstVertexInBlock(owner, local);
+    const CubeCase& next = caseOf(cells_.codes[beyond.cell]);
+    const int arrives = kBeyond[edge][axis];
+    // It has no triangles where it has open edges.
+    if (next.next[arrives] >= 0) beyond.loop = next.loopOf[arrives];
+    return beyond;
+  }
+
   // The feature of the loop that shares the arc from a crossing to the next, if the edge between
   // the two features is to take the place of the arc's.
   [[nodiscard]] std::optional<VertexIndex> featureBeyond(const SurfaceBlock& block,
-                                                         std::array<int, 3> at,
+                                                         const std::array<int, 3>& at,
                                                          const CubeCase& cell, int edge) const {
-    const int face = kFaceOf[edge][cell.next[edge]];
-    const int axis = face / 2;
-    at[axis] += (face & 1) != 0 ? 1 : -1;
-    const uniform::SurfaceBlockIndex index =
-        topology_.neighbour(block, at[0] >> 3, at[1] >> 3, at[2] >> 3);
-    if (index == uniform::kNoSurfaceBlock) return std::nullopt;
-    const SurfaceBlock& owner = topology_.blocks[index];
-    const int local = grid::cellIndex(at[0] & 7, at[1] & 7, at[2] & 7);
-    const std::uint64_t number = owner.firstVertex + topology_.firstVertexInBlock(owner, local);
-    const CubeCase& beyond = caseOf(cells_.codes[number]);
-    const int arrives = kBeyond[edge][axis];
-    // It has no triangles where it has open edges.
-    if (beyond.next[arrives] < 0) return std::nullopt;
-    const CellFeatures& features = features_[number];
-    const int loop = beyond.loopOf[arrives];
-    if (!features.has(loop)) return std::nullopt;
-    if (ownsBothArcs(cell, cell.loopOf[edge], face) && ownsBothArcs(beyond, loop, face ^ 1)) {
+    const Beyond beyond = loopBeyond(block, at, cell, edge);
+    if (beyond.loop < 0) return std::nullopt;
+    const CellFeatures& features = features_[beyond.cell];
+    if (!features.has(beyond.loop)) return std::nullopt;
+    if (ownsBothArcs(cell, cell.loopOf[edge], beyond.face) &&
+        ownsBothArcs(caseOf(cells_.codes[beyond.cell]), beyond.loop, beyond.face ^ 1)) {
       return std::nullopt;
     }
-    return features.of(loop);
+    return features.of(beyond.loop);
   }
 
   // Whether one loop has all four edges of a face.
@@ -283,6 +370,7 @@ class SharpMesher {
   base::Job& job_;
   Mesh mesh_;
   std::vector<BlockFeatures> blocks_;
+  std::vector<CellFeatures> sharp_;     ///< of each surface cell: loops with planes
   std::vector<CellFeatures> features_;  ///< of each surface cell
   std::uint64_t triangleCount_ = 0;
   std::size_t featureCells_ = 0;

@@ -52,6 +52,14 @@ struct alignas(16) Qef {
     return moved;
   }
 
+  /// The mean squared distance from the planes of a point `step` away from one on all of them.
+  [[nodiscard]] float meanSquare(const Vector& step) const {
+    const Vector along = {a[0] * step[0] + a[1] * step[1] + a[2] * step[2],
+                          a[1] * step[0] + a[3] * step[1] + a[4] * step[2],
+                          a[2] * step[0] + a[4] * step[1] + a[5] * step[2]};
+    return dot(along, step) / count;
+  }
+
   /// Mean of the points; the count must not be 0.
   [[nodiscard]] Vector massPoint() const {
     const float share = 1 / count;
