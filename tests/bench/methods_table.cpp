@@ -1,5 +1,5 @@
-// The table of docs/methods.md: every way to mesh that compareMethods() knows, on four volumes.
-// Prints rows of Markdown.
+// The tables of docs/which-method.md: every way to mesh that compareMethods() knows, on four
+// volumes. Prints rows of Markdown.
 
 #include <openvdb/openvdb.h>
 
