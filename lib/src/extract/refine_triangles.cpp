@@ -92,14 +92,25 @@ class Refiner {
   // Moves vertices onto the surface, and finds those that stay where they are.
   void settleVertices() {
     std::vector<Vec3> normals(mesh_.positions.size(), Vec3(0));
-    for (const Triangle& triangle : mesh_.triangles) {
-      for (const VertexIndex vertex : triangle.vertices) normals[vertex] += normalOf(triangle);
+    std::vector<double> reach(mesh_.positions.size(), TrilinearSurface::kReach);
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      job_.pollCancelled(i);
+      const auto& corners = mesh_.triangles[i].vertices;
+      const Vec3 normal = normalOf(mesh_.triangles[i]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const VertexIndex a = corners[k], b = corners[(k + 1) % 3];
+        normals[a] += normal;
+        // So that the ends of an edge do not pass each other.
+        const double half = (at(a) - at(b)).length() / 2 / volume_.affine.voxelSize();
+        reach[a] = std::min(reach[a], half);
+        reach[b] = std::min(reach[b], half);
+      }
     }
     stays_.assign(mesh_.positions.size(), 0);
     forEach(stays_.size(), [&](TrilinearSurface& surface, std::size_t i) {
       const double distance = surface.distanceOf(mesh_.positions[i], rule_.tolerance);
       if (distance <= rule_.tolerance) return;
-      const auto foot = footOf(surface, mesh_.positions[i], TrilinearSurface::kReach, normals[i]);
+      const auto foot = footOf(surface, mesh_.positions[i], reach[i], normals[i]);
       if (distance > rule_.stayBeyond || !foot) {
         stays_[i] = 1;
         return;

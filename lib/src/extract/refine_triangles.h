@@ -25,10 +25,10 @@ struct RefineRule {
 /// techniques", 1984), so that angles do not get ever smaller.
 ///
 /// Ends when the tolerance holds, or where edges are shorter than an eighth of a voxel, whose
-/// halves would be the finest. Vertices go at most 60 degrees beside the mesh's normal, new ones at
-/// most a quarter of their edge's length, so that they find no other sheet and edges get shorter;
-/// others stay where they are. Positions are counted from the volume's affine.origin(); quads
-/// become triangles. Returns what was reached.
+/// halves would be the finest. Vertices go at most 60 degrees beside the mesh's normal, by half of
+/// their shortest edge, and new ones by a quarter of their edge, so that they find no other sheet
+/// and edges get shorter; others stay where they are. Positions are counted from the volume's
+/// affine.origin(); quads become triangles. Returns what was reached.
 Refinement refineTriangles(const grid::Volume& volume, const RefineRule& rule, Mesh& mesh,
                            base::Job& job);
 
