@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "assemble.h"
+#include "attribute_options.h"
 #include "checker.h"
 #include "commands.h"
 #include "console.h"
@@ -35,6 +36,7 @@ struct ChunksArguments {
   std::string output;
   std::optional<std::string> grid;
   ChunkOptions chunks;
+  AttributeWords attributes;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
   std::string format = "glb";
@@ -47,9 +49,11 @@ struct ChunksArguments {
 /// What one run made and how long its parts took.
 struct ChunksRun {
   ChunkIndex index;
+  std::vector<Attribute> attributes;  ///< without values
   ContourReport contour;
   double readSeconds = 0;
   double buildSeconds = 0;
+  double attributeSeconds = 0;
   double writeSeconds = 0;
 };
 
@@ -88,6 +92,18 @@ void requireWritableFolder(const std::filesystem::path& folder) {
   requireWritable(std::filesystem::is_directory(folder) ? folder / "chunks.json" : folder);
 }
 
+std::vector<Attribute> withoutValues(const std::vector<Attribute>& attributes) {
+  std::vector<Attribute> names;
+  for (const Attribute& each : attributes) names.push_back({each.name, each.width, each.role});
+  return names;
+}
+
+bool sameNames(const std::vector<Attribute>& a, const std::vector<Attribute>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.name == y.name && x.width == y.width && x.role == y.role;
+  });
+}
+
 /// Adds the chunks of an earlier run that this one has not built again.
 void keepOthers(ChunkIndex& index, const std::string& folder) {
   if (!std::filesystem::exists(std::filesystem::path(folder) / "chunks.json")) return;
@@ -96,7 +112,7 @@ void keepOthers(ChunkIndex& index, const std::string& folder) {
       before.tolerances != index.tolerances || before.transform != index.transform ||
       before.creaseAngle != index.creaseAngle || before.compression != index.compression ||
       before.step != index.step || before.up != index.up || before.scale != index.scale ||
-      !(before.origin == index.origin)) {
+      !sameNames(before.attributes, index.attributes) || !(before.origin == index.origin)) {
     throw Error(ErrorCode::InvalidArgument,
                 folder + " holds chunks of another volume or of other options");
   }
@@ -129,14 +145,22 @@ ChunksRun build(const ChunksArguments& arguments) {
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
   std::map<tufa::Coord, std::vector<ChunkFile>> files;
   std::optional<StagedFolder> staged;
+  const AttributeGrids attributes(arguments.input, arguments.attributes);
   const ChunkSink sink = [&](const ChunkIndex& index, Chunk&& chunk) {
+    run.attributeSeconds += timed([&] {
+      for (ChunkLevel& level : chunk.levels) {
+        level.attributes = attributes.sample(level.positions, options.contour.threads);
+      }
+    });
+    if (run.attributes.empty()) run.attributes = withoutValues(chunk.levels.front().attributes);
     run.writeSeconds += timed([&] {
       if (!staged) staged.emplace(arguments.output);
       files[chunk.index] = writeChunk(index, chunk, staged->path(), format);
     });
   };
   run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
-  run.buildSeconds -= run.writeSeconds;
+  run.buildSeconds -= run.writeSeconds + run.attributeSeconds;
+  run.index.attributes = run.attributes;
   if (!arguments.quiet) {
     noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
     if (!arguments.grid) noteChoice(arguments.input, run.index.grid);
@@ -198,6 +222,9 @@ Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
   json["chunk_size"] = run.index.chunkSize;
   json["step"] = run.index.step;
   json["chunks"] = run.index.chunks.size();
+  if (!run.attributes.empty()) {
+    json["attributes"] = toJson(run.attributes, arguments.attributes);
+  }
   json["levels"] = Json::array();
   for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
     const LevelSum sum = sumOf(run.index, level);
@@ -210,11 +237,19 @@ Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
          {"transition_error_voxels", sum.transitionErrorVoxels},
          {"pairs_left", sum.pairsLeft}});
   }
-  json["seconds"] = {
-      {"read", run.readSeconds}, {"build", run.buildSeconds}, {"write", run.writeSeconds}};
+  json["seconds"] = {{"read", run.readSeconds},
+                     {"build", run.buildSeconds},
+                     {"attributes", run.attributeSeconds},
+                     {"write", run.writeSeconds}};
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = resolveThreads(arguments.chunks.contour.threads);
   return json;
+}
+
+std::string describeAttributes(const ChunksRun& run) {
+  if (run.attributes.empty()) return "";
+  return ", attributes " + describe(run.attributes) + " " + shortNumber(run.attributeSeconds) +
+         " s";
 }
 
 std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
@@ -235,8 +270,9 @@ std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
                       [](const ChunkLevelEntry& level) { return !level.file.empty(); }));
   }
   return text + "read " + shortNumber(run.readSeconds) + " s, build " +
-         shortNumber(run.buildSeconds) + " s\nwrote " + formatCount(files) + " files to " +
-         arguments.output + ", in " + shortNumber(run.writeSeconds) + " s\n";
+         shortNumber(run.buildSeconds) + " s" + describeAttributes(run) + "\nwrote " +
+         formatCount(files) + " files to " + arguments.output + ", in " +
+         shortNumber(run.writeSeconds) + " s\n";
 }
 
 int runBuild(const ChunksArguments& arguments) {
@@ -259,11 +295,12 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
                 assembling ? "--assemble takes no volume" : "FILE or --assemble DIR is needed");
   }
   const std::vector<const char*> others =
-      assembling ? std::vector<const char*>{"--grid",    "--chunk",  "--levels", "--tolerance",
-                                            "--factor",  "--format", "--only",   "--iso",
-                                            "--crease",  "--up",     "--scale",  "--quantize",
-                                            "--compress"}
-                 : std::vector<const char*>{"--lods", "--pixel-error", "--check"};
+      assembling
+          ? std::vector<const char*>{"--grid",     "--chunk",     "--levels",   "--tolerance",
+                                     "--factor",   "--format",    "--only",     "--iso",
+                                     "--crease",   "--up",        "--scale",    "--quantize",
+                                     "--compress", "--attribute", "--velocity", "--shutter"}
+          : std::vector<const char*>{"--lods", "--pixel-error", "--check"};
   for (const char* option : others) {
     if (command.count(option) == 0) continue;
     throw Error(ErrorCode::InvalidArgument,
@@ -272,6 +309,10 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
   for (const char* option : {"--quantize", "--compress", "--up", "--scale"}) {
     if (command.count(option) == 0 || arguments.format == "glb") continue;
     throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for --format glb only");
+  }
+  if (!assembling) {
+    requireAttributes(arguments.attributes,
+                      arguments.format == "glb" ? MeshFormat::Glb : MeshFormat::Ply);
   }
   if (command.count("--normals") != 0) {
     throw Error(ErrorCode::InvalidArgument, "--normals is not for chunks");
@@ -305,6 +346,7 @@ void addBuildOptions(CLI::App& app, ChunksArguments& arguments) {
       ->capture_default_str();
   addFrameOptions(app, options.up, options.scale);
   addCompressionOptions(app, options.compression);
+  addAttributeOptions(app, arguments.attributes);
   app.add_option("--only", arguments.only,
                  "indices of the chunks to make, such as 0,-1,2; default: all");
 }

@@ -181,7 +181,7 @@ void addLodCommand(CLI::App& app, Command& chosen) {
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);
   addFilterOptions(*lod, arguments->filters);
-  addAttributeOption(*lod, arguments->attributes);
+  addAttributeOptions(*lod, arguments->attributes);
   addContourOptions(*lod, arguments->lod.contour, arguments->isovalue);
   lod->add_flag("--allow-empty", arguments->allowEmpty,
                 "write an empty file where the grid has no surface");

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "attribute_options.h"
 #include "base/vec3.h"
 #include "checker.h"
 #include "console.h"
@@ -80,7 +79,9 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   if (!arguments.attributes.empty()) {
     run.attributeSeconds = timed([&] {
       const AttributeGrids attributes(arguments.input, arguments.attributes);
-      for (Lod& lod : run.chain.levels) attributes.sample(lod.mesh, options.contour.threads);
+      for (Lod& lod : run.chain.levels) {
+        lod.mesh.attributes = attributes.sample(lod.mesh.positions, options.contour.threads);
+      }
     });
   }
 

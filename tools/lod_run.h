@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "attribute_options.h"
 #include "filter_options.h"
 
 namespace tufa::tools {
@@ -19,7 +20,7 @@ struct LodArguments {
   std::optional<std::string> format;  ///< of standard output
   std::optional<std::string> grid;
   FilterWords filters;
-  std::vector<std::string> attributes;  ///< words for AttributeGrids
+  AttributeWords attributes;
   LodOptions lod;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";

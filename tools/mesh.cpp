@@ -162,7 +162,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
   addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);
   addFilterOptions(*mesh, arguments->filters);
-  addAttributeOption(*mesh, arguments->attributes);
+  addAttributeOptions(*mesh, arguments->attributes);
   addContourOptions(*mesh, arguments->contour, arguments->isovalue);
   mesh->add_option(
           "--crease", arguments->creaseAngle,

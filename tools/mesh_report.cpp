@@ -32,7 +32,7 @@ Json toJson(const Refinement& refinement) {
 }
 
 /// Adds the keys of one grid, times aside.
-void addGrid(Json& json, const GridRun& run) {
+void addGrid(Json& json, const GridRun& run, const AttributeWords& words) {
   json["grid"] = run.grid;
   if (!run.united.empty()) json["union"] = run.united;
   json["output"] = run.output;
@@ -55,10 +55,7 @@ void addGrid(Json& json, const GridRun& run) {
   json["triangles"] = run.mesh.triangleCount();
   json["quads"] = run.mesh.quads.size();
   if (!run.mesh.attributes.empty()) {
-    json["attributes"] = Json::array();
-    for (const Attribute& attribute : run.mesh.attributes) {
-      json["attributes"].push_back({{"name", attribute.name}, {"width", attribute.width}});
-    }
+    json["attributes"] = tools::toJson(run.mesh.attributes, words);
   }
   if (run.contour.certificate) json["certificate"] = toJson(*run.contour.certificate);
   if (run.contour.refinement) json["refinement"] = toJson(*run.contour.refinement);
@@ -152,14 +149,14 @@ Json toJson(const MeshRun& run, const MeshArguments& arguments) {
     json["grids"] = Json::array();
     for (const GridRun& grid : run.grids) {
       Json one;
-      addGrid(one, grid);
+      addGrid(one, grid, arguments.attributes);
       one["seconds"] = secondsOf(grid);
       if (grid.check) one["check"] = toJson(*grid.check);
       json["grids"].push_back(std::move(one));
     }
     json["seconds"] = {{"write", run.writeSeconds}};
   } else {
-    addGrid(json, run.grids.front());
+    addGrid(json, run.grids.front(), arguments.attributes);
     json["seconds"] = secondsOf(run.grids.front());
     json["seconds"]["write"] = run.writeSeconds;
   }

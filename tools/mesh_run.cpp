@@ -8,7 +8,6 @@
 #include <memory>
 #include <utility>
 
-#include "attribute_options.h"
 #include "checker.h"
 #include "console.h"
 #include "number.h"
@@ -72,7 +71,8 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
   grid.reset();
   if (!arguments.attributes.empty()) {
     run.attributeSeconds = timed([&] {
-      AttributeGrids(arguments.input, arguments.attributes).sample(run.mesh, options.threads);
+      run.mesh.attributes = AttributeGrids(arguments.input, arguments.attributes)
+                                .sample(run.mesh.positions, options.threads);
     });
   }
 }
@@ -245,7 +245,7 @@ void requireFeasible(const MeshArguments& arguments) {
   }
   requireDistinct(arguments.output, {arguments.input});
   requireMeshOutput(arguments.output, arguments.format);
-  if (!arguments.attributes.empty()) {
+  if (!arguments.attributes.empty() || arguments.attributes.shutter) {
     requireAttributes(arguments.attributes, meshFormat(arguments.output, arguments.format));
   }
   if (arguments.up != UpAxis::Y || arguments.scale != 1) {

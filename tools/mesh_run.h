@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "attribute_options.h"
 #include "filter_options.h"
 
 namespace tufa::tools {
@@ -32,7 +33,7 @@ struct MeshArguments {
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
   std::string refine = "0";                         ///< a length; not for dual
   FilterWords filters;
-  std::vector<std::string> attributes;  ///< words for AttributeGrids
+  AttributeWords attributes;
   ContourOptions contour;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <tufa/chunks.h>
 #include <tufa/io.h>
 #include <tufa/shapes.h>
 #include <nlohmann/json.hpp>
@@ -57,6 +58,56 @@ TEST_F(AttributeOptions, AreInEveryLod) {
   EXPECT_NE(bytes.find("\"_VEL\"", first + 1), std::string::npos);
   EXPECT_EQ(run("lod a.vdb -o 'l{}.ply' --levels 2 --attribute vel --quiet").exitCode, 0);
   EXPECT_NE(readBytes(folder / "l1.ply").find("property float vel_z\n"), std::string::npos);
+}
+
+TEST_F(AttributeOptions, AreInChunks) {
+  const Outcome outcome = run("chunks a.vdb -o c --chunk 16 --levels 2 --attribute vel --json");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(outcome.out)["attributes"],
+            Json::parse(R"([{"name": "vel", "width": 3}])"));
+  const ChunkIndex index = readChunkIndex((folder / "c").string());
+  ASSERT_EQ(index.attributes.size(), 1u);
+  EXPECT_EQ(index.attributes[0].width, 3);
+  for (const ChunkLevelEntry& level : index.chunks.at(0).levels) {
+    EXPECT_NE(readBytes(folder / "c" / level.file).find("\"_VEL\""), std::string::npos);
+  }
+  EXPECT_FALSE(readChunk(index, 0, (folder / "c").string()).levels.empty());
+  const Outcome ply =
+      run("chunks a.vdb -o p --chunk 16 --levels 2 --format ply --attribute heat --attribute vel");
+  ASSERT_EQ(ply.exitCode, 0) << ply.err;
+  EXPECT_NE(ply.out.find(", attributes heat, vel (3) "), std::string::npos) << ply.out;
+  const std::string folderOfPly = (folder / "p").string();
+  const ChunkIndex plyIndex = readChunkIndex(folderOfPly);
+  const std::string bytes = readBytes(folder / "p" / plyIndex.chunks.at(0).levels[1].file);
+  EXPECT_NE(bytes.find("property float heat\nproperty float vel_x\n"), std::string::npos);
+  EXPECT_EQ(readChunk(plyIndex, 0, folderOfPly).levels[1].positions.size(),
+            plyIndex.chunks[0].levels[1].vertices);
+  // Chunks of other attributes do not go into one folder.
+  const Outcome other = run("chunks a.vdb -o c --chunk 16 --levels 2 --only 0,0,0");
+  EXPECT_EQ(other.exitCode, 2);
+  EXPECT_NE(other.err.find("other options"), std::string::npos) << other.err;
+}
+
+TEST_F(AttributeOptions, OfVelocitiesAreMorphTargets) {
+  for (const char* command :
+       {"mesh a.vdb -o m.glb", "lod a.vdb -o m.glb --levels 2",
+        "mesh a.vdb -o m.glb --compress --up z", "chunks a.vdb -o m --chunk 16 --levels 2"}) {
+    const Outcome outcome = run(std::string(command) + " --velocity vel --shutter 1/4");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("motion by vel"), std::string::npos) << outcome.out;
+  }
+  EXPECT_NE(readBytes(folder / "m.glb").find("\"targetNames\":[\"vel\"]"), std::string::npos);
+  const Outcome outcome = run("mesh a.vdb -o m.glb --velocity vel --shutter 0.25 --json");
+  EXPECT_EQ(Json::parse(outcome.out)["attributes"][0]["shutter"], 0.25);
+  expectFailure("mesh a.vdb -o m.ply --velocity vel --shutter 1", 2, "for .glb only");
+  expectFailure("chunks a.vdb -o c --format ply --velocity vel --shutter 1", 2, "for .glb only");
+  expectFailure("mesh a.vdb -o n.glb --velocity vel", 2, "--velocity needs --shutter");
+  expectFailure("mesh a.vdb -o n.glb --shutter 1", 2, "--shutter needs --velocity");
+  for (const char* shutter : {"0", "1/0", "1/", "fast", "nan", "1/2/3"}) {
+    expectFailure(std::string("mesh a.vdb -o n.glb --velocity vel --shutter ") + shutter, 2,
+                  "--shutter takes seconds");
+  }
+  expectFailure("mesh a.vdb -o n.glb --velocity heat --shutter 1", 2, "a motion needs vectors");
 }
 
 TEST_F(AttributeOptions, SayWhatIsWrong) {

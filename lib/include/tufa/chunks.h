@@ -22,8 +22,8 @@ inline constexpr int kChunkFaces = 6;
 /// Options of buildChunks().
 struct ChunkOptions {
   /// How the surface is read. `tolerance` is that of LOD 0. Ignored: `uniform`, `normals` (always
-  /// the gradient's), `keepLeaves`. Needs edge collapse: `simplify`, and no bounds on cells or
-  /// angles.
+  /// the gradient's), `keepLeaves`, `keepCells`. Needs edge collapse: `simplify`, and no bounds on
+  /// cells or angles.
   ContourOptions contour;
   int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
   int levels = 4;      ///< LODs of each chunk, 1 to 16
@@ -53,7 +53,10 @@ struct ChunkSeam {
 struct ChunkLevel {
   std::vector<Position> positions;  ///< world space
   std::vector<Normal> normals;      ///< one for each position
-  std::vector<Triangle> interior;   ///< always drawn
+  /// Values at the positions, for files; buildChunks() leaves them empty, see sampleAttribute().
+  /// The same at equal positions, as they depend on nothing else.
+  std::vector<Attribute> attributes = {};
+  std::vector<Triangle> interior;  ///< always drawn
   /// To a neighbour of the same LOD or a finer one.
   /// Only triangles that are others beside a coarser neighbour; the rest is `interior`.
   std::array<std::vector<Triangle>, kChunkFaces> regular;
@@ -107,8 +110,11 @@ struct ChunkIndex {
   /// If compressed: world units between neighbouring places of the lattice that all positions are
   /// on. Times `scale` a power of two, so that no program that computes in floats moves a vertex.
   double step = 0;
-  UpAxis up = UpAxis::Y;           ///< as in ChunkOptions
-  double scale = 1;                ///< as in ChunkOptions
+  UpAxis up = UpAxis::Y;  ///< as in ChunkOptions
+  double scale = 1;       ///< as in ChunkOptions
+  /// Names, widths and roles of the attributes in the files, without values; what writes chunks
+  /// fills it in.
+  std::vector<Attribute> attributes = {};
   std::vector<ChunkEntry> chunks;  ///< sorted by index
 
   /// The place of a chunk in `chunks`, or -1.
@@ -133,8 +139,9 @@ TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOption
                                 const ChunkSink& sink, ContourReport* report = nullptr);
 
 /// The triangles of a chunk to draw: its interior, and for each face the transition strip if the
-/// face's bit in `mask` is set, else the regular one. Only the vertices that they use. Throws
-/// Error(InvalidArgument) where there are no such strips: a mask other than 0 at the last LOD.
+/// face's bit in `mask` is set, else the regular one. Only the vertices that they use, with their
+/// attributes. Throws Error(InvalidArgument) where there are no such strips: a mask other than 0 at
+/// the last LOD.
 [[nodiscard]] TUFA_API Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask);
 
 /// A bit for each face of a chunk whose neighbour is drawn at a coarser LOD. `lods` has an LOD for
@@ -153,8 +160,8 @@ TUFA_API void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lo
 
 /// One mesh of all chunks, each at its own LOD; vertices at equal positions become one. LODs of
 /// neighbours may differ by more than one if the chunks have their seams. Missing chunks leave
-/// their neighbours open. Throws Error(InvalidArgument) if `lods` does not fit, or where seams are
-/// needed and missing.
+/// their neighbours open. Attributes are left out: sample them at the mesh's vertices. Throws
+/// Error(InvalidArgument) if `lods` does not fit, or where seams are needed and missing.
 [[nodiscard]] TUFA_API Mesh assembleChunks(const std::vector<Chunk>& chunks,
                                            const std::vector<std::size_t>& lods);
 
@@ -183,8 +190,8 @@ TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder
 /// Reads chunks.json. Throws Error(UnreadableFile).
 [[nodiscard]] TUFA_API ChunkIndex readChunkIndex(const std::string& folder);
 
-/// Reads the meshes of a chunk back, without seams. Throws Error(UnreadableFile), also for a file
-/// that is another one than chunks.json lists.
+/// Reads the meshes of a chunk back, without seams and attributes. Throws Error(UnreadableFile),
+/// also for a file that is another one than chunks.json lists.
 [[nodiscard]] TUFA_API Chunk readChunk(const ChunkIndex& index, std::size_t chunk,
                                        const std::string& folder);
 

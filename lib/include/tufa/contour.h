@@ -78,6 +78,8 @@ struct ContourOptions {
   bool simplify = true;
   /// Keep the leaves of the octree in the certificate.
   bool keepLeaves = false;
+  /// Fill Mesh::cells.
+  bool keepCells = false;
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
   /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
   std::shared_ptr<const openvdb::GridBase> toleranceGrid;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tufa/coord.h>
 #include <tufa/export.h>
 #include <array>
 #include <cstddef>
@@ -63,12 +64,15 @@ struct Quad {
 enum class AttributeRole {
   Value,   ///< a number or a vector: a property of its own name in .ply, `_NAME` in .glb
   Colour,  ///< linear red, green and blue from 0 to 1: `COLOR_0` in .glb, in bytes in .ply
+  /// How far a position moves, a vector in world units: a morph target in .glb; no other format
+  /// holds it.
+  Motion,
 };
 
 /// Values at the vertices of a mesh, such as a temperature or a velocity.
 struct Attribute {
-  std::string name;                           ///< "temperature"
-  int width = 1;                              ///< values for each vertex, 1 to 4; a colour has 3
+  std::string name;  ///< "temperature"
+  int width = 1;     ///< values for each vertex, 1 to 4; a colour and a motion have 3
   AttributeRole role = AttributeRole::Value;  ///< for files
   std::vector<float> values = {};             ///< those of one position after the other
 };
@@ -81,6 +85,9 @@ struct Mesh {
   std::vector<Triangle> triangles;  ///< faces of three corners
   /// Values at the positions; what makes meshes leaves them empty, see <tufa/attributes.h>.
   std::vector<Attribute> attributes = {};
+  /// Empty, or for each position the cell of the grid that it lies in, by the cell's least lattice
+  /// point: for hosts that look up more of the grid there. See ContourOptions::keepCells.
+  std::vector<Coord> cells = {};
 
   /// Triangles once every quad is split in two.
   [[nodiscard]] std::size_t triangleCount() const { return triangles.size() + 2 * quads.size(); }

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "base/job.h"
+#include "base/known_enum.h"
 
 namespace tufa {
 namespace {
@@ -56,18 +57,18 @@ double sampleComponent(const Accessor& accessor, const Vec3d& place, int i) {
 
 /// The values at a range of positions.
 template <class GridT>
-void sampleRange(const GridT& grid, const Mesh& mesh, std::size_t begin, std::size_t end,
-                 Attribute& attribute) {
+void sampleRange(const GridT& grid, std::span<const Position> positions, double factor,
+                 std::size_t begin, std::size_t end, Attribute& attribute) {
   const auto accessor = grid.getConstUnsafeAccessor();
   const bool staggered = grid.getGridClass() == openvdb::GRID_STAGGERED;
   const auto width = static_cast<std::size_t>(attribute.width);
   for (std::size_t v = begin; v < end; ++v) {
-    const Position& p = mesh.positions[v];
+    const Position& p = positions[v];
     const Vec3d place = grid.transform().worldToIndex(Vec3d(p.x, p.y, p.z));
     for (int i = 0; i < attribute.width; ++i) {
       Vec3d at = place;
       if (staggered && attribute.width == 3) at[i] += 0.5;
-      const auto value = static_cast<float>(sampleComponent(accessor, at, i));
+      const auto value = static_cast<float>(factor * sampleComponent(accessor, at, i));
       attribute.values[v * width + static_cast<std::size_t>(i)] = std::isfinite(value) ? value : 0;
     }
   }
@@ -79,16 +80,21 @@ void requireSound(const Attribute& attribute, const openvdb::GridBase& grid) {
   if (attribute.name.empty()) {
     throw Error(ErrorCode::InvalidArgument, "the attribute of a grid without a name needs one");
   }
-  if (attribute.role == AttributeRole::Colour && attribute.width != 3) {
-    throw Error(ErrorCode::InvalidArgument,
-                shownName(grid) + " holds numbers; a colour needs vectors");
+  if (attribute.role != AttributeRole::Value && attribute.width != 3) {
+    const bool colour = attribute.role == AttributeRole::Colour;
+    throw Error(ErrorCode::InvalidArgument, shownName(grid) + " holds numbers; a " +
+                                                (colour ? "colour" : "motion") + " needs vectors");
   }
 }
 
 }  // namespace
 
-Attribute sampleAttribute(const Mesh& mesh, const openvdb::GridBase& grid,
+Attribute sampleAttribute(std::span<const Position> positions, const openvdb::GridBase& grid,
                           const AttributeOptions& options) {
+  base::requireKnown(options.role, AttributeRole::Motion, "the role of an attribute");
+  if (!std::isfinite(options.factor)) {
+    throw Error(ErrorCode::InvalidArgument, "the factor of an attribute is not finite");
+  }
   if (!grid.transform().isLinear()) {
     throw Error(ErrorCode::UnsupportedGrid,
                 "the transform of " + shownName(grid) + " is a frustum; it must be linear");
@@ -101,10 +107,10 @@ Attribute sampleAttribute(const Mesh& mesh, const openvdb::GridBase& grid,
     using Value = typename std::decay_t<decltype(typed)>::ValueType;
     attribute.width = widthOf<Value>();
     requireSound(attribute, grid);
-    attribute.values.resize(mesh.positions.size() * static_cast<std::size_t>(attribute.width));
+    attribute.values.resize(positions.size() * static_cast<std::size_t>(attribute.width));
     job.run([&] {
-      job.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        sampleRange(typed, mesh, begin, end, attribute);
+      job.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        sampleRange(typed, positions, options.factor, begin, end, attribute);
       });
     });
   });
@@ -114,6 +120,11 @@ Attribute sampleAttribute(const Mesh& mesh, const openvdb::GridBase& grid,
                     " values; an attribute is sampled from numbers, booleans or vectors");
   }
   return attribute;
+}
+
+Attribute sampleAttribute(const Mesh& mesh, const openvdb::GridBase& grid,
+                          const AttributeOptions& options) {
+  return sampleAttribute(std::span(mesh.positions), grid, options);
 }
 
 }  // namespace tufa

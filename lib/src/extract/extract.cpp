@@ -113,6 +113,7 @@ Mesh refinedDual(const openvdb::GridBase& grid, const ExtractOptions& options,
     refineMesh(volume, {options.refine, stayBeyond(Method::Dual, options)}, mesh, out, job);
     job.beginStage("finish", 1.0);
     finish(affine, second.normals, mesh, job);
+    if (second.keepCells) mesh.cells = grid::cellsOf(mesh.positions, volume.transform, job);
     return std::move(mesh);
   };
   mesh = base::runCall(second, &refined, work);
@@ -158,6 +159,9 @@ Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions&
     }
     job.beginStage("finish", 1.0);
     finish(volume.affine, options.contour.normals, mesh, job);
+    if (options.contour.keepCells) {
+      mesh.cells = grid::cellsOf(mesh.positions, volume.transform, job);
+    }
     return mesh;
   };
   const bool mayLeaveHoles = method == Method::MarchingCubes;

@@ -2,6 +2,8 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cmath>
+
 #include "grid/vdb_coord.h"
 
 namespace tufa::grid {
@@ -47,5 +49,20 @@ std::array<std::array<double, 4>, 4> Transform::matrix() const {
 }
 
 Transform transformOf(const openvdb::GridBase& grid) { return Transform(grid.transform()); }
+
+std::vector<Coord> cellsOf(const std::vector<Position>& positions, const Transform& transform,
+                           base::Job& job) {
+  constexpr std::size_t kGrain = 4096;
+  std::vector<Coord> cells(positions.size());
+  job.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 index = transform.worldToIndex(positions[i]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        cells[i][axis] = static_cast<std::int32_t>(std::floor(index[axis]));
+      }
+    }
+  });
+  return cells;
+}
 
 }  // namespace tufa::grid

@@ -2,9 +2,12 @@
 
 #include <tufa/openvdb_fwd.h>
 
+#include <tufa/mesh.h>
 #include <array>
 #include <memory>
+#include <vector>
 
+#include "base/job.h"
 #include "base/lattice_range.h"
 #include "base/vec3.h"
 
@@ -28,5 +31,9 @@ class Transform {
 
 /// The transform of a grid.
 [[nodiscard]] Transform transformOf(const openvdb::GridBase& grid);
+
+/// The cells that positions in world space lie in, see Mesh::cells.
+[[nodiscard]] std::vector<Coord> cellsOf(const std::vector<Position>& positions,
+                                         const Transform& transform, base::Job& job);
 
 }  // namespace tufa::grid

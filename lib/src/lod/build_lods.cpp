@@ -213,6 +213,9 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
     const double moved = refine::finishMesh(model, contour, adaptive.extracted, report, job);
     refine::widen(lod.certificate, moved, chain.voxelSize);
     lod.mesh = std::move(adaptive.extracted.mesh);
+    if (contour.keepCells) {
+      lod.mesh.cells = grid::cellsOf(lod.mesh.positions, grid::transformOf(grid), job);
+    }
     lod.intersectionsLeft = report.intersectionsLeft;
     lod.seconds = secondsSince(begin);
     chain.levels.push_back(std::move(lod));

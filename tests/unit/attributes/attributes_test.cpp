@@ -6,6 +6,7 @@
 
 #include <tufa/contour.h>
 #include <tufa/error.h>
+#include <tufa/extract.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>
@@ -268,6 +269,110 @@ TEST(Attributes, AreInEveryLod) {
   const std::string bytes = packed.str();
   EXPECT_EQ(readMesh({bytes}, MeshFormat::Glb).triangleCount(),
             chain.levels[0].mesh.triangleCount());
+}
+
+/// The sphere, and how it moves in half a second.
+Mesh makeMoving() {
+  Mesh mesh = contour(*makeSphere());
+  const auto velocity =
+      fill<openvdb::Vec3SGrid>([](const auto& p) { return openvdb::Vec3s(2 * p); });
+  AttributeOptions options;
+  options.name = "vel";
+  options.role = AttributeRole::Motion;
+  options.factor = 0.5;
+  mesh.attributes.push_back(sampleAttribute(mesh, *velocity, options));
+  return mesh;
+}
+
+/// The sphere is twice as large once its morph target has a weight of 1.
+void expectMoved(const Glb& glb, double unit, double radius) {
+  const Json& mesh = glb.document["meshes"][0];
+  EXPECT_EQ(mesh["weights"], Json::array({0}));
+  EXPECT_EQ(mesh["extras"]["targetNames"], Json::array({"vel"}));
+  const Json& primitive = mesh["primitives"][0];
+  ASSERT_EQ(primitive["targets"].size(), 1u);
+  EXPECT_FALSE(primitive["attributes"].contains("_VEL"));
+  const std::size_t target = primitive["targets"][0]["POSITION"];
+  const auto moves = glb.floats(target, 3);
+  const Json& accessor = glb.document["accessors"][target];
+  ASSERT_EQ(
+      accessor["count"],
+      glb.document["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()]["count"]);
+  for (std::size_t v = 0; v < moves.size(); v += 3) {
+    ASSERT_NEAR(unit * std::hypot(moves[v], moves[v + 1], moves[v + 2]), radius, 0.02 * radius);
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_GE(moves[v + i], accessor["min"][i].get<float>());
+      ASSERT_LE(moves[v + i], accessor["max"][i].get<float>());
+    }
+  }
+}
+
+TEST(Attributes, OfMotionAreMorphTargetsOfGlb) {
+  const Mesh mesh = makeMoving();
+  const double radius = std::hypot(mesh.positions[0].x, mesh.positions[0].y, mesh.positions[0].z);
+  const Glb plain(bytesOf(mesh, MeshFormat::Glb));
+  expectMoved(plain, 1, radius);
+  const Json& primitive = plain.document["meshes"][0]["primitives"][0];
+  const auto places = plain.floats(primitive["attributes"]["POSITION"], 3);
+  const auto moves = plain.floats(primitive["targets"][0]["POSITION"], 3);
+  for (std::size_t i = 0; i < places.size(); ++i) ASSERT_NEAR(moves[i], places[i], 1e-4);
+
+  // Under a node that scales and turns, in 16 bits and in LODs.
+  WriteOptions options;
+  options.compression = GlbCompression::Quantized;
+  options.up = UpAxis::Z;
+  options.scale = 0.01;
+  std::ostringstream quantized;
+  write(mesh, quantized, MeshFormat::Glb, options);
+  const Glb small(quantized.str());
+  expectMoved(small, small.document["nodes"][0]["scale"][0], 0.01 * radius);
+  LodChain chain;
+  chain.levels.emplace_back().mesh = mesh;
+  std::ostringstream lods;
+  writeLods(chain, lods, MeshFormat::Glb);
+  expectMoved(Glb(lods.str()), 1, radius);
+}
+
+TEST(Attributes, OfMotionAreRefusedByOtherFormats) {
+  const Mesh mesh = makeMoving();
+  for (const MeshFormat format : {MeshFormat::Ply, MeshFormat::Usda, MeshFormat::Stl}) {
+    std::ostringstream stream;
+    expectError(ErrorCode::InvalidArgument, "only .glb", [&] { write(mesh, stream, format); });
+  }
+  AttributeOptions options;
+  options.name = "heat";
+  options.role = AttributeRole::Motion;
+  const auto heat = openvdb::FloatGrid::create();
+  expectError(ErrorCode::InvalidArgument, "motion",
+              [&] { static_cast<void>(sampleAttribute(mesh, *heat, options)); });
+}
+
+TEST(Attributes, CellsAreThoseThatPositionsLieIn) {
+  const auto sphere = makeSphere();
+  ContourOptions options;
+  options.keepCells = true;
+  LodOptions lods;
+  lods.contour = options;
+  lods.levels = 2;
+  std::vector<Mesh> meshes = {contour(*sphere, options),
+                              extract(*sphere, Method::MarchingCubes, {options})};
+  ExtractOptions refined{options};
+  refined.refine = 0.01;
+  meshes.push_back(extract(*sphere, Method::Dual, refined));
+  for (Lod& lod : buildLods(*sphere, lods).levels) meshes.push_back(std::move(lod.mesh));
+  ASSERT_EQ(meshes.size(), 5u);
+  for (const Mesh& mesh : meshes) {
+    ASSERT_EQ(mesh.cells.size(), mesh.positions.size());
+    for (std::size_t v = 0; v < mesh.cells.size(); ++v) {
+      const Position& p = mesh.positions[v];
+      const openvdb::Vec3d index = sphere->worldToIndex({p.x, p.y, p.z});
+      for (int i = 0; i < 3; ++i) {
+        const double within = index[i] - mesh.cells[v][static_cast<std::size_t>(i)];
+        ASSERT_TRUE(within >= 0 && within < 1) << within;
+      }
+    }
+  }
+  EXPECT_TRUE(contour(*sphere).cells.empty());
 }
 
 TEST(Attributes, OfAnotherLengthAreRefused) {

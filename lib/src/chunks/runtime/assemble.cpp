@@ -186,6 +186,9 @@ Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask) {
     const auto& strip = (mask >> face & 1u) != 0 ? own.transition[face] : own.regular[face];
     mesh.triangles.insert(mesh.triangles.end(), strip.begin(), strip.end());
   }
+  for (const Attribute& attribute : own.attributes) {
+    mesh.attributes.push_back({attribute.name, attribute.width, attribute.role});
+  }
   std::vector<VertexIndex> places(own.positions.size(), kNone);
   for (Triangle& triangle : mesh.triangles) {
     for (VertexIndex& vertex : triangle.vertices) {
@@ -194,6 +197,13 @@ Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask) {
         place = static_cast<VertexIndex>(mesh.positions.size());
         mesh.positions.push_back(own.positions[vertex]);
         mesh.normals.push_back(own.normals[vertex]);
+        for (std::size_t i = 0; i < own.attributes.size(); ++i) {
+          const std::size_t width = static_cast<std::size_t>(own.attributes[i].width);
+          const auto from =
+              own.attributes[i].values.begin() + static_cast<std::ptrdiff_t>(width * vertex);
+          mesh.attributes[i].values.insert(mesh.attributes[i].values.end(), from,
+                                           from + static_cast<std::ptrdiff_t>(width));
+        }
       }
       vertex = place;
     }

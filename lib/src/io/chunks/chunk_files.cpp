@@ -16,6 +16,7 @@
 #include "io/checksum.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb_document.h"
+#include "io/mesh/file_attributes.h"
 #include "io/output_file.h"
 
 namespace tufa {
@@ -77,6 +78,7 @@ Mesh meshOf(const ChunkLevel& level, std::vector<std::size_t>& parts) {
   Mesh mesh;
   mesh.positions = level.positions;
   mesh.normals = level.normals;
+  mesh.attributes = level.attributes;
   for (std::size_t part = 0; part < kChunkParts; ++part) {
     const std::vector<Triangle>& triangles = io::partOf(level, part);
     mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
@@ -148,15 +150,15 @@ void writeGlb(const ChunkIndex& index, const Chunk& chunk, std::size_t number, S
   if (isOnLattice(index)) shading::orderForGraphics(shaded, parts);
   io::GlbStreams streams = io::encodeIn(frameOf(index, level, packing), mesh, shaded, packing);
   io::GlbDocument document(index.compression);
-  const Json attributes = document.addVertices(streams, {});
-  Json primitives = document.addParts(attributes, streams.indices, parts);
+  const Json vertices = document.addVertices(streams, mesh.attributes);
+  Json primitives = document.addParts(vertices, streams.indices, parts);
   std::size_t part = 0;
   for (Json& primitive : primitives) {
     while (parts[part] == 0) ++part;
     primitive["extras"]["name"] = io::partName(part++);
   }
   const std::size_t node = document.addMesh(
-      io::chunkName(chunk.index, number), std::move(primitives), streams.frame,
+      {io::chunkName(chunk.index, number), std::move(primitives), mesh.attributes}, streams.frame,
       {{"chunk", {chunk.index[0], chunk.index[1], chunk.index[2]}}, {"level", number}});
   document.json()["scenes"][0]["nodes"].push_back(node);
   document.write([&](std::string_view bytes) { file.write(bytes); });
@@ -169,6 +171,7 @@ std::string plyHeader(const ChunkLevel& level, bool precise) {
   for (const char* axis : {"x", "y", "z"}) header += "property " + scalar + " " + axis + "\n";
   for (const char* axis : {"nx", "ny", "nz"})
     header += std::string("property float ") + axis + "\n";
+  for (const Attribute& attribute : level.attributes) header += io::plyProperties(attribute);
   header += "element face " + std::to_string(triangleCount(level)) + "\n";
   return header + "property list uchar int vertex_indices\nproperty uchar part\nend_header\n";
 }
@@ -188,6 +191,9 @@ void writePly(const ChunkLevel& level, SummedFile& file) {
     }
     const Normal& n = level.normals[i];
     bytes.add(Floats{n.x, n.y, n.z});
+    for (const Attribute& attribute : level.attributes) {
+      io::forPlyValues(attribute, i, [&](auto value) { bytes.add(value); });
+    }
   }
   for (std::size_t part = 0; part < kChunkParts; ++part) {
     for (const Triangle& triangle : io::partOf(level, part)) {
@@ -210,6 +216,8 @@ std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
     const ChunkLevel& level = chunk.levels[number];
     ChunkFile& made = files.emplace_back();
     if (triangleCount(level) == 0) continue;
+    io::requireSoundAttributes(level.attributes, level.positions.size(),
+                               format == ChunkFormat::Glb);
     made.name = io::chunkName(chunk.index, number) + (format == ChunkFormat::Glb ? ".glb" : ".ply");
     SummedFile file(std::filesystem::path(folder) / made.name);
     if (format == ChunkFormat::Glb) {

@@ -22,6 +22,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kVersion = 1;
 /// By the numbers of GlbCompression.
 constexpr std::array<std::string_view, 3> kCompressions{"none", "quantized", "meshopt"};
+/// By the numbers of AttributeRole.
+constexpr std::array<std::string_view, 3> kRoles{"value", "colour", "motion"};
+constexpr std::size_t kMostWidth = 4;
 
 Json toJson(const Position& p) { return Json::array({p.x, p.y, p.z}); }
 
@@ -50,6 +53,16 @@ Json toJson(const ChunkIndex& index, std::size_t number) {
   return json;
 }
 
+Json toJson(const std::vector<Attribute>& attributes) {
+  Json json = Json::array();
+  for (const Attribute& attribute : attributes) {
+    json.push_back({{"name", attribute.name},
+                    {"width", attribute.width},
+                    {"role", kRoles.at(static_cast<std::size_t>(attribute.role))}});
+  }
+  return json;
+}
+
 /// All but the chunks.
 Json headOf(const ChunkIndex& index) {
   return {{"tufa_chunks", kVersion},
@@ -63,7 +76,8 @@ Json headOf(const ChunkIndex& index) {
           {"compression", kCompressions.at(static_cast<std::size_t>(index.compression))},
           {"step", index.step},
           {"up", index.up == UpAxis::Z ? "z" : "y"},
-          {"metres_per_unit", index.scale}};
+          {"metres_per_unit", index.scale},
+          {"attributes", toJson(index.attributes)}};
 }
 
 std::string textOf(const Json& json) {
@@ -181,6 +195,22 @@ class IndexReader {
     index.up = up == "z" ? UpAxis::Z : UpAxis::Y;
     index.scale = json.value("metres_per_unit", 1.0);
     require(index.scale > 0, "its metres are not above 0");
+    if (json.contains("attributes")) readAttributes(json["attributes"], index);
+  }
+
+  void readAttributes(const Json& json, ChunkIndex& index) const {
+    require(json.is_array(), "its attributes are no list");
+    for (const Json& each : json) {
+      Attribute& attribute = index.attributes.emplace_back();
+      attribute.name = each.at("name").get<std::string>();
+      const std::size_t width = count(each.at("width"));
+      require(width >= 1 && width <= kMostWidth, "an attribute has no width from 1 to 4");
+      attribute.width = static_cast<int>(width);
+      const auto role = each.at("role").get<std::string>();
+      const auto* const found = std::find(kRoles.begin(), kRoles.end(), role);
+      require(found != kRoles.end(), "the role of an attribute is unknown");
+      attribute.role = static_cast<AttributeRole>(found - kRoles.begin());
+    }
   }
 
   void addChunk(const Json& json, ChunkIndex& index) const {

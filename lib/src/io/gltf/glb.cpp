@@ -28,6 +28,14 @@ std::size_t add(Json& document, const char* array, Json element) {
   return elements.size() - 1;
 }
 
+void addMotions(Json& mesh, const std::vector<Attribute>& attributes) {
+  for (const Attribute& attribute : attributes) {
+    if (attribute.role != AttributeRole::Motion) continue;
+    mesh["weights"].push_back(0);
+    mesh["extras"]["targetNames"].push_back(attribute.name);
+  }
+}
+
 std::string head(const Json& document, std::uint64_t binaryBytes) {
   // A name may hold bytes that are not UTF-8; JSON may not.
   std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);

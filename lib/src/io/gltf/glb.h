@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace tufa::io::glb {
 
@@ -35,6 +36,10 @@ inline constexpr std::size_t kMostShortVertices = 65535;
 
 /// Adds an element to one of the document's arrays; gives its index.
 std::size_t add(Json& document, const char* array, Json element);
+
+/// Adds to a mesh of the document what it says of its morph targets, one for each motion among its
+/// attributes: weights of 0, and their names where programs look for them.
+void addMotions(Json& mesh, const std::vector<Attribute>& attributes);
 
 /// The bytes of a file up to its binary data, of which there are `binaryBytes`, a multiple of 4.
 /// Throws Error(LimitExceeded) if the file would be too large.

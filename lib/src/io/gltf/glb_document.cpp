@@ -39,22 +39,31 @@ std::size_t GlbDocument::addVertices(GlbStream& stream) {
                    {"count", stream.count},
                    {"type", stream.type}};
   if (stream.normalized) accessor["normalized"] = true;
+  if (stream.range) {
+    accessor["min"] = stream.range->front();
+    accessor["max"] = stream.range->back();
+  }
   return glb::add(json_, "accessors", std::move(accessor));
 }
 
 Json GlbDocument::addVertices(GlbStreams& streams, const std::vector<Attribute>& attributes) {
-  const std::size_t positions = addVertices(streams.positions);
-  json_["accessors"][positions]["min"] = streams.least;
-  json_["accessors"][positions]["max"] = streams.greatest;
-  Json names = {{"POSITION", positions}};
+  Json names = {{"POSITION", addVertices(streams.positions)}};
   if (streams.normals.count > 0) names["NORMAL"] = addVertices(streams.normals);
+  Json targets = Json::array();
   for (std::size_t i = 0; i < attributes.size(); ++i) {
-    names[gltfName(attributes, i)] = addVertices(streams.attributes[i]);
+    const std::size_t accessor = addVertices(streams.attributes[i]);
+    if (attributes[i].role == AttributeRole::Motion) {
+      targets.push_back({{"POSITION", accessor}});
+    } else {
+      names[gltfName(attributes, i)] = accessor;
+    }
   }
-  return names;
+  Json vertices = {{"attributes", std::move(names)}};
+  if (!targets.empty()) vertices["targets"] = std::move(targets);
+  return vertices;
 }
 
-Json GlbDocument::addParts(const Json& attributes, GlbStream& indices,
+Json GlbDocument::addParts(const Json& vertices, GlbStream& indices,
                            std::span<const std::size_t> parts) {
   const std::size_t view = addView(indices, false);
   Json primitives = Json::array();
@@ -67,18 +76,19 @@ Json GlbDocument::addParts(const Json& attributes, GlbStream& indices,
                      {"type", indices.type}};
     if (begin > 0) accessor["byteOffset"] = begin * indices.stride;
     begin += count;
-    primitives.push_back({{"attributes", attributes},
-                          {"indices", glb::add(json_, "accessors", std::move(accessor))},
-                          {"mode", 4}});
+    Json primitive = vertices;
+    primitive["indices"] = glb::add(json_, "accessors", std::move(accessor));
+    primitive["mode"] = 4;
+    primitives.push_back(std::move(primitive));
   }
   return primitives;
 }
 
-std::size_t GlbDocument::addMesh(const std::string& name, Json primitives, const GlbFrame& frame,
-                                 const Json& extras) {
-  Json mesh = {{"name", name}, {"primitives", std::move(primitives)}};
+std::size_t GlbDocument::addMesh(GlbMesh made, const GlbFrame& frame, const Json& extras) {
+  Json mesh = {{"name", made.name}, {"primitives", std::move(made.primitives)}};
   if (!extras.is_null()) mesh["extras"] = extras;
-  Json node = {{"name", name}, {"mesh", glb::add(json_, "meshes", std::move(mesh))}};
+  glb::addMotions(mesh, made.attributes);
+  Json node = {{"name", made.name}, {"mesh", glb::add(json_, "meshes", std::move(mesh))}};
   if (frame.translation != std::array<double, 3>{0, 0, 0}) {
     node["translation"] = frame.translation;
   }

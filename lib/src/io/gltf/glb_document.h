@@ -12,6 +12,13 @@
 
 namespace tufa::io {
 
+/// What a .glb says of a mesh beside its vertices.
+struct GlbMesh {
+  std::string name;
+  glb::Json primitives;
+  const std::vector<Attribute>& attributes;
+};
+
 /// A .glb while it is built of streams: the document, and the bytes behind it.
 class GlbDocument {
  public:
@@ -20,18 +27,18 @@ class GlbDocument {
   /// The document, for what this class does not add.
   [[nodiscard]] glb::Json& json() { return json_; }
 
-  /// Adds a mesh's vertices and takes their bytes: the value of "attributes" of its primitives.
+  /// Adds a mesh's vertices and takes their bytes: "attributes" and, where positions move,
+  /// "targets" of its primitives.
   [[nodiscard]] glb::Json addVertices(GlbStreams& streams,
                                       const std::vector<Attribute>& attributes);
 
   /// Adds indices and takes their bytes: a primitive for each part, of which `parts` has the
   /// numbers of indices. Empty parts are left out.
-  [[nodiscard]] glb::Json addParts(const glb::Json& attributes, GlbStream& indices,
+  [[nodiscard]] glb::Json addParts(const glb::Json& vertices, GlbStream& indices,
                                    std::span<const std::size_t> parts);
 
-  /// Adds a mesh of some primitives and a node that takes it to metres; gives the node's number.
-  std::size_t addMesh(const std::string& name, glb::Json primitives, const GlbFrame& frame,
-                      const glb::Json& extras);
+  /// Adds a mesh and a node that takes it to metres; gives the node's number.
+  std::size_t addMesh(GlbMesh mesh, const GlbFrame& frame, const glb::Json& extras);
 
   /// Hands all bytes to `sink`, a function of a std::string_view. Call it once, at the end.
   template <class Sink>

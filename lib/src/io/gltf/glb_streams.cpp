@@ -251,23 +251,49 @@ GlbFrame frameAt(const Point& origin, double factor, double nodeScale, double sc
   return frame;
 }
 
+using Range = std::array<Floats, 2>;
+
+/// Widens a range, of nothing at first, by an element.
+void widen(std::optional<Range>& range, const Floats& element) {
+  if (!range) range = Range{element, element};
+  for (std::size_t i = 0; i < 3; ++i) {
+    range->front()[i] = std::min(range->front()[i], element[i]);
+    range->back()[i] = std::max(range->back()[i], element[i]);
+  }
+}
+
+/// How far elements move: floats, in the unit that the elements of the frame stand for.
+GlbStream motionStream(const Attribute& attribute, const ShadedMesh& shaded, const GlbFrame& frame,
+                       UpAxis up) {
+  GlbStream stream{{}, sizeof(Floats), shaded.sources.size(), glb::kFloat, "VEC3"};
+  stream.bytes.reserve(stream.stride * stream.count);
+  const double factor = frame.factor / (frame.normalized ? kMostShort : 1);
+  for (const VertexIndex source : shaded.sources) {
+    const float* const value = attribute.values.data() + 3 * std::size_t{source};
+    const Point way = turned({value[0], value[1], value[2]}, up);
+    Floats element{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      element[i] = static_cast<float>(factor * way[i]) + 0.0F;
+      append(stream.bytes, element[i]);
+    }
+    widen(stream.range, element);
+  }
+  return stream;
+}
+
 GlbStreams encodeElements(const GlbFrame& frame, const std::vector<Floats>& elements,
                           const Mesh& mesh, const ShadedMesh& shaded, const GlbPacking& packing) {
   GlbStreams streams;
   streams.frame = frame;
-  streams.least = streams.greatest = elements[shaded.sources.front()];
-  for (const VertexIndex source : shaded.sources) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      streams.least[i] = std::min(streams.least[i], elements[source][i]);
-      streams.greatest[i] = std::max(streams.greatest[i], elements[source][i]);
-    }
-  }
   streams.positions = positionStream(elements, shaded, frame);
+  for (const VertexIndex source : shaded.sources) widen(streams.positions.range, elements[source]);
   if (!shaded.normals.empty()) {
     streams.normals = normalStream(shaded, packing.up, packing.compression != GlbCompression::None);
   }
   for (const Attribute& attribute : mesh.attributes) {
-    streams.attributes.push_back(attributeStream(attribute, shaded));
+    streams.attributes.push_back(attribute.role == AttributeRole::Motion
+                                     ? motionStream(attribute, shaded, frame, packing.up)
+                                     : attributeStream(attribute, shaded));
   }
   streams.indices = indexStream(shaded);
   if (packing.compression != GlbCompression::Meshopt) return streams;

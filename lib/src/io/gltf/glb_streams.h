@@ -3,6 +3,7 @@
 #include <tufa/io.h>
 #include <tufa/mesh.h>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct GlbStream {
   int componentType = 0;   ///< as glTF numbers them
   std::string type = "VEC3";
   bool normalized = false;  ///< whole numbers stand for 0 to 1 or -1 to 1
+  /// Of positions and of their motions: the least and the greatest of each coordinate.
+  std::optional<std::array<std::array<float, 3>, 2>> range = {};
 };
 
 /// A mesh as stored in a .glb.
@@ -39,8 +42,6 @@ struct GlbStreams {
   GlbStream normals;                  ///< none if the mesh has none
   std::vector<GlbStream> attributes;  ///< in the mesh's order
   GlbStream indices;                  ///< of all parts, one after another
-  std::array<float, 3> least{};       ///< of the stored positions
-  std::array<float, 3> greatest{};    ///< the same
 };
 
 /// How meshes are stored.

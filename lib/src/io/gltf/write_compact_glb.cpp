@@ -24,9 +24,10 @@ void writeCompactGlb(std::span<const MeshPart> parts, const FileFrame& frame,
     shading::orderForGraphics(shaded, whole);
     GlbStreams streams = encode(mesh, shaded, frames, packing);
     if (!streams.frame.quantized) report.floatMeshes.push_back(part.name);
-    const glb::Json attributes = document.addVertices(streams, mesh.attributes);
+    const glb::Json vertices = document.addVertices(streams, mesh.attributes);
     const std::size_t node = document.addMesh(
-        part.name, document.addParts(attributes, streams.indices, whole), streams.frame, {});
+        {part.name, document.addParts(vertices, streams.indices, whole), mesh.attributes},
+        streams.frame, {});
     document.json()["scenes"][0]["nodes"].push_back(node);
     sink.advance(mesh.positions.size() + mesh.normals.size() + mesh.quads.size() +
                  mesh.triangles.size());

@@ -1,5 +1,6 @@
 // .glb: the binary container of glTF 2.0, meshes of triangles under a node each.
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/gltf/glb.h"
@@ -22,6 +23,10 @@ struct Layout {
   std::uint64_t vertexCount = 0;
   std::uint64_t normalCount = 0;
   std::uint64_t indexCount = 0;
+  /// The position of a written vertex.
+  [[nodiscard]] std::size_t sourceOf(std::size_t vertex) const {
+    return shaded != nullptr ? shaded->sources[vertex] : vertex;
+  }
   [[nodiscard]] std::uint64_t positionBytes() const { return sizeof(Floats) * vertexCount; }
   [[nodiscard]] std::uint64_t normalBytes() const { return sizeof(Floats) * normalCount; }
   [[nodiscard]] std::uint64_t bytesOf(const Attribute& attribute) const {
@@ -93,17 +98,39 @@ Json nodeOf(const Layout& layout, const FileFrame& frame, const std::string& nam
   return node;
 }
 
-/// Adds accessors of floats for the attributes of a part, whose first lies at `begin`.
-void describeAttributes(Json& json, const Layout& layout, std::uint64_t begin, Json& attributes) {
+/// The least and the greatest of the written values of a motion.
+std::array<Floats, 2> rangeOf(const Layout& layout, const Attribute& motion) {
+  std::array<Floats, 2> range{};
+  for (std::size_t vertex = 0; vertex < layout.vertexCount; ++vertex) {
+    const float* const value = motion.values.data() + 3 * layout.sourceOf(vertex);
+    for (std::size_t i = 0; i < 3; ++i) {
+      range[0][i] = vertex == 0 ? value[i] : std::min(range[0][i], value[i]);
+      range[1][i] = vertex == 0 ? value[i] : std::max(range[1][i], value[i]);
+    }
+  }
+  return range;
+}
+
+/// Adds accessors of floats for the attributes of a part, whose first lies at `begin`, and names
+/// them in a primitive.
+void describeAttributes(Json& json, const Layout& layout, std::uint64_t begin, Json& primitive) {
   const std::vector<Attribute>& all = layout.mesh->attributes;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::size_t view = addView(json, begin, layout.bytesOf(all[i]), glb::kArrayBuffer);
     begin += layout.bytesOf(all[i]);
-    attributes[gltfName(all, i)] = glb::add(json, "accessors",
-                                            {{"bufferView", view},
-                                             {"componentType", glb::kFloat},
-                                             {"count", layout.vertexCount},
-                                             {"type", gltfType(all[i])}});
+    Json accessor = {{"bufferView", view},
+                     {"componentType", glb::kFloat},
+                     {"count", layout.vertexCount},
+                     {"type", gltfType(all[i])}};
+    if (all[i].role != AttributeRole::Motion) {
+      primitive["attributes"][gltfName(all, i)] = glb::add(json, "accessors", std::move(accessor));
+      continue;
+    }
+    const auto [least, greatest] = rangeOf(layout, all[i]);
+    accessor["min"] = least;
+    accessor["max"] = greatest;
+    primitive["targets"].push_back(
+        {{"POSITION", glb::add(json, "accessors", std::move(accessor))}});
   }
 }
 
@@ -112,7 +139,8 @@ void describe(Json& json, const Layout& layout, const std::string& name, const F
   const Bounds bounds = boundsOf(*layout.mesh);
   const std::size_t positionView =
       addView(json, layout.begin, layout.positionBytes(), glb::kArrayBuffer);
-  Json attributes;
+  Json primitive;
+  Json& attributes = primitive["attributes"];
   attributes["POSITION"] = glb::add(json, "accessors",
                                     {{"bufferView", positionView},
                                      {"componentType", glb::kFloat},
@@ -130,7 +158,7 @@ void describe(Json& json, const Layout& layout, const std::string& name, const F
                                      {"type", "VEC3"}});
   }
   const std::uint64_t attributeBegin = normalBegin + layout.normalBytes();
-  describeAttributes(json, layout, attributeBegin, attributes);
+  describeAttributes(json, layout, attributeBegin, primitive);
   const std::size_t indexView = addView(json, attributeBegin + layout.attributeBytes(),
                                         layout.indexBytes(), glb::kElementArrayBuffer);
   const std::size_t indices =
@@ -139,10 +167,12 @@ void describe(Json& json, const Layout& layout, const std::string& name, const F
                 {"componentType", layout.shortIndices ? glb::kUnsignedShort : glb::kUnsignedInt},
                 {"count", layout.indexCount},
                 {"type", "SCALAR"}});
-  const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"mode", 4}};
-  const std::size_t mesh =
-      glb::add(json, "meshes", {{"name", name}, {"primitives", Json::array({primitive})}});
-  glb::add(json, "nodes", nodeOf(layout, frame, name, mesh));
+  primitive["indices"] = indices;
+  primitive["mode"] = 4;
+  Json mesh = {{"name", name}, {"primitives", Json::array({std::move(primitive)})}};
+  glb::addMotions(mesh, layout.mesh->attributes);
+  const std::size_t number = glb::add(json, "meshes", std::move(mesh));
+  glb::add(json, "nodes", nodeOf(layout, frame, name, number));
 }
 
 template <class Index>
@@ -171,7 +201,7 @@ void writeIndices(const Layout& layout, MeshSink& sink) {
 void writeAttribute(const Layout& layout, const Attribute& attribute, MeshSink& sink) {
   const auto width = static_cast<std::size_t>(attribute.width);
   for (std::size_t vertex = 0; vertex < layout.vertexCount; ++vertex) {
-    const std::size_t source = layout.shaded != nullptr ? layout.shaded->sources[vertex] : vertex;
+    const std::size_t source = layout.sourceOf(vertex);
     for (std::size_t i = source * width; i < (source + 1) * width; ++i) {
       const float value = gltfValue(attribute, i);
       sink.write(&value, sizeof value);

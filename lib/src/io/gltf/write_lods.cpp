@@ -43,11 +43,12 @@ class LodDocument {
 
   void addLevel(std::size_t level, GlbStreams streams) {
     const Json extras = extrasOf(level, streams);
-    const Json attributes = document_.addVertices(streams, chain_.levels[level].mesh.attributes);
+    const std::vector<Attribute>& attributes = chain_.levels[level].mesh.attributes;
+    const Json vertices = document_.addVertices(streams, attributes);
     const std::size_t whole[] = {streams.indices.count};
-    document_.addMesh(options_.name + "_LOD" + std::to_string(level),
-                      document_.addParts(attributes, streams.indices, whole), streams.frame,
-                      extras);
+    document_.addMesh({options_.name + "_LOD" + std::to_string(level),
+                       document_.addParts(vertices, streams.indices, whole), attributes},
+                      streams.frame, extras);
     levels_.push_back(level);
   }
 
@@ -181,7 +182,7 @@ class LodWriter {
     job_.run([&] {
       for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
         const Mesh& mesh = chain_.levels[level].mesh;
-        requireSoundAttributes(mesh);
+        requireSoundAttributes(mesh.attributes, mesh.positions.size(), false);
         job_.beginStage("encoding", 0.5 * shareUpTo(level + 1));
         parts.push_back({&mesh, options_.name, {}});
         if (options_.creaseAngle < 180 && !mesh.normals.empty()) {
@@ -201,7 +202,7 @@ class LodWriter {
   void addLevel(LodDocument& document, std::size_t level) {
     const Mesh& mesh = chain_.levels[level].mesh;
     job_.beginStage("encoding", shareUpTo(level + 1));
-    requireSoundAttributes(mesh);
+    requireSoundAttributes(mesh.attributes, mesh.positions.size(), true);
     if (mesh.triangleCount() == 0) return;
     ShadedMesh shaded = shading::splitAtCreases(mesh, options_.creaseAngle, job_);
     const std::size_t whole[] = {shaded.indices.size()};

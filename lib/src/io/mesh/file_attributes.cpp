@@ -37,21 +37,25 @@ std::string plainName(const std::string& name) {
   return plain;
 }
 
-void requireSoundAttributes(const Mesh& mesh) {
-  for (const Attribute& attribute : mesh.attributes) {
+void requireSoundAttributes(const std::vector<Attribute>& attributes, std::size_t positions,
+                            bool holdsMotions) {
+  for (const Attribute& attribute : attributes) {
     const auto refuse = [&](const std::string& why) {
       throw Error(ErrorCode::InvalidArgument, "attribute \"" + attribute.name + "\" " + why);
     };
     if (attribute.width < 1 || attribute.width > kMostValues) {
       refuse("has a width of " + std::to_string(attribute.width) + "; it must be 1 to 4");
     }
-    if (attribute.role == AttributeRole::Colour && attribute.width != 3) {
-      refuse("is a colour of " + std::to_string(attribute.width) + " values; it must have 3");
+    const bool motion = attribute.role == AttributeRole::Motion;
+    if (attribute.role != AttributeRole::Value && attribute.width != 3) {
+      refuse(std::string("is a ") + (motion ? "motion" : "colour") + " of " +
+             std::to_string(attribute.width) + " values; it must have 3");
     }
-    const std::size_t due = static_cast<std::size_t>(attribute.width) * mesh.positions.size();
+    if (motion && !holdsMotions) refuse("is a motion, which only .glb holds");
+    const std::size_t due = static_cast<std::size_t>(attribute.width) * positions;
     if (attribute.values.size() != due) {
       refuse("has " + std::to_string(attribute.values.size()) + " values; " +
-             std::to_string(mesh.positions.size()) + " positions need " + std::to_string(due));
+             std::to_string(positions) + " positions need " + std::to_string(due));
     }
   }
 }
@@ -67,6 +71,15 @@ std::vector<std::string> plyNames(const Attribute& attribute) {
     names.back().append(1, '_').append(1, "xyzw"[static_cast<std::size_t>(i)]);
   }
   return names;
+}
+
+std::string plyProperties(const Attribute& attribute) {
+  const bool bytes = attribute.role == AttributeRole::Colour;
+  std::string lines;
+  for (const std::string& name : plyNames(attribute)) {
+    lines += std::string("property ") + (bytes ? "uchar " : "float ") + name + "\n";
+  }
+  return lines;
 }
 
 std::string gltfName(const std::vector<Attribute>& attributes, std::size_t index) {

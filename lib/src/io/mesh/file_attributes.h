@@ -15,8 +15,10 @@ namespace tufa::io {
 [[nodiscard]] std::string plainName(const std::string& name);
 
 /// Throws Error(InvalidArgument) unless every attribute has as many values as its width and the
-/// mesh's positions ask for, and a colour has three.
-void requireSoundAttributes(const Mesh& mesh);
+/// number of positions ask for, and a colour or a motion has three; and where the format holds no
+/// motions, unless there are none.
+void requireSoundAttributes(const std::vector<Attribute>& attributes, std::size_t positions,
+                            bool holdsMotions);
 
 /// The names of an attribute's properties in .ply, one for each of its values. Nothing that a
 /// property may not be called, and none that .ply gives a meaning.
@@ -34,5 +36,22 @@ void requireSoundAttributes(const Mesh& mesh);
 
 /// A linear colour as a byte of sRGB.
 [[nodiscard]] std::uint8_t colourByte(float linear);
+
+/// The lines of an attribute's properties in the header of a .ply.
+[[nodiscard]] std::string plyProperties(const Attribute& attribute);
+
+/// Calls add() with the values of an attribute at a position as a .ply holds them: bytes of a
+/// colour, else floats.
+template <class Add>
+void forPlyValues(const Attribute& attribute, std::size_t position, const Add& add) {
+  const auto width = static_cast<std::size_t>(attribute.width);
+  for (std::size_t i = position * width; i < (position + 1) * width; ++i) {
+    if (attribute.role == AttributeRole::Colour) {
+      add(colourByte(attribute.values[i]));
+    } else {
+      add(attribute.values[i]);
+    }
+  }
+}
 
 }  // namespace tufa::io

@@ -69,9 +69,9 @@ namespace {
 /// The share of a call that splitting at creases takes; the rest goes into bytes.
 constexpr double kShadingEnd = 0.4;
 
-void requireSound(const MeshPart& part) {
+void requireSound(const MeshPart& part, MeshFormat format) {
   const Mesh& mesh = *part.mesh;
-  requireSoundAttributes(mesh);
+  requireSoundAttributes(mesh.attributes, mesh.positions.size(), format == MeshFormat::Glb);
   if (mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) return;
   throw Error(ErrorCode::InvalidArgument, "the mesh has " + std::to_string(mesh.normals.size()) +
                                               " normals for " +
@@ -101,7 +101,6 @@ double splitNormals(std::span<MeshPart> parts, const WriteOptions& options) {
   return kShadingEnd;
 }
 
-/// These hold several meshes, too.
 bool hasNormalsAtCorners(MeshFormat format) {
   return format == MeshFormat::Obj || format == MeshFormat::Glb || format == MeshFormat::Usda;
 }
@@ -118,7 +117,7 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
   base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
   std::size_t total = 0;
   for (const MeshPart& part : parts) {
-    requireSound(part);
+    requireSound(part, format);
     const Mesh& mesh = *part.mesh;
     total +=
         mesh.positions.size() + mesh.normals.size() + mesh.quads.size() + mesh.triangles.size();

@@ -46,12 +46,7 @@ std::string plyHeader(const Mesh& mesh, bool precise) {
       header += std::string("property float ") + axis + "\n";
     }
   }
-  for (const Attribute& attribute : mesh.attributes) {
-    const bool bytes = attribute.role == AttributeRole::Colour;
-    for (const std::string& name : plyNames(attribute)) {
-      header += std::string("property ") + (bytes ? "uchar " : "float ") + name + "\n";
-    }
-  }
+  for (const Attribute& attribute : mesh.attributes) header += plyProperties(attribute);
   header += "element face " + std::to_string(mesh.quads.size() + mesh.triangles.size()) + "\n";
   // int rather than uint wherever it will do: some readers know no other type.
   const bool small = mesh.positions.size() <= std::size_t{std::numeric_limits<std::int32_t>::max()};
@@ -62,14 +57,7 @@ std::string plyHeader(const Mesh& mesh, bool precise) {
 void writePlyAttributes(const Mesh& mesh, std::size_t vertex, MeshSink& sink) {
   Record<4 * sizeof(float)> record;
   for (const Attribute& attribute : mesh.attributes) {
-    const auto width = static_cast<std::size_t>(attribute.width);
-    for (std::size_t i = vertex * width; i < (vertex + 1) * width; ++i) {
-      if (attribute.role == AttributeRole::Colour) {
-        record.add(colourByte(attribute.values[i]));
-      } else {
-        record.add(attribute.values[i]);
-      }
-    }
+    forPlyValues(attribute, vertex, [&](auto value) { record.add(value); });
     record.writeTo(sink);
   }
 }
