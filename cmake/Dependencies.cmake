@@ -10,6 +10,45 @@ find_package(OpenVDB 8.0 REQUIRED)
 find_package(nlohmann_json 3.10 REQUIRED)
 find_package(meshoptimizer CONFIG REQUIRED)
 
+set(TUFA_HAS_LIB3MF FALSE)
+if(TUFA_USE_LIB3MF)
+  # Of version 1: the interface of version 2 is another one.
+  find_path(Lib3MF_INCLUDE_DIR Model/COM/NMR_DLLInterfaces.h PATH_SUFFIXES lib3mf)
+  find_library(Lib3MF_LIBRARY 3MF)
+  mark_as_advanced(Lib3MF_INCLUDE_DIR Lib3MF_LIBRARY)
+  if(Lib3MF_INCLUDE_DIR AND Lib3MF_LIBRARY)
+    set(TUFA_HAS_LIB3MF TRUE)
+    message(STATUS "Tufa writes .3mf through lib3mf")
+  else()
+    message(STATUS "Tufa writes no .3mf: no lib3mf 1 (lib3mf-dev of Debian 12)")
+  endif()
+endif()
+
+set(TUFA_HAS_NANOVDB FALSE)
+if(TUFA_USE_NANOVDB)
+  # Headers alone; files may be compressed by zlib or Blosc.
+  find_path(NanoVDB_INCLUDE_DIR nanovdb/NanoVDB.h)
+  find_path(Blosc_INCLUDE_DIR blosc.h)
+  find_library(Blosc_LIBRARY blosc)
+  find_package(ZLIB QUIET)
+  mark_as_advanced(NanoVDB_INCLUDE_DIR Blosc_INCLUDE_DIR Blosc_LIBRARY)
+  if(NanoVDB_INCLUDE_DIR AND Blosc_INCLUDE_DIR AND Blosc_LIBRARY AND ZLIB_FOUND)
+    # Later headers have other names.
+    include(CheckCXXSourceCompiles)
+    set(CMAKE_REQUIRED_INCLUDES ${NanoVDB_INCLUDE_DIR})
+    check_cxx_source_compiles("#include <nanovdb/util/IO.h>
+      static_assert(sizeof(nanovdb::io::MetaData) == 176 && NANOVDB_MAJOR_VERSION_NUMBER == 32);
+      int main() { return 0; }" TUFA_NANOVDB_COMPILES)
+    unset(CMAKE_REQUIRED_INCLUDES)
+    set(TUFA_HAS_NANOVDB ${TUFA_NANOVDB_COMPILES})
+  endif()
+  if(TUFA_HAS_NANOVDB)
+    message(STATUS "Tufa reads .nvdb")
+  else()
+    message(STATUS "Tufa reads no .nvdb: no libnanovdb-dev of version 32, libblosc-dev or zlib1g-dev")
+  endif()
+endif()
+
 if(TUFA_BUILD_CHECK)
   # CGAL warns about missing build types and sets flags of its own unless told not to.
   set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)

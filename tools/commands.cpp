@@ -88,8 +88,8 @@ CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isoval
 
 void addFrameOptions(CLI::App& app, UpAxis& up, double& scale) {
   addChoice<UpAxis>(app, "--up", up, {{"y", UpAxis::Y}, {"z", UpAxis::Z}},
-                    ".glb and .usda: axis of the volume that points up; glTF's is y (default y)");
-  app.add_option("--scale", scale, ".glb and .usda: metres in a world unit")
+                    ".glb, .usda and .3mf: axis of the volume that points up (default y)");
+  app.add_option("--scale", scale, ".glb, .usda and .3mf: metres in a world unit")
       ->check(above0())
       ->capture_default_str();
 }

@@ -95,7 +95,9 @@ void settle(LodArguments& arguments, const CLI::App& command) {
     throw Error(ErrorCode::InvalidArgument, std::string(option) + " is for " + formats + " only");
   };
   refuse("--crease", glb || usda || format == MeshFormat::Obj, ".glb, .obj and .usda");
-  for (const char* option : {"--up", "--scale"}) refuse(option, glb || usda, ".glb and .usda");
+  for (const char* option : {"--up", "--scale"}) {
+    refuse(option, glb || usda || format == MeshFormat::ThreeMf, ".glb, .usda and .3mf");
+  }
   for (const char* option : {"--lod-scenes", "--quantize", "--compress"}) {
     refuse(option, glb, ".glb");
   }

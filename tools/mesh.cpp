@@ -135,16 +135,16 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
                    "a .vdb file, a sequence with #### for the frame's number, or - for standard "
                    "input")
       ->required();
-  mesh->add_option(
-          "-o,--output", arguments->output,
-          "the mesh to write: .ply (binary), .obj, .stl, .off, .glb or .usda, or - for standard "
-          "output")
+  mesh->add_option("-o,--output", arguments->output,
+                   "the mesh to write: .ply (binary), .obj, .stl, .off, .glb, .usda or .3mf, or - "
+                   "for standard "
+                   "output")
       ->required();
   addFormatOption(*mesh, arguments->format, "of the mesh in standard output");
-  mesh->add_option(
-          "--grid", arguments->grids,
-          "names of grids, or patterns with * and ?: .glb, .obj and .usda hold several meshes, and "
-          "{} in the output's name makes a file for each; default: the first level set")
+  mesh->add_option("--grid", arguments->grids,
+                   "names of grids, or patterns with * and ?: .glb, .obj, .usda and .3mf hold "
+                   "several meshes, and "
+                   "{} in the output's name makes a file for each; default: the first level set")
       ->allow_extra_args(false);
   mesh->add_option_function<std::string>(
           "--join",

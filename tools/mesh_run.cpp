@@ -163,12 +163,14 @@ void requireRoomForAll(const std::vector<std::string>& grids, const MeshArgument
   const std::string& output = arguments.output;
   if (grids.size() < 2 || hasBraces(output)) return;
   const MeshFormat format = meshFormat(output, arguments.format);
-  if (format == MeshFormat::Glb || format == MeshFormat::Obj || format == MeshFormat::Usda) return;
-  throw Error(
-      ErrorCode::InvalidArgument,
-      output + " would hold " + std::to_string(grids.size()) +
-          " meshes, as only .glb, .obj and .usda can; write {} in the file name for one file a "
-          "grid");
+  if (format == MeshFormat::Glb || format == MeshFormat::Obj || format == MeshFormat::Usda ||
+      format == MeshFormat::ThreeMf) {
+    return;
+  }
+  throw Error(ErrorCode::InvalidArgument, output + " would hold " + std::to_string(grids.size()) +
+                                              " meshes, as only .glb, .obj, .usda and .3mf can; "
+                                              "write {} in the file name for one file a "
+                                              "grid");
 }
 
 /// The labels that `--labels` names, all of the grid for "all".
@@ -250,8 +252,8 @@ void requireFeasible(const MeshArguments& arguments) {
   }
   if (arguments.up != UpAxis::Y || arguments.scale != 1) {
     const MeshFormat format = meshFormat(arguments.output, arguments.format);
-    if (format != MeshFormat::Glb && format != MeshFormat::Usda) {
-      throw Error(ErrorCode::InvalidArgument, "--up and --scale are for .glb and .usda only");
+    if (format != MeshFormat::Glb && format != MeshFormat::Usda && format != MeshFormat::ThreeMf) {
+      throw Error(ErrorCode::InvalidArgument, "--up and --scale are for .glb, .usda and .3mf only");
     }
   }
   if (arguments.compression != GlbCompression::None &&

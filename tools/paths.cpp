@@ -18,6 +18,13 @@ bool isPipeOrDevice(const std::filesystem::path& path) {
   return std::filesystem::exists(status) && std::filesystem::is_other(status);
 }
 
+void requireFormat(MeshFormat format) {
+  if (hasFormat(format)) return;
+  throw Error(
+      ErrorCode::InvalidArgument,
+      "this tufa was built without lib3mf, which writes .3mf; write .stl or another format");
+}
+
 void requireEnding(const std::string& output, const std::string& what, const std::string& ending) {
   if (isStandard(output)) return;
   if (endingOf(output) != ending && !isPipeOrDevice(output)) {
@@ -54,10 +61,11 @@ void requirePictureOutput(const std::string& output) { requireEnding(output, "a 
 
 void requireMeshOutput(const std::string& output, const std::optional<std::string>& format) {
   if (isStandard(output) || format) {
-    static_cast<void>(meshFormat(output, format));
+    requireFormat(meshFormat(output, format));
     return;
   }
   requireMeshEnding(output);
+  if (!isPipeOrDevice(output)) requireFormat(meshFormatOf(output));
   requireWritable(output);
 }
 

@@ -23,6 +23,9 @@ enum class MeshFormat {
   Off,   ///< .off
   Glb,   ///< .glb: binary glTF 2.0
   Usda,  ///< .usda: OpenUSD as text; written only
+  /// .3mf, for printing: a mesh of triangles in a unit of length, z up; written only, and where
+  /// Tufa was built with lib3mf, see hasFormat().
+  ThreeMf,
 };
 
 /// The axis of the volume that points up. In glTF it is y: a volume with z up is rotated. .usda
@@ -42,6 +45,9 @@ enum class GlbCompression {
 /// The names of the formats in the order of MeshFormat: "ply", "obj", and so on.
 [[nodiscard]] TUFA_API std::span<const std::string_view> meshFormatNames();
 
+/// Whether this build of Tufa writes a format: all of them but, without lib3mf, .3mf.
+[[nodiscard]] TUFA_API bool hasFormat(MeshFormat format);
+
 /// The format that a file name's ending says, in either case of letters. Throws
 /// Error(InvalidArgument) if it says none.
 [[nodiscard]] TUFA_API MeshFormat meshFormatOf(const std::filesystem::path& path);
@@ -54,8 +60,8 @@ struct WriteOptions {
   /// vertices there become several at one position. Degrees, 0 to 180; 180, or a mesh without
   /// normals, splits none.
   double creaseAngle = 40;
-  UpAxis up = UpAxis::Y;  ///< .glb and .usda: of the volume
-  double scale = 1;       ///< .glb and .usda: metres in a world unit; above 0
+  UpAxis up = UpAxis::Y;  ///< .glb, .usda and .3mf: of the volume
+  double scale = 1;       ///< .glb, .usda and .3mf: metres in a world unit; above 0
   /// .glb: all meshes of a file in one grid. No vertices are joined: a mesh in which rounding to 16
   /// bits would bring two to one place, or three on a line, is stored in floats.
   GlbCompression compression = GlbCompression::None;
@@ -75,22 +81,23 @@ struct NamedMesh {
 };
 
 /// Writes a mesh in the format that the file name's ending says: .ply (binary), .obj, .stl
-/// (binary), .off, .glb or .usda (text). Quads stay quads in .ply, .obj and .off, and in .usda
-/// where no normals are split. Attributes go into .ply, .glb and .usda.
+/// (binary), .off, .glb, .usda (text) or .3mf. Quads stay quads in .ply, .obj and .off, and in
+/// .usda where no normals are split. Attributes go into .ply, .glb and .usda.
 ///
 /// .ply, .obj and .off keep double precision if some position needs it (contour() rounds to single
 /// where that does no harm); .glb and .usda then store positions relative to a translation; .stl is
-/// single precision always. The file appears whole or not at all: it is written under a temporary
-/// name in the same folder and renamed. A pipe or a device is written to as it is, as .ply if it
-/// has no ending.
+/// single precision always, and so is .3mf, to a millionth of a millimetre, or of a micrometre
+/// where a world unit is shorter than a hundredth of a millimetre. The file appears whole or not at
+/// all: it is written under a temporary name in the same folder and renamed. A pipe or a device is
+/// written to as it is, as .ply if it has no ending.
 ///
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending, an option out of its range),
 /// LimitExceeded (more than the format can hold), Cancelled.
 TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options = {}, WriteReport* report = nullptr);
 
-/// Writes several meshes to one file: .glb, a node each, .obj, an object each, or .usda, a prim
-/// each. Their names are used in place of WriteOptions::name. Otherwise as write(); throws
+/// Writes several meshes to one file: .glb, a node each, .obj and .3mf, an object each, or .usda, a
+/// prim each. Their names are used in place of WriteOptions::name. Otherwise as write(); throws
 /// Error(InvalidArgument) for formats that hold one mesh only.
 TUFA_API void writeMeshes(const std::vector<NamedMesh>& meshes, const std::filesystem::path& path,
                           const WriteOptions& options = {}, WriteReport* report = nullptr);

@@ -29,11 +29,12 @@ TEST(Memory, MeshesHaveTheBytesOfFiles) {
   const Mesh mesh = contour(*makeGrid(Shape::Box));
   for (const std::string_view name : meshFormatNames()) {
     const auto path = folder / ("box." + std::string(name));
+    if (!hasFormat(meshFormatOf(path))) continue;
     write(mesh, path);
     std::ostringstream stream;
     write(mesh, stream, meshFormatOf(path));
     EXPECT_EQ(stream.str(), readBytes(path)) << name;
-    if (name == "usda") continue;  // which is not read
+    if (name == "usda" || name == "3mf") continue;  // which are not read
     const std::string bytes = stream.str();
     EXPECT_EQ(readMesh({bytes}, meshFormatOf(path)).positions, readMesh(path).positions) << name;
   }

@@ -84,6 +84,10 @@ void writeGlb(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink&
 void writeCompactGlb(std::span<const MeshPart> parts, const FileFrame& frame,
                      GlbCompression compression, MeshSink& sink, WriteReport& report);
 void writeUsda(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink);
+/// In millimetres, or micrometres where a world unit is small. Throws Error(InvalidArgument) where
+/// has3mf() says that there is no lib3mf.
+void write3mf(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink);
+[[nodiscard]] bool has3mf();
 /// As variants of one prim, the finest first.
 void writeUsdaLods(std::span<const MeshPart> levels, const FileFrame& frame, MeshSink& sink);
 

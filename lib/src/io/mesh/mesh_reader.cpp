@@ -20,6 +20,8 @@ Mesh readAs(MeshFormat format, const io::InputBytes& input) {
       return io::readGlb(input);
     case MeshFormat::Usda:
       input.fail(".usda is written, not read");
+    case MeshFormat::ThreeMf:
+      input.fail(".3mf is written, not read");
   }
   return {};
 }

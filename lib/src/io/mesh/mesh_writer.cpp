@@ -105,6 +105,16 @@ bool hasNormalsAtCorners(MeshFormat format) {
   return format == MeshFormat::Obj || format == MeshFormat::Glb || format == MeshFormat::Usda;
 }
 
+bool holdsSeveral(MeshFormat format) {
+  return hasNormalsAtCorners(format) || format == MeshFormat::ThreeMf;
+}
+
+void requireFormat(MeshFormat format) {
+  if (hasFormat(format)) return;
+  throw Error(ErrorCode::InvalidArgument,
+              "this build of Tufa has no lib3mf, which writes .3mf; write .stl or another format");
+}
+
 /// `open()` opens what is written to, once the options are known to be sound.
 template <class Open>
 void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions& options,
@@ -112,6 +122,7 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
   if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
     throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
   }
+  requireFormat(format);
   const FileFrame frame{options.name, options.up, options.scale};
   requireSoundFrame(frame);
   base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
@@ -149,6 +160,9 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
     case MeshFormat::Usda:
       writeUsda(parts, frame, sink);
       break;
+    case MeshFormat::ThreeMf:
+      write3mf(parts, frame, sink);
+      break;
   }
   file.commit();
   if (report != nullptr) *report = std::move(found);
@@ -157,9 +171,9 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
 /// Throws Error(InvalidArgument) if the format does not hold several meshes.
 std::vector<MeshPart> partsOf(const std::vector<NamedMesh>& meshes, MeshFormat format,
                               const std::string& target) {
-  if (!hasNormalsAtCorners(format)) {
+  if (!holdsSeveral(format)) {
     throw Error(ErrorCode::InvalidArgument,
-                target + ": of the formats only .glb, .obj and .usda hold several meshes");
+                target + ": of the formats only .glb, .obj, .usda and .3mf hold several meshes");
   }
   std::vector<MeshPart> parts;
   for (const NamedMesh& named : meshes) parts.push_back({&named.mesh, named.name, {}});
@@ -170,9 +184,14 @@ std::vector<MeshPart> partsOf(const std::vector<NamedMesh>& meshes, MeshFormat f
 }  // namespace io
 
 std::span<const std::string_view> meshFormatNames() {
-  static constexpr std::array<std::string_view, 6> names = {"ply", "obj", "stl",
-                                                            "off", "glb", "usda"};
+  static constexpr std::array<std::string_view, 7> names = {"ply", "obj",  "stl", "off",
+                                                            "glb", "usda", "3mf"};
   return names;
+}
+
+bool hasFormat(MeshFormat format) {
+  base::requireKnown(format, MeshFormat::ThreeMf, "the format");
+  return format != MeshFormat::ThreeMf || io::has3mf();
 }
 
 MeshFormat meshFormatOf(const std::filesystem::path& path) {
@@ -203,7 +222,7 @@ void write(const Mesh& mesh, const std::filesystem::path& path, const WriteOptio
 
 void write(const Mesh& mesh, std::ostream& stream, MeshFormat format, const WriteOptions& options,
            WriteReport* report) {
-  base::requireKnown(format, MeshFormat::Usda, "the format");
+  base::requireKnown(format, MeshFormat::ThreeMf, "the format");
   io::MeshPart part{&mesh, options.name, {}};
   io::writeParts({&part, 1}, format, options, report, [&] { return io::OutputFile(stream); });
 }
