@@ -148,8 +148,7 @@ TEST_P(SampleVolume, GivesAManifold) {
 }
 
 class SampleOfOthers : public Sample {};
-INSTANTIATE_TEST_SUITE_P(Files, SampleOfOthers, ::testing::ValuesIn(filesOf({".nvdb", ".mhd"})),
-                         testName);
+INSTANTIATE_TEST_SUITE_P(Files, SampleOfOthers, ::testing::ValuesIn(filesOf({".mhd"})), testName);
 
 TEST_P(SampleOfOthers, IsRefusedByName) {
   test::expectError(ErrorCode::UnreadableFile, GetParam(), [] { (void)readGrid(path()); });

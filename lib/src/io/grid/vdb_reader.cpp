@@ -6,10 +6,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <new>
 #include <utility>
 
 #include "io/grid/head_checks.h"
+#include "io/grid/nanovdb.h"
 #include "io/grid/tree_walker.h"
 #include "io/memory_buffer.h"
 
@@ -38,7 +40,10 @@ void VdbReader::begin(std::unique_ptr<std::streambuf> buffer) {
   buffer_ = std::move(buffer);
   stream_.rdbuf(buffer_.get());
   openvdb::initialize();
-  requireVdb();
+  if (readMagic()) {
+    guarded("a grid", [this] { readNano(); });
+    return;
+  }
   guarded("the header", [this] { readHead(); });
 }
 
@@ -81,19 +86,29 @@ void VdbReader::openFile(const std::filesystem::path& path) {
   begin(std::move(file));
 }
 
-void VdbReader::requireVdb() {
+bool VdbReader::readMagic() {
   constexpr std::size_t kMagicBytes = 8;
   const std::array<char, kMagicBytes> vdb{' ', 'B', 'D', 'V', 0, 0, 0, 0};
   std::array<char, kMagicBytes> magic{};
   stream_.read(magic.data(), kMagicBytes);
   if (stream_.gcount() == 0) fail("the file is empty");
-  if (std::string_view(magic.data(), kMagicBytes).starts_with("NanoVDB")) {
-    fail("it is a NanoVDB file, not an OpenVDB file; convert it with nanovdb_convert");
-  }
-  if (magic != vdb) fail("it is not an OpenVDB file");
+  const bool isNano = std::string_view(magic.data(), kMagicBytes).starts_with("NanoVDB");
+  if (magic != vdb && !isNano) fail("it is not an OpenVDB file");
   stream_.clear();
   stream_.seekg(0);
   stream_.exceptions(std::ios_base::failbit | std::ios_base::badbit | std::ios_base::eofbit);
+  return isNano;
+}
+
+void VdbReader::readNano() {
+  std::string bytes(fileBytes_, '\0');
+  stream_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::map<std::string, openvdb::Index> count;
+  for (const GridBase::Ptr& grid : readNanoVdb(bytes, [this](const auto& why) { fail(why); })) {
+    const openvdb::Index before = count[grid->getName()]++;
+    const std::string unique = GridDescriptor::addSuffix(grid->getName(), static_cast<int>(before));
+    entries_.push_back({GridDescriptor(unique, grid->type()), grid});
+  }
 }
 
 void VdbReader::readHead() {

@@ -16,9 +16,10 @@
 
 namespace tufa::io {
 
-/// Reads grids of a .vdb file one by one. Used in place of openvdb::io::File because that class
-/// does not look at its stream's state: a truncated file then gives grids of whatever was in
-/// memory. Here every failed read throws. All members throw Error(UnreadableFile).
+/// Reads grids of a .vdb file one by one, and of a .nvdb file all at once. Used in place of
+/// openvdb::io::File because that class does not look at its stream's state: a truncated file then
+/// gives grids of whatever was in memory. Here every failed read throws. All members throw
+/// Error(UnreadableFile).
 class VdbReader : private openvdb::io::Archive {
  public:
   explicit VdbReader(const std::filesystem::path& path);
@@ -43,12 +44,14 @@ class VdbReader : private openvdb::io::Archive {
  private:
   struct Entry {
     openvdb::io::GridDescriptor descriptor;
-    openvdb::GridBase::Ptr whole;  ///< set for files without offsets, which are read in one go
+    openvdb::GridBase::Ptr whole;  ///< set for .nvdb and files without offsets, read in one go
   };
 
   void openFile(const std::filesystem::path& path);
   void begin(std::unique_ptr<std::streambuf> buffer);
-  void requireVdb();
+  /// Whether it is a file of NanoVDB; any but that and OpenVDB's are refused.
+  bool readMagic();
+  void readNano();
   void readHead();
   void readSequentially(std::size_t index);
   void requireInside(const openvdb::io::GridDescriptor& descriptor) const;
