@@ -46,6 +46,10 @@ if(TUFA_BUILD_TOOLS)
   install(DIRECTORY ${TUFA_PAGES}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
   install(FILES ${TUFA_PAGES}/tufa.bash RENAME tufa
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${TUFA_PAGES}/tufa.zsh RENAME _tufa
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+  install(FILES ${TUFA_PAGES}/tufa.fish
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

@@ -1,4 +1,4 @@
-// Writes manual pages and a completion for bash from the command's own options and help texts.
+// Writes manual pages and completions for shells from the command's own options and help texts.
 
 #include <CLI/CLI.hpp>
 
@@ -11,18 +11,16 @@
 #include <vector>
 
 #include "commands.h"
+#include "completions.h"
+#include "option_words.h"
+#include "page_texts.h"
 
 namespace {
 
-using Options = std::vector<const CLI::Option*>;
-using Apps = std::vector<const CLI::App*>;
-
-Options optionsOf(const CLI::App& app, bool positional) {
-  return app.get_options(
-      [positional](const CLI::Option* option) { return option->get_positional() == positional; });
-}
-
-Apps subcommandsOf(const CLI::App& app) { return app.get_subcommands({}); }
+using tufa::tools::choicesOf;
+using tufa::tools::optionsOf;
+using tufa::tools::subcommandsOf;
+using tufa::tools::takesValue;
 
 /// Text for troff: dashes that can be copied, and no line that troff would read as a request.
 std::string troff(const std::string& text) {
@@ -34,18 +32,9 @@ std::string troff(const std::string& text) {
   return escaped.starts_with('.') || escaped.starts_with('\'') ? "\\&" + escaped : escaped;
 }
 
-/// The values that an option takes, where they are a list; CLI11 tells it as TEXT:{a,b}.
-std::vector<std::string> choicesOf(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const auto open = type.find('{');
-  const auto close = type.find('}');
-  if (open == std::string::npos || close == std::string::npos) return {};
-  return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
-}
-
 /// What stands for the option's value on the command line; empty for flags.
 std::string valueOf(const CLI::Option& option) {
-  if (option.get_expected_max() == 0) return {};
+  if (!takesValue(option)) return {};
   const auto choices = choicesOf(option);
   if (!choices.empty()) return CLI::detail::join(choices, "|");
   const std::string type = option.get_type_name();
@@ -113,57 +102,15 @@ void writePage(std::ostream& out, const CLI::App& command) {
         << (option->get_items_expected_max() > 1 ? "..." : "");
   }
   out << '\n';
+  const tufa::tools::PageText& text = tufa::tools::pageText(command.get_name());
+  out << ".SH DESCRIPTION\n" << troff(text.description) << '\n';
   writeOptions(out, command);
+  out << ".SH EXAMPLES\n";
+  for (const auto& [example, what] : text.examples) {
+    out << ".TP\n\\fB" << troff(example) << "\\fR\n" << troff(what) << '\n';
+  }
   writeExitCodes(out);
   out << ".SH SEE ALSO\n.BR tufa (1)\n";
-}
-
-/// The branch of the completion for one subcommand: choices after options that have some, files
-/// after those that take another value, else the options' names, and files.
-void writeCompletion(std::ostream& out, const CLI::App& command) {
-  std::string names;
-  std::string places;
-  out << "    " << command.get_name() << ")\n      case $last in\n";
-  for (const CLI::Option* option : optionsOf(command, false)) {
-    const auto all = namesOf(*option);
-    names += (names.empty() ? "" : " ") + CLI::detail::join(all, " ");
-    if (option->get_expected_max() == 0) continue;
-    out << "        " << CLI::detail::join(all, "|") << ") ";
-    const auto choices = choicesOf(*option);
-    if (!choices.empty()) out << "words='" << CLI::detail::join(choices, " ") << "' ";
-    out << ";;\n";
-  }
-  for (const CLI::Option* option : optionsOf(command, true)) {
-    places += CLI::detail::join(choicesOf(*option), " ");
-  }
-  out << "        *) if [[ $word == -* ]]; then words='" << names << "'; else words='" << places
-      << "'; fi ;;\n      esac\n      ;;\n";
-}
-
-void writeCompletions(std::ostream& out, const CLI::App& app) {
-  std::string commands;
-  for (const CLI::App* command : subcommandsOf(app)) commands += command->get_name() + " ";
-  out << "# Completion of the command tufa for bash: names of options and their values, and "
-         "files.\n"
-         "_tufa() {\n"
-         "  local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD-1]} words=''\n"
-         "  if ((COMP_CWORD == 1)); then\n"
-         "    COMPREPLY=($(compgen -W '"
-      << commands
-      << "--help --version' -- \"$word\"))\n"
-         "    return\n"
-         "  fi\n"
-         "  case ${COMP_WORDS[1]} in\n";
-  for (const CLI::App* command : subcommandsOf(app)) writeCompletion(out, *command);
-  out << "  esac\n"
-         "  if [[ $words ]]; then\n"
-         "    COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
-         "  else\n"
-         "    compopt -o filenames 2>/dev/null\n"
-         "    COMPREPLY=($(compgen -f -- \"$word\"))\n"
-         "  fi\n"
-         "}\n"
-         "complete -F _tufa tufa\n";
 }
 
 }  // namespace
@@ -189,6 +136,9 @@ int main(int argc, char** argv) {
     writeText("man1/tufa-" + command->get_name() + ".1",
               [&](std::ostream& page) { writePage(page, *command); });
   }
-  writeText("tufa.bash", [&](std::ostream& completion) { writeCompletions(completion, app); });
+  writeText("tufa.zsh", [&](std::ostream& text) { tufa::tools::writeZshCompletion(text, app); });
+  writeText("tufa.fish", [&](std::ostream& text) { tufa::tools::writeFishCompletion(text, app); });
+  // What the build looks for comes last.
+  writeText("tufa.bash", [&](std::ostream& text) { tufa::tools::writeBashCompletion(text, app); });
   return 0;
 }
