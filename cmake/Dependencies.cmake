@@ -49,6 +49,20 @@ if(TUFA_USE_NANOVDB)
   endif()
 endif()
 
+# One header of Ceres Solver's, and Eigen's: nothing is linked.
+if(TUFA_USE_CERES)
+  find_package(Eigen3 QUIET NO_MODULE)
+  find_path(TUFA_CERES_INCLUDE_DIR ceres/tiny_solver.h)
+  if(NOT Eigen3_FOUND)
+    unset(TUFA_CERES_INCLUDE_DIR CACHE)
+  endif()
+endif()
+if(TUFA_CERES_INCLUDE_DIR)
+  message(STATUS "tufa fit solves by Ceres's TinySolver: ${TUFA_CERES_INCLUDE_DIR}/ceres")
+else()
+  message(STATUS "tufa fit is left out: no Ceres Solver (libceres-dev)")
+endif()
+
 if(TUFA_BUILD_CHECK)
   # CGAL warns about missing build types and sets flags of its own unless told not to.
   set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)

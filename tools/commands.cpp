@@ -49,6 +49,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addCheckCommand(app, chosen);
   addCompareCommand(app, chosen);
   addRepairCommand(app, chosen);
+  addFitCommand(app, chosen);
   addHelpCommand(app, chosen);
 }
 

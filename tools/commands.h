@@ -30,6 +30,7 @@ void addChunksCommand(CLI::App& app, Command& chosen);
 void addCheckCommand(CLI::App& app, Command& chosen);
 void addCompareCommand(CLI::App& app, Command& chosen);
 void addRepairCommand(CLI::App& app, Command& chosen);
+void addFitCommand(CLI::App& app, Command& chosen);
 void addHelpCommand(CLI::App& app, Command& chosen);
 
 /// Declares `--threads`, which all of them have.

@@ -1,0 +1,363 @@
+#include <tufa/error.h>
+#include <tufa/fit.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/box.h"
+#include "base/job.h"
+#include "fit/blob_field.h"
+#include "fit/solve_balls.h"
+
+namespace tufa {
+namespace {
+
+using fit::Ball;
+using fit::BlobField;
+using fit::Sample;
+using fit::Sum;
+
+// Steps of the solver: for a split that is tried, for one that is made, for a ball in its turn.
+constexpr int kTrialSteps = 25, kSplitSteps = 50, kTurnSteps = 10;
+// Balls whose centres are nearer than this share of their radii's sum matter to each other.
+constexpr double kTouching = 0.9;
+// All balls get their turn whenever there are so many times as many as the last time.
+constexpr double kSweepGrowth = 1.5;
+// A step that gains less is none.
+constexpr double kLeastGain = 1e-9;
+
+void requireOptions(const FitOptions& options) {
+  const auto refuse = [](const std::string& what, const std::string& range) {
+    throw Error(ErrorCode::InvalidArgument, what + " must be " + range);
+  };
+  if (options.blobs < 1 || options.blobs > 10000) {
+    refuse("the number of blobs, " + std::to_string(options.blobs) + ",", "1 to 10000");
+  }
+  if (!(options.error >= 0 && options.error <= 1)) {
+    refuse("the error to stop at, a share of the mesh's diagonal,", "0 to 1");
+  }
+  constexpr int kMostSamples = 10'000'000;
+  if (options.samples < 0 || options.samples > kMostSamples) {
+    refuse("the number of samples, " + std::to_string(options.samples) + ",", "0 to 10000000");
+  }
+  constexpr double kMostWeight = 1e6;
+  const auto isWeight = [&](double weight) { return weight >= 0 && weight <= kMostWeight; };
+  if (!isWeight(options.valueWeight) || !(options.valueWeight > 0)) {
+    refuse("the weight of values", "above 0 and at most 1000000");
+  }
+  if (!isWeight(options.normalWeight) || !isWeight(options.shrinkWeight)) {
+    refuse("the weights of normals and of volumes", "0 to 1000000");
+  }
+}
+
+/// Where a mesh is, and how large.
+struct Frame {
+  Vec3 middle{0.0};
+  double diagonal = 0;
+
+  [[nodiscard]] Vec3 toUnit(const Vec3& p) const { return (p - middle) / diagonal; }
+};
+
+Frame frameOf(const Mesh& mesh, const std::vector<Triangle>& triangles) {
+  base::Box box = base::Box::empty();
+  for (const Triangle& triangle : triangles) {
+    for (const VertexIndex v : triangle.vertices) {
+      const Vec3 p(mesh.positions[v]);
+      if (!p.isFinite()) {
+        throw Error(ErrorCode::InvalidArgument,
+                    "vertex " + std::to_string(v) + " of the mesh is not finite; repair it first");
+      }
+      box.add(p);
+    }
+  }
+  Frame frame;
+  if (triangles.empty()) return frame;
+  frame.middle = box.centre();
+  frame.diagonal = box.size().length();
+  return frame;
+}
+
+// In cubes of the diagonal; that of a sheet for a mesh that encloses next to nothing.
+double volumeOf(const Mesh& mesh, const std::vector<Triangle>& triangles, const Frame& frame) {
+  constexpr double kThickness = 1e-3;
+  double volume = 0, area = 0;
+  for (const Triangle& t : triangles) {
+    const Vec3 a = frame.toUnit(Vec3(mesh.positions[t.vertices[0]])),
+               b = frame.toUnit(Vec3(mesh.positions[t.vertices[1]])),
+               c = frame.toUnit(Vec3(mesh.positions[t.vertices[2]]));
+    volume += a.dot(b.cross(c)) / 6;
+    area += (b - a).cross(c - a).length() / 2;
+  }
+  return std::max(std::abs(volume), kThickness * area);
+}
+
+// Points of equal area, those in a triangle by the sequence of Roberts (2018).
+std::vector<Sample> sampleMesh(const Mesh& mesh, const std::vector<Triangle>& triangles,
+                               const Frame& frame, std::size_t count) {
+  std::vector<double> areaBefore{0};
+  const auto cornersOf = [&](const Triangle& t) {
+    std::array<Vec3, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = frame.toUnit(Vec3(mesh.positions[t.vertices[i]]));
+    }
+    return corners;
+  };
+  for (const Triangle& t : triangles) {
+    const auto p = cornersOf(t);
+    areaBefore.push_back(areaBefore.back() + (p[1] - p[0]).cross(p[2] - p[0]).length());
+  }
+  if (!(frame.diagonal > 0) || !(areaBefore.back() > 0)) {
+    throw Error(ErrorCode::InvalidArgument, "the mesh has no area to take samples of");
+  }
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const auto next =
+        std::upper_bound(areaBefore.begin() + 1, areaBefore.end(), at * areaBefore.back());
+    const auto t = std::min<std::size_t>(next - areaBefore.begin(), triangles.size()) - 1;
+    const auto p = cornersOf(triangles[t]);
+    Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
+    if (!normal.normalize(0)) continue;
+    const double number = static_cast<double>(i);
+    double u = std::fmod(0.5 + number * 0.7548776662466927, 1);
+    double v = std::fmod(0.5 + number * 0.5698402909980532, 1);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    samples.push_back({p[0] + (p[1] - p[0]) * u + (p[2] - p[0]) * v, normal});
+  }
+  return samples;
+}
+
+class Fitter {
+ public:
+  /// `volume`: of the mesh, in cubes of the diagonal.
+  Fitter(std::vector<Sample> samples, double volume, const FitOptions& options, base::Job& job)
+      : field_(std::move(samples), {options.valueWeight, options.normalWeight,
+                                    options.shrinkWeight / (volume * volume)}),
+        options_(options),
+        job_(job) {}
+
+  /// `diagonal`: of the mesh, world units. The balls stay in diagonals.
+  void run(double diagonal, std::vector<FitStep>& steps) {
+    field_.replace(0, std::array{firstBall()});
+    trials_.resize(1);
+    sweep();
+    double swept = 1;
+    steps.push_back(stepNow(diagonal));
+    const auto most = static_cast<std::size_t>(options_.blobs);
+    while (field_.balls().size() < most && steps.back().rmsDistance > options_.error * diagonal) {
+      job_.checkCancelled(field_.balls().size(), most);
+      if (!splitBest()) break;
+      if (static_cast<double>(field_.balls().size()) >= kSweepGrowth * swept) {
+        sweep();
+        swept = static_cast<double>(field_.balls().size());
+      }
+      steps.push_back(stepNow(diagonal));
+    }
+    const double before = steps.back().energy;
+    sweep();
+    FitStep last = stepNow(diagonal);
+    if (last.energy <= before) steps.back() = last;
+  }
+
+  [[nodiscard]] const std::vector<Ball>& balls() const { return field_.balls(); }
+
+  /// The distance of a sample from the surface along the gradient: three of Newton's steps.
+  [[nodiscard]] double distance(const Sample& sample) const {
+    constexpr int kSteps = 3;
+    Vec3 p = sample.point;
+    for (int i = 0; i < kSteps; ++i) {
+      Sum sum;
+      for (const Ball& ball : field_.balls()) sum += fit::densityOf(ball, p);
+      const double slope2 = sum.gradient.squaredLength();
+      if (!(slope2 > 0)) return 1;
+      Vec3 step = sum.gradient * ((fit::kThreshold - sum.value) / slope2);
+      if (step.length() > kMostStep) step *= kMostStep / step.length();
+      p += step;
+    }
+    return (p - sample.point).length();
+  }
+  [[nodiscard]] const std::vector<Sample>& samples() const { return field_.samples(); }
+
+ private:
+  static constexpr double kMostStep = 0.1;
+
+  /// What splitting a ball would give.
+  struct Trial {
+    std::array<Ball, 2> parts;
+    double energy = std::numeric_limits<double>::infinity();
+    bool isFresh = false;
+  };
+
+  // About the samples' centre, its surface at their distance from there.
+  [[nodiscard]] Ball firstBall() const {
+    Vec3 centre(0.0);
+    const double count = static_cast<double>(field_.samples().size());
+    for (const Sample& sample : field_.samples()) centre += sample.point / count;
+    double squared = 0;
+    for (const Sample& sample : field_.samples()) {
+      squared += (sample.point - centre).squaredLength() / count;
+    }
+    const double radius = std::sqrt(squared * fit::kBlobbiness / -std::log(fit::kThreshold));
+    return {centre, std::max(radius, 0.01), 1};
+  }
+
+  // Two half as strong, a little apart along the longest axis of the samples near the ball.
+  [[nodiscard]] std::array<Ball, 2> halvesOf(std::size_t index) const {
+    constexpr double kApart = 0.2, kSmaller = 0.85, kWeaker = 0.62;
+    const Ball& ball = field_.balls()[index];
+    Vec3 axis(1, 0.7, 0.4);
+    for (int round = 0; round < 8; ++round) {  // power iteration
+      Vec3 next(0.0);
+      for (std::size_t i = 0; i < field_.samples().size(); ++i) {
+        const Sample& sample = field_.samples()[i];
+        const Vec3 offset = sample.point - ball.centre;
+        const double near =
+            std::exp(-fit::kBlobbiness * offset.squaredLength() / (ball.radius * ball.radius));
+        next += offset * (near * offset.dot(axis));
+      }
+      if (next.normalize(0)) axis = next;
+    }
+    const Vec3 apart = axis.unitOrX() * (kApart * ball.radius);
+    const Ball half{ball.centre, kSmaller * ball.radius, kWeaker * ball.weight};
+    std::array<Ball, 2> halves{half, half};
+    halves[0].centre += apart;
+    halves[1].centre -= apart;
+    return halves;
+  }
+
+  void refreshTrials() {
+    std::vector<std::size_t> stale;
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      if (!trials_[i].isFresh) stale.push_back(i);
+    }
+    job_.forParts(stale.size(), [&](base::Job& /*part*/, std::size_t i) {
+      Trial& trial = trials_[stale[i]];
+      trial.parts = fit::solveBalls(field_, stale[i], halvesOf(stale[i]), kTrialSteps);
+      trial.energy = field_.energyWith(stale[i], trial.parts) - field_.energy();
+      trial.isFresh = true;
+    });
+  }
+
+  // Whether any split lowers the energy.
+  bool splitBest() {
+    refreshTrials();
+    const auto best =
+        std::min_element(trials_.begin(), trials_.end(),
+                         [](const Trial& a, const Trial& b) { return a.energy < b.energy; });
+    const double energy = field_.energy();
+    if (!(best->energy < -kLeastGain * energy)) return false;
+    const auto index = static_cast<std::size_t>(best - trials_.begin());
+    std::array<Ball, 2> parts = best->parts;
+    const std::array<Ball, 2> better = fit::solveBalls(field_, index, parts, kSplitSteps);
+    if (field_.energyWith(index, better) < field_.energyWith(index, parts)) parts = better;
+    field_.replace(index, parts);
+    trials_.emplace_back();
+    markAround(index);
+    markAround(trials_.size() - 1);
+    // Those around in turn.
+    std::vector<std::size_t> around;
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      if (!trials_[i].isFresh) around.push_back(i);
+    }
+    for (const std::size_t i : around) optimize(i);
+    return true;
+  }
+
+  // Trials of the balls around one that has changed tell nothing any more.
+  void markAround(std::size_t index) {
+    const Ball& ball = field_.balls()[index];
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      const Ball& other = field_.balls()[i];
+      if ((other.centre - ball.centre).length() < kTouching * (other.radius + ball.radius)) {
+        trials_[i].isFresh = false;
+      }
+    }
+    trials_[index].isFresh = false;
+  }
+
+  void optimize(std::size_t index) {
+    const double energy = field_.energy();
+    const std::array<Ball, 1> better{fit::solveBall(field_, index, kTurnSteps)};
+    if (!(field_.energyWith(index, better) < energy * (1 - kLeastGain))) return;
+    field_.replace(index, better);
+    trials_[index].isFresh = false;
+  }
+
+  // Each ball in turn.
+  void sweep() {
+    field_.sumUp();
+    for (std::size_t i = 0; i < field_.balls().size(); ++i) optimize(i);
+    for (Trial& trial : trials_) trial.isFresh = false;
+  }
+
+  [[nodiscard]] FitStep stepNow(double diagonal) const {
+    double squared = 0;
+    for (std::size_t i = 0; i < field_.samples().size(); ++i) {
+      const Sum& sum = field_.sums()[i];
+      const double slope = sum.gradient.length();
+      const double off = std::abs(sum.value - fit::kThreshold);
+      const double distance = off < kMostStep * slope ? off / slope : kMostStep;
+      squared += distance * distance;
+    }
+    const double count = static_cast<double>(field_.samples().size());
+    return {field_.balls().size(), field_.energy(), std::sqrt(squared / count) * diagonal};
+  }
+
+  BlobField field_;
+  const FitOptions& options_;
+  base::Job& job_;
+  std::vector<Trial> trials_;  ///< for each ball
+};
+
+BlobFit fitIn(const Mesh& mesh, const FitOptions& options, base::Job& job) {
+  const std::vector<Triangle> triangles = triangulate(mesh);
+  const Frame frame = frameOf(mesh, triangles);
+  const auto count =
+      static_cast<std::size_t>(options.samples > 0 ? options.samples : 2000 + 20 * options.blobs);
+  BlobFit result;
+  result.threshold = fit::kThreshold;
+  result.blobbiness = fit::kBlobbiness;
+  result.diagonal = frame.diagonal;
+  job.beginStage("fit", 0.99);
+  Fitter fitter(sampleMesh(mesh, triangles, frame, count), volumeOf(mesh, triangles, frame),
+                options, job);
+  fitter.run(frame.diagonal, result.steps);
+  job.beginStage("distances", 1.0);
+  std::vector<double> distances(fitter.samples().size());
+  job.forRanges(distances.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) distances[i] = fitter.distance(fitter.samples()[i]);
+  });
+  double squared = 0;
+  for (const double distance : distances) {
+    squared += distance * distance;
+    result.largestDistance = std::max(result.largestDistance, distance * frame.diagonal);
+  }
+  result.rmsDistance = std::sqrt(squared / static_cast<double>(distances.size())) * frame.diagonal;
+  for (const Ball& ball : fitter.balls()) {
+    result.blobs.push_back(
+        {frame.middle + ball.centre * frame.diagonal, ball.radius * frame.diagonal, ball.weight});
+  }
+  return result;
+}
+
+}  // namespace
+
+bool canFitBlobs() { return true; }
+
+BlobFit fitBlobs(const Mesh& mesh, const FitOptions& options) {
+  requireOptions(options);
+  base::Job job(options.threads, options.progress);
+  BlobFit result;
+  job.run([&] {
+    result = fitIn(mesh, options, job);
+    (void)job.finish();
+  });
+  return result;
+}
+
+}  // namespace tufa
