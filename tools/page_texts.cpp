@@ -1,6 +1,7 @@
 #include "page_texts.h"
 
 #include <map>
+#include <stdexcept>
 
 namespace tufa::tools {
 
@@ -77,7 +78,11 @@ const PageText& pageText(const std::string& subcommand) {
         {{"tufa compare part.vdb -o report.html", "a page with pictures"}}}},
       {"help",
        {"Prints the options of a subcommand.", {{"tufa help mesh", "those of tufa mesh"}}}}};
-  return kTexts.at(subcommand);
+  const auto text = kTexts.find(subcommand);
+  if (text == kTexts.end()) {
+    throw std::logic_error("tools/page_texts.cpp has no text for tufa " + subcommand);
+  }
+  return text->second;
 }
 
 }  // namespace tufa::tools
