@@ -61,8 +61,8 @@ struct BlobFit {
 /// with derivatives in closed form and all blobs bounded. Cost: a minute for 200 blobs on two
 /// cores.
 ///
-/// Throws Error: InvalidArgument (options out of their range, a mesh without area, positions that
-/// are not finite, a library built without Ceres), Cancelled.
+/// Throws Error: InvalidArgument (options out of their range, a mesh without area or one that faces
+/// inward, positions that are not finite, a library built without Ceres), Cancelled.
 [[nodiscard]] TUFA_API BlobFit fitBlobs(const Mesh& mesh, const FitOptions& options = {});
 
 /// The text of a scene that implicit::readScene() reads: metaballs of Blinn's kernel.

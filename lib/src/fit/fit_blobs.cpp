@@ -82,7 +82,8 @@ Frame frameOf(const Mesh& mesh, const std::vector<Triangle>& triangles) {
   return frame;
 }
 
-// In cubes of the diagonal; that of a sheet for a mesh that encloses next to nothing.
+// In cubes of the diagonal; that of a sheet for a mesh that encloses next to nothing. Throws where
+// the mesh faces inward.
 double volumeOf(const Mesh& mesh, const std::vector<Triangle>& triangles, const Frame& frame) {
   constexpr double kThickness = 1e-3;
   double volume = 0, area = 0;
@@ -93,7 +94,11 @@ double volumeOf(const Mesh& mesh, const std::vector<Triangle>& triangles, const 
     volume += a.dot(b.cross(c)) / 6;
     area += (b - a).cross(c - a).length() / 2;
   }
-  return std::max(std::abs(volume), kThickness * area);
+  if (volume < -kThickness * area) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the mesh faces inward: its volume is negative; tufa repair turns closed meshes");
+  }
+  return std::max(volume, kThickness * area);
 }
 
 // Points of equal area, those in a triangle by the sequence of Roberts (2018).

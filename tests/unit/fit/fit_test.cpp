@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "support/expect_error.h"
 
@@ -142,6 +143,11 @@ TEST_F(Fit, RefusesWhatIsNoMesh) {
   flat.positions[1].y = std::numeric_limits<double>::quiet_NaN();
   refuses(flat, {}, "vertex 1");
   const Mesh torus = meshOf(Shape::Torus, 0.2);
+  Mesh inward = torus;
+  for (Triangle& triangle : inward.triangles) {
+    std::swap(triangle.vertices[0], triangle.vertices[1]);
+  }
+  refuses(inward, {}, "inward");
   FitOptions options;
   options.blobs = 0;
   refuses(torus, options, "number of blobs");
