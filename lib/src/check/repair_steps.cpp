@@ -109,7 +109,12 @@ void fillHoles(SurfaceMesh& surface, int mostEdges, RepairReport& report) {
   for (const auto hole : holes) {
     if (borderEdges(surface, hole) > static_cast<std::size_t>(mostEdges)) continue;
     std::vector<SurfaceMesh::Face_index> patch;
+#if CGAL_VERSION_NR >= CGAL_VERSION_NUMBER(5, 6, 0)
+    pmp::triangulate_hole(surface, hole,
+                          CGAL::parameters::face_output_iterator(std::back_inserter(patch)));
+#else
     pmp::triangulate_hole(surface, hole, std::back_inserter(patch));
+#endif
     report.filledHoles += patch.empty() ? 0 : 1;
   }
 }

@@ -88,7 +88,7 @@ TEST(Voxelize, RefusesWhatCannotBeDone) {
   expectError(ErrorCode::InvalidArgument, "half width",
               [&] { (void)voxelize(makeCube(), options); });
   options.halfWidth = 3;
-  expectError(ErrorCode::InvalidArgument, "no faces", [&] { (void)voxelize({}, options); });
+  expectError(ErrorCode::InvalidArgument, "no faces", [&] { (void)voxelize(Mesh(), options); });
   Mesh broken = makeCube();
   broken.triangles.emplace_back(0, 1, 8);
   expectError(ErrorCode::InvalidArgument, "vertex 8", [&] { (void)voxelize(broken, options); });
