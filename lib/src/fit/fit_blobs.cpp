@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/box.h"
 #include "base/job.h"
 #include "fit/blob_field.h"
+#include "fit/sample_mesh.h"
 #include "fit/solve_balls.h"
 
 namespace tufa {
@@ -19,6 +19,7 @@ namespace {
 
 using fit::Ball;
 using fit::BlobField;
+using fit::Frame;
 using fit::Sample;
 using fit::Sum;
 
@@ -55,88 +56,6 @@ void requireOptions(const FitOptions& options) {
   }
 }
 
-/// Where a mesh is, and how large.
-struct Frame {
-  Vec3 middle{0.0};
-  double diagonal = 0;
-
-  [[nodiscard]] Vec3 toUnit(const Vec3& p) const { return (p - middle) / diagonal; }
-};
-
-Frame frameOf(const Mesh& mesh, const std::vector<Triangle>& triangles) {
-  base::Box box = base::Box::empty();
-  for (const Triangle& triangle : triangles) {
-    for (const VertexIndex v : triangle.vertices) {
-      const Vec3 p(mesh.positions[v]);
-      if (!p.isFinite()) {
-        throw Error(ErrorCode::InvalidArgument,
-                    "vertex " + std::to_string(v) + " of the mesh is not finite; repair it first");
-      }
-      box.add(p);
-    }
-  }
-  Frame frame;
-  if (triangles.empty()) return frame;
-  frame.middle = box.centre();
-  frame.diagonal = box.size().length();
-  return frame;
-}
-
-// In cubes of the diagonal; that of a sheet for a mesh that encloses next to nothing. Throws where
-// the mesh faces inward.
-double volumeOf(const Mesh& mesh, const std::vector<Triangle>& triangles, const Frame& frame) {
-  constexpr double kThickness = 1e-3;
-  double volume = 0, area = 0;
-  for (const Triangle& t : triangles) {
-    const Vec3 a = frame.toUnit(Vec3(mesh.positions[t.vertices[0]])),
-               b = frame.toUnit(Vec3(mesh.positions[t.vertices[1]])),
-               c = frame.toUnit(Vec3(mesh.positions[t.vertices[2]]));
-    volume += a.dot(b.cross(c)) / 6;
-    area += (b - a).cross(c - a).length() / 2;
-  }
-  if (volume < -kThickness * area) {
-    throw Error(ErrorCode::InvalidArgument,
-                "the mesh faces inward: its volume is negative; tufa repair turns closed meshes");
-  }
-  return std::max(volume, kThickness * area);
-}
-
-// Points of equal area, those in a triangle by the sequence of Roberts (2018).
-std::vector<Sample> sampleMesh(const Mesh& mesh, const std::vector<Triangle>& triangles,
-                               const Frame& frame, std::size_t count) {
-  std::vector<double> areaBefore{0};
-  const auto cornersOf = [&](const Triangle& t) {
-    std::array<Vec3, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = frame.toUnit(Vec3(mesh.positions[t.vertices[i]]));
-    }
-    return corners;
-  };
-  for (const Triangle& t : triangles) {
-    const auto p = cornersOf(t);
-    areaBefore.push_back(areaBefore.back() + (p[1] - p[0]).cross(p[2] - p[0]).length());
-  }
-  if (!(frame.diagonal > 0) || !(areaBefore.back() > 0)) {
-    throw Error(ErrorCode::InvalidArgument, "the mesh has no area to take samples of");
-  }
-  std::vector<Sample> samples;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    const auto next =
-        std::upper_bound(areaBefore.begin() + 1, areaBefore.end(), at * areaBefore.back());
-    const auto t = std::min<std::size_t>(next - areaBefore.begin(), triangles.size()) - 1;
-    const auto p = cornersOf(triangles[t]);
-    Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
-    if (!normal.normalize(0)) continue;
-    const double number = static_cast<double>(i);
-    double u = std::fmod(0.5 + number * 0.7548776662466927, 1);
-    double v = std::fmod(0.5 + number * 0.5698402909980532, 1);
-    if (u + v > 1) u = 1 - u, v = 1 - v;
-    samples.push_back({p[0] + (p[1] - p[0]) * u + (p[2] - p[0]) * v, normal});
-  }
-  return samples;
-}
-
 class Fitter {
  public:
   /// `volume`: of the mesh, in cubes of the diagonal.
@@ -163,10 +82,8 @@ class Fitter {
       }
       steps.push_back(stepNow(diagonal));
     }
-    const double before = steps.back().energy;
     sweep();
-    FitStep last = stepNow(diagonal);
-    if (last.energy <= before) steps.back() = last;
+    steps.back() = stepNow(diagonal);
   }
 
   [[nodiscard]] const std::vector<Ball>& balls() const { return field_.balls(); }
@@ -248,16 +165,23 @@ class Fitter {
     });
   }
 
-  // Whether any split lowers the energy.
+  // Makes the split that lowers the energy most. Whether there is one.
   bool splitBest() {
-    refreshTrials();
-    const auto best =
-        std::min_element(trials_.begin(), trials_.end(),
-                         [](const Trial& a, const Trial& b) { return a.energy < b.energy; });
     const double energy = field_.energy();
-    if (!(best->energy < -kLeastGain * energy)) return false;
-    const auto index = static_cast<std::size_t>(best - trials_.begin());
-    std::array<Ball, 2> parts = best->parts;
+    std::size_t index = 0;
+    std::array<Ball, 2> parts;
+    while (true) {
+      refreshTrials();
+      const auto best =
+          std::min_element(trials_.begin(), trials_.end(),
+                           [](const Trial& a, const Trial& b) { return a.energy < b.energy; });
+      if (!(best->energy < -kLeastGain * energy)) return false;
+      index = static_cast<std::size_t>(best - trials_.begin());
+      parts = best->parts;
+      // Balls farther off may have changed a little since the trial.
+      if (field_.energyWith(index, parts) < energy) break;
+      best->isFresh = false;
+    }
     const std::array<Ball, 2> better = fit::solveBalls(field_, index, parts, kSplitSteps);
     if (field_.energyWith(index, better) < field_.energyWith(index, parts)) parts = better;
     field_.replace(index, parts);
@@ -321,7 +245,7 @@ class Fitter {
 
 BlobFit fitIn(const Mesh& mesh, const FitOptions& options, base::Job& job) {
   const std::vector<Triangle> triangles = triangulate(mesh);
-  const Frame frame = frameOf(mesh, triangles);
+  const Frame frame = fit::frameOf(mesh, triangles);
   const auto count =
       static_cast<std::size_t>(options.samples > 0 ? options.samples : 2000 + 20 * options.blobs);
   BlobFit result;
@@ -329,8 +253,8 @@ BlobFit fitIn(const Mesh& mesh, const FitOptions& options, base::Job& job) {
   result.blobbiness = fit::kBlobbiness;
   result.diagonal = frame.diagonal;
   job.beginStage("fit", 0.99);
-  Fitter fitter(sampleMesh(mesh, triangles, frame, count), volumeOf(mesh, triangles, frame),
-                options, job);
+  Fitter fitter(fit::sampleMesh(mesh, triangles, frame, count),
+                fit::volumeOf(mesh, triangles, frame), options, job);
   fitter.run(frame.diagonal, result.steps);
   job.beginStage("distances", 1.0);
   std::vector<double> distances(fitter.samples().size());
