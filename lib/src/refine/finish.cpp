@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/single_precision.h"
 #include "refine/rounding.h"
 #include "refine/uniform_repair.h"
 #include "uniform/place_vertices.h"
@@ -72,10 +71,7 @@ double finishMesh(const SurfaceModel& model, const ContourOptions& options,
   const grid::Affine& affine = model.affine();
   Mesh& mesh = extracted.mesh;
   double moved = 0;
-  job.forRanges(mesh.positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);
-  });
-  const bool single = base::roundToSingle(mesh, kMostRounding * affine.leastHeight(), job);
+  const bool single = takeToWorld(mesh, affine, job);
   if (options.repair) {
     Source source = worldSource(model, extracted, job);
     source.singlePrecision = single;

@@ -2,23 +2,17 @@
 
 #include <utility>
 
-#include "base/single_precision.h"
 #include "refine/rounding.h"
 
 namespace tufa::refine {
 
 RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonIndex>& candidates,
                            Source source, const grid::Affine& affine, base::Job& job) {
-  constexpr std::size_t kGrain = 4096;
   Mesh world;
-  world.positions.resize(mesh.positions.size());
-  job.forRanges(world.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      world.positions[i] = affine.toWorld(mesh.positions[i]);
-  });
+  world.positions = mesh.positions;
   world.quads = mesh.quads;
   world.triangles = mesh.triangles;
-  source.singlePrecision = base::roundToSingle(world, kMostRounding * affine.leastHeight(), job);
+  source.singlePrecision = takeToWorld(world, affine, job);
   source.massPoints = [&affine,
                        points = source.massPoints](const std::vector<VertexIndex>& vertices) {
     std::vector<Position> all = points(vertices);

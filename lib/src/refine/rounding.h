@@ -1,8 +1,17 @@
 #pragma once
 
+#include <tufa/mesh.h>
+
+#include "base/job.h"
+#include "grid/affine.h"
+
 namespace tufa::refine {
 
 /// The farthest that the rounding of world positions to single precision may move them, in voxels.
 inline constexpr double kMostRounding = 5e-4;
+
+/// Takes a mesh to world space as it will be written: in single precision if that moves nothing
+/// farther than kMostRounding. Whether it does.
+bool takeToWorld(Mesh& mesh, const grid::Affine& affine, base::Job& job);
 
 }  // namespace tufa::refine

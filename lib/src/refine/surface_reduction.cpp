@@ -7,7 +7,6 @@
 
 #include "base/box.h"
 #include "base/polygons.h"
-#include "base/single_precision.h"
 #include "distance/certifier.h"
 #include "intersect/surface.h"
 #include "refine/rounding.h"
@@ -103,13 +102,10 @@ Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
 std::vector<reduce::Index> SurfaceReduction::findIntersecting(const reduce::ReducedMesh& reduced) {
   Mesh mesh;
   mesh.positions.resize(reduced.positions.size());
-  const grid::Affine& affine = model_.affine();
   job_.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      mesh.positions[i] = affine.toWorld(positionOf(reduced, i));
-    }
+    for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = positionOf(reduced, i);
   });
-  (void)base::roundToSingle(mesh, kMostRounding * affine.leastHeight(), job_);
+  (void)takeToWorld(mesh, model_.affine(), job_);
   mesh.triangles = reduced.triangles;
   std::vector<intersect::PolygonIndex> all(mesh.triangles.size());
   std::iota(all.begin(), all.end(), 0);
