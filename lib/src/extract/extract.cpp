@@ -10,7 +10,6 @@
 #include "base/known_enum.h"
 #include "base/part_of_progress.h"
 #include "base/run_call.h"
-#include "base/single_precision.h"
 #include "extract/cube_mesher.h"
 #include "extract/emc.h"
 #include "extract/marching_cubes.h"
@@ -64,10 +63,7 @@ void requireTolerance(const std::string& what, double voxels) {
 
 // To world space and, where that is harmless, to single precision, as contour() does.
 void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& job) {
-  job.forRanges(mesh.positions.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);
-  });
-  base::roundToSingle(mesh, refine::kMostRounding * affine.leastHeight(), job);
+  (void)refine::takeToWorld(mesh, affine, job);
   if (normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
   if (normals == Normals::None) mesh.normals = {};
 }
