@@ -5,16 +5,16 @@
 
 namespace tufa::fit {
 
-Sum densityOf(const Ball& ball, const Vec3& point) {
-  const Vec3 offset = point - ball.centre;
-  const double q = offset.squaredLength() / (ball.radius * ball.radius);
+Sum densityOf(const UnitBlob& blob, const Vec3& point) {
+  const Vec3 offset = point - blob.centre;
+  const double q = offset.squaredLength() / (blob.radius * blob.radius);
   if (!(q < kReach * kReach)) return {};
-  const double density = ball.weight * std::exp(-kBlobbiness * q);
-  return {density, offset * (-2 * kBlobbiness * density / (ball.radius * ball.radius))};
+  const double density = blob.weight * std::exp(-kBlobbiness * q);
+  return {density, offset * (-2 * kBlobbiness * density / (blob.radius * blob.radius))};
 }
 
-double volumeOf(const Ball& ball) {
-  return std::abs(ball.weight) * ball.radius * ball.radius * ball.radius;
+double volumeOf(const UnitBlob& blob) {
+  return std::abs(blob.weight) * blob.radius * blob.radius * blob.radius;
 }
 
 BlobField::BlobField(std::vector<Sample> samples, const Weights& weights)
@@ -36,48 +36,48 @@ double BlobField::energy() const {
   return all / static_cast<double>(samples_.size()) + shrinkEnergy(volume_);
 }
 
-double BlobField::energyWith(std::size_t index, std::span<const Ball> balls) const {
+double BlobField::energyWith(std::size_t index, std::span<const UnitBlob> blobs) const {
   double all = 0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     Sum sum = sums_[i];
-    if (index < balls_.size()) sum -= densityOf(balls_[index], samples_[i].point);
-    for (const Ball& ball : balls) sum += densityOf(ball, samples_[i].point);
+    if (index < blobs_.size()) sum -= densityOf(blobs_[index], samples_[i].point);
+    for (const UnitBlob& blob : blobs) sum += densityOf(blob, samples_[i].point);
     all += energyOf(samples_[i], sum);
   }
-  double volume = volume_ - (index < balls_.size() ? volumeOf(balls_[index]) : 0);
-  for (const Ball& ball : balls) volume += volumeOf(ball);
+  double volume = volume_ - (index < blobs_.size() ? volumeOf(blobs_[index]) : 0);
+  for (const UnitBlob& blob : blobs) volume += volumeOf(blob);
   return all / static_cast<double>(samples_.size()) + shrinkEnergy(volume);
 }
 
-void BlobField::replace(std::size_t index, std::span<const Ball> balls) {
-  const auto add = [&](const Ball& ball, double sign) {
+void BlobField::replace(std::size_t index, std::span<const UnitBlob> blobs) {
+  const auto add = [&](const UnitBlob& blob, double sign) {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const Sum sum = densityOf(ball, samples_[i].point);
+      const Sum sum = densityOf(blob, samples_[i].point);
       sums_[i].value += sign * sum.value;
       sums_[i].gradient += sum.gradient * sign;
     }
-    volume_ += sign * volumeOf(ball);
+    volume_ += sign * volumeOf(blob);
   };
   std::size_t next = 0;
-  if (index < balls_.size()) {
-    add(balls_[index], -1);
-    balls_[index] = balls[next++];
-    add(balls_[index], 1);
+  if (index < blobs_.size()) {
+    add(blobs_[index], -1);
+    blobs_[index] = blobs[next++];
+    add(blobs_[index], 1);
   }
-  for (; next < balls.size(); ++next) {
-    balls_.push_back(balls[next]);
-    add(balls[next], 1);
+  for (; next < blobs.size(); ++next) {
+    blobs_.push_back(blobs[next]);
+    add(blobs[next], 1);
   }
 }
 
 void BlobField::sumUp() {
   sums_.assign(samples_.size(), {});
   volume_ = 0;
-  for (const Ball& ball : balls_) {
+  for (const UnitBlob& blob : blobs_) {
     for (std::size_t i = 0; i < samples_.size(); ++i) {
-      sums_[i] += densityOf(ball, samples_[i].point);
+      sums_[i] += densityOf(blob, samples_[i].point);
     }
-    volume_ += volumeOf(ball);
+    volume_ += volumeOf(blob);
   }
 }
 

@@ -16,7 +16,7 @@ inline constexpr double kBlobbiness = 4;
 inline constexpr double kReach = 2.276;
 
 /// A blob where the mesh's diagonal is 1 and its box's centre is the origin.
-struct Ball {
+struct UnitBlob {
   Vec3 centre{0.0};
   double radius = 1;
   double weight = 1;
@@ -47,30 +47,30 @@ struct Sum {
   }
 };
 
-/// What a ball adds at a point.
-[[nodiscard]] Sum densityOf(const Ball& ball, const Vec3& point);
+/// What a blob adds at a point.
+[[nodiscard]] Sum densityOf(const UnitBlob& blob, const Vec3& point);
 
-/// A ball's part of the term that makes them small.
-[[nodiscard]] double volumeOf(const Ball& ball);
+/// A blob's part of the term that makes them small.
+[[nodiscard]] double volumeOf(const UnitBlob& blob);
 
-/// Balls and what they sum up to at the samples.
+/// Blobs and what they sum up to at the samples.
 class BlobField {
  public:
   BlobField(std::vector<Sample> samples, const Weights& weights);
 
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
   [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
-  [[nodiscard]] const std::vector<Ball>& balls() const { return balls_; }
+  [[nodiscard]] const std::vector<UnitBlob>& blobs() const { return blobs_; }
   [[nodiscard]] const Weights& weights() const { return weights_; }
   [[nodiscard]] double volume() const { return volume_; }
 
   /// The sum of the three terms.
   [[nodiscard]] double energy() const;
-  /// The energy if one ball, `index`, or none if that is the number of balls, were replaced with
+  /// The energy if one blob, `index`, or none if that is the number of blobs, were replaced with
   /// some.
-  [[nodiscard]] double energyWith(std::size_t index, std::span<const Ball> balls) const;
+  [[nodiscard]] double energyWith(std::size_t index, std::span<const UnitBlob> blobs) const;
   /// Replaces it, the first of them in its place, the others at the end.
-  void replace(std::size_t index, std::span<const Ball> balls);
+  void replace(std::size_t index, std::span<const UnitBlob> blobs);
   /// Sums up anew, so that rounding does not gather.
   void sumUp();
 
@@ -80,7 +80,7 @@ class BlobField {
 
   std::vector<Sample> samples_;
   Weights weights_;
-  std::vector<Ball> balls_;
+  std::vector<UnitBlob> blobs_;
   std::vector<Sum> sums_;
   double volume_ = 0;
 };

@@ -12,22 +12,22 @@
 #include "base/job.h"
 #include "fit/blob_field.h"
 #include "fit/sample_mesh.h"
-#include "fit/solve_balls.h"
+#include "fit/solve_blobs.h"
 
 namespace tufa {
 namespace {
 
-using fit::Ball;
 using fit::BlobField;
 using fit::Frame;
 using fit::Sample;
 using fit::Sum;
+using fit::UnitBlob;
 
-// Steps of the solver: for a split that is tried, for one that is made, for a ball in its turn.
+// Steps of the solver: for a split that is tried, for one that is made, for a blob in its turn.
 constexpr int kTrialSteps = 25, kSplitSteps = 50, kTurnSteps = 10;
-// Balls whose centres are nearer than this share of their radii's sum matter to each other.
+// Blobs whose centres are nearer than this share of their radii's sum matter to each other.
 constexpr double kTouching = 0.9;
-// All balls get their turn whenever there are so many times as many as the last time.
+// All blobs get their turn whenever there are so many times as many as the last time.
 constexpr double kSweepGrowth = 1.5;
 // A step that gains less is none.
 constexpr double kLeastGain = 1e-9;
@@ -65,20 +65,20 @@ class Fitter {
         options_(options),
         job_(job) {}
 
-  /// `diagonal`: of the mesh, world units. The balls stay in diagonals.
+  /// `diagonal`: of the mesh, world units. The blobs stay in diagonals.
   void run(double diagonal, std::vector<FitStep>& steps) {
-    field_.replace(0, std::array{firstBall()});
+    field_.replace(0, std::array{firstBlob()});
     trials_.resize(1);
     sweep();
     double swept = 1;
     steps.push_back(stepNow(diagonal));
     const auto most = static_cast<std::size_t>(options_.blobs);
-    while (field_.balls().size() < most && steps.back().rmsDistance > options_.error * diagonal) {
-      job_.checkCancelled(field_.balls().size(), most);
+    while (field_.blobs().size() < most && steps.back().rmsDistance > options_.error * diagonal) {
+      job_.checkCancelled(field_.blobs().size(), most);
       if (!splitBest()) break;
-      if (static_cast<double>(field_.balls().size()) >= kSweepGrowth * swept) {
+      if (static_cast<double>(field_.blobs().size()) >= kSweepGrowth * swept) {
         sweep();
-        swept = static_cast<double>(field_.balls().size());
+        swept = static_cast<double>(field_.blobs().size());
       }
       steps.push_back(stepNow(diagonal));
     }
@@ -86,7 +86,7 @@ class Fitter {
     steps.back() = stepNow(diagonal);
   }
 
-  [[nodiscard]] const std::vector<Ball>& balls() const { return field_.balls(); }
+  [[nodiscard]] const std::vector<UnitBlob>& blobs() const { return field_.blobs(); }
 
   /// The distance of a sample from the surface along the gradient: three of Newton's steps.
   [[nodiscard]] double distance(const Sample& sample) const {
@@ -94,7 +94,7 @@ class Fitter {
     Vec3 p = sample.point;
     for (int i = 0; i < kSteps; ++i) {
       Sum sum;
-      for (const Ball& ball : field_.balls()) sum += fit::densityOf(ball, p);
+      for (const UnitBlob& blob : field_.blobs()) sum += fit::densityOf(blob, p);
       const double slope2 = sum.gradient.squaredLength();
       if (!(slope2 > 0)) return 1;
       Vec3 step = sum.gradient * ((fit::kThreshold - sum.value) / slope2);
@@ -108,15 +108,15 @@ class Fitter {
  private:
   static constexpr double kMostStep = 0.1;
 
-  /// What splitting a ball would give.
+  /// What splitting a blob would give.
   struct Trial {
-    std::array<Ball, 2> parts;
+    std::array<UnitBlob, 2> parts;
     double energy = std::numeric_limits<double>::infinity();
     bool isFresh = false;
   };
 
   // About the samples' centre, its surface at their distance from there.
-  [[nodiscard]] Ball firstBall() const {
+  [[nodiscard]] UnitBlob firstBlob() const {
     Vec3 centre(0.0);
     const double count = static_cast<double>(field_.samples().size());
     for (const Sample& sample : field_.samples()) centre += sample.point / count;
@@ -128,25 +128,25 @@ class Fitter {
     return {centre, std::max(radius, 0.01), 1};
   }
 
-  // Two half as strong, a little apart along the longest axis of the samples near the ball.
-  [[nodiscard]] std::array<Ball, 2> halvesOf(std::size_t index) const {
+  // Two half as strong, a little apart along the longest axis of the samples near the blob.
+  [[nodiscard]] std::array<UnitBlob, 2> halvesOf(std::size_t index) const {
     constexpr double kApart = 0.2, kSmaller = 0.85, kWeaker = 0.62;
-    const Ball& ball = field_.balls()[index];
+    const UnitBlob& blob = field_.blobs()[index];
     Vec3 axis(1, 0.7, 0.4);
     for (int round = 0; round < 8; ++round) {  // power iteration
       Vec3 next(0.0);
       for (std::size_t i = 0; i < field_.samples().size(); ++i) {
         const Sample& sample = field_.samples()[i];
-        const Vec3 offset = sample.point - ball.centre;
+        const Vec3 offset = sample.point - blob.centre;
         const double near =
-            std::exp(-fit::kBlobbiness * offset.squaredLength() / (ball.radius * ball.radius));
+            std::exp(-fit::kBlobbiness * offset.squaredLength() / (blob.radius * blob.radius));
         next += offset * (near * offset.dot(axis));
       }
       if (next.normalize(0)) axis = next;
     }
-    const Vec3 apart = axis.unitOrX() * (kApart * ball.radius);
-    const Ball half{ball.centre, kSmaller * ball.radius, kWeaker * ball.weight};
-    std::array<Ball, 2> halves{half, half};
+    const Vec3 apart = axis.unitOrX() * (kApart * blob.radius);
+    const UnitBlob half{blob.centre, kSmaller * blob.radius, kWeaker * blob.weight};
+    std::array<UnitBlob, 2> halves{half, half};
     halves[0].centre += apart;
     halves[1].centre -= apart;
     return halves;
@@ -159,7 +159,7 @@ class Fitter {
     }
     job_.forParts(stale.size(), [&](base::Job& /*part*/, std::size_t i) {
       Trial& trial = trials_[stale[i]];
-      trial.parts = fit::solveBalls(field_, stale[i], halvesOf(stale[i]), kTrialSteps);
+      trial.parts = fit::solveBlobs(field_, stale[i], halvesOf(stale[i]), kTrialSteps);
       trial.energy = field_.energyWith(stale[i], trial.parts) - field_.energy();
       trial.isFresh = true;
     });
@@ -169,7 +169,7 @@ class Fitter {
   bool splitBest() {
     const double energy = field_.energy();
     std::size_t index = 0;
-    std::array<Ball, 2> parts;
+    std::array<UnitBlob, 2> parts;
     while (true) {
       refreshTrials();
       const auto best =
@@ -178,11 +178,11 @@ class Fitter {
       if (!(best->energy < -kLeastGain * energy)) return false;
       index = static_cast<std::size_t>(best - trials_.begin());
       parts = best->parts;
-      // Balls farther off may have changed a little since the trial.
+      // Blobs farther off may have changed a little since the trial.
       if (field_.energyWith(index, parts) < energy) break;
       best->isFresh = false;
     }
-    const std::array<Ball, 2> better = fit::solveBalls(field_, index, parts, kSplitSteps);
+    const std::array<UnitBlob, 2> better = fit::solveBlobs(field_, index, parts, kSplitSteps);
     if (field_.energyWith(index, better) < field_.energyWith(index, parts)) parts = better;
     field_.replace(index, parts);
     trials_.emplace_back();
@@ -197,12 +197,12 @@ class Fitter {
     return true;
   }
 
-  // Trials of the balls around one that has changed tell nothing any more.
+  // Trials of the blobs around one that has changed tell nothing any more.
   void markAround(std::size_t index) {
-    const Ball& ball = field_.balls()[index];
+    const UnitBlob& blob = field_.blobs()[index];
     for (std::size_t i = 0; i < trials_.size(); ++i) {
-      const Ball& other = field_.balls()[i];
-      if ((other.centre - ball.centre).length() < kTouching * (other.radius + ball.radius)) {
+      const UnitBlob& other = field_.blobs()[i];
+      if ((other.centre - blob.centre).length() < kTouching * (other.radius + blob.radius)) {
         trials_[i].isFresh = false;
       }
     }
@@ -211,16 +211,16 @@ class Fitter {
 
   void optimize(std::size_t index) {
     const double energy = field_.energy();
-    const std::array<Ball, 1> better{fit::solveBall(field_, index, kTurnSteps)};
+    const std::array<UnitBlob, 1> better{fit::solveBlob(field_, index, kTurnSteps)};
     if (!(field_.energyWith(index, better) < energy * (1 - kLeastGain))) return;
     field_.replace(index, better);
     trials_[index].isFresh = false;
   }
 
-  // Each ball in turn.
+  // Each blob in turn.
   void sweep() {
     field_.sumUp();
-    for (std::size_t i = 0; i < field_.balls().size(); ++i) optimize(i);
+    for (std::size_t i = 0; i < field_.blobs().size(); ++i) optimize(i);
     for (Trial& trial : trials_) trial.isFresh = false;
   }
 
@@ -234,13 +234,13 @@ class Fitter {
       squared += distance * distance;
     }
     const double count = static_cast<double>(field_.samples().size());
-    return {field_.balls().size(), field_.energy(), std::sqrt(squared / count) * diagonal};
+    return {field_.blobs().size(), field_.energy(), std::sqrt(squared / count) * diagonal};
   }
 
   BlobField field_;
   const FitOptions& options_;
   base::Job& job_;
-  std::vector<Trial> trials_;  ///< for each ball
+  std::vector<Trial> trials_;  ///< for each blob
 };
 
 BlobFit fitIn(const Mesh& mesh, const FitOptions& options, base::Job& job) {
@@ -267,9 +267,9 @@ BlobFit fitIn(const Mesh& mesh, const FitOptions& options, base::Job& job) {
     result.largestDistance = std::max(result.largestDistance, distance * frame.diagonal);
   }
   result.rmsDistance = std::sqrt(squared / static_cast<double>(distances.size())) * frame.diagonal;
-  for (const Ball& ball : fitter.balls()) {
+  for (const UnitBlob& blob : fitter.blobs()) {
     result.blobs.push_back(
-        {frame.middle + ball.centre * frame.diagonal, ball.radius * frame.diagonal, ball.weight});
+        {frame.middle + blob.centre * frame.diagonal, blob.radius * frame.diagonal, blob.weight});
   }
   return result;
 }

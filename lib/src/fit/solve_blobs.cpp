@@ -1,5 +1,5 @@
 // The only file that includes Eigen and Ceres, which take seconds.
-#include "fit/solve_balls.h"
+#include "fit/solve_blobs.h"
 
 #include <ceres/tiny_solver.h>
 #include <Eigen/Dense>
@@ -11,7 +11,7 @@
 namespace tufa::fit {
 namespace {
 
-constexpr int kPerBall = 5;
+constexpr int kPerBlob = 5;
 
 // A parameter of the solver is any number; what it stands for stays between two bounds.
 struct Range {
@@ -34,41 +34,41 @@ constexpr Range kCentres{-0.75, 0.75};
 const Range kRadii{std::log(0.004), std::log(3.0)};
 constexpr Range kWeights{-2, 4};
 
-// Balls from parameters, and how each of a ball's five numbers changes with its parameter.
+// Blobs from parameters, and how each of a blob's five numbers changes with its parameter.
 struct Bounded {
-  Ball ball;
-  double slopes[kPerBall];
+  UnitBlob blob;
+  double slopes[kPerBlob];
 
   explicit Bounded(const double* u) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ball.centre[axis] = kCentres.at(u[axis]);
-      slopes[axis] = kCentres.slopeAt(ball.centre[axis]);
+      blob.centre[axis] = kCentres.at(u[axis]);
+      slopes[axis] = kCentres.slopeAt(blob.centre[axis]);
     }
     const double logarithm = kRadii.at(u[3]);
-    ball.radius = std::exp(logarithm);
+    blob.radius = std::exp(logarithm);
     slopes[3] = kRadii.slopeAt(logarithm);
-    ball.weight = kWeights.at(u[4]);
-    slopes[4] = kWeights.slopeAt(ball.weight);
+    blob.weight = kWeights.at(u[4]);
+    slopes[4] = kWeights.slopeAt(blob.weight);
   }
-  static void parametersOf(const Ball& ball, double* u) {
-    for (std::size_t axis = 0; axis < 3; ++axis) u[axis] = kCentres.parameterAt(ball.centre[axis]);
-    u[3] = kRadii.parameterAt(std::log(ball.radius));
-    u[4] = kWeights.parameterAt(ball.weight);
+  static void parametersOf(const UnitBlob& blob, double* u) {
+    for (std::size_t axis = 0; axis < 3; ++axis) u[axis] = kCentres.parameterAt(blob.centre[axis]);
+    u[3] = kRadii.parameterAt(std::log(blob.radius));
+    u[4] = kWeights.parameterAt(blob.weight);
   }
 };
 
-// The square roots of the energy's parts near some balls, as the solver wants them: of each sample
+// The square roots of the energy's parts near some blobs, as the solver wants them: of each sample
 // the value and the three components of the normal, and one for the volumes.
-template <int Balls>
+template <int Blobs>
 class NearEnergy {
  public:
   using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kPerBall * Balls };
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kPerBlob * Blobs };
 
-  NearEnergy(const BlobField& field, std::size_t index, std::span<const Ball> start) {
-    // The balls may go and grow about so far while they are optimized.
+  NearEnergy(const BlobField& field, std::size_t index, std::span<const UnitBlob> start) {
+    // The blobs may go and grow about so far while they are optimized.
     constexpr double kRoom = 1.3;
-    const Ball& own = field.balls()[index];
+    const UnitBlob& own = field.blobs()[index];
     const double count = static_cast<double>(field.samples().size());
     value_ = std::sqrt(field.weights().value / count);
     normal_ = std::sqrt(field.weights().normal / count);
@@ -76,8 +76,8 @@ class NearEnergy {
     volume_ = field.volume() - volumeOf(own);
     for (std::size_t i = 0; i < field.samples().size(); ++i) {
       const Sample& sample = field.samples()[i];
-      const auto reaches = [&](const Ball& ball) {
-        return (sample.point - ball.centre).length() < kRoom * kReach * ball.radius;
+      const auto reaches = [&](const UnitBlob& blob) {
+        return (sample.point - blob.centre).length() < kRoom * kReach * blob.radius;
       };
       if (!reaches(own) && std::none_of(start.begin(), start.end(), reaches)) continue;
       Sum rest = field.sums()[i];
@@ -92,13 +92,13 @@ class NearEnergy {
     Eigen::Map<Eigen::VectorXd> r(residuals, NumResiduals());
     Eigen::Map<Eigen::MatrixXd> j(jacobian, jacobian != nullptr ? NumResiduals() : 0,
                                   NUM_PARAMETERS);
-    std::vector<Bounded> balls;
-    for (int b = 0; b < Balls; ++b) balls.emplace_back(parameters + kPerBall * b);
+    std::vector<Bounded> blobs;
+    for (int b = 0; b < Blobs; ++b) blobs.emplace_back(parameters + kPerBlob * b);
     for (std::size_t i = 0; i < near_.size(); ++i) {
       const int row = static_cast<int>(4 * i);
       const Sample& sample = near_[i].sample;
       Sum sum = near_[i].rest;
-      for (const Bounded& b : balls) sum += densityOf(b.ball, sample.point);
+      for (const Bounded& b : blobs) sum += densityOf(b.blob, sample.point);
       const double length = sum.gradient.length();
       const Vec3 unit = length > 0 ? sum.gradient / length : Vec3(0.0);
       r[row] = value_ * (sum.value - kThreshold);
@@ -106,21 +106,21 @@ class NearEnergy {
         r[row + 1 + axis] = normal_ * (sample.normal[axis] + unit[axis]);
       }
       if (jacobian == nullptr) continue;
-      for (int b = 0; b < Balls; ++b) {
-        fillRow(balls[b], sample.point, unit, length, j.block(row, kPerBall * b, 4, kPerBall));
+      for (int b = 0; b < Blobs; ++b) {
+        fillRow(blobs[b], sample.point, unit, length, j.block(row, kPerBlob * b, 4, kPerBlob));
       }
     }
     const int last = NumResiduals() - 1;
     r[last] = volume_;
-    for (const Bounded& b : balls) r[last] += volumeOf(b.ball);
+    for (const Bounded& b : blobs) r[last] += volumeOf(b.blob);
     r[last] *= shrink_;
     if (jacobian == nullptr) return true;
-    for (int b = 0; b < Balls; ++b) {
-      const Ball& ball = balls[b].ball;
-      const double cube = ball.radius * ball.radius * ball.radius;
-      j.block(last, kPerBall * b, 1, kPerBall) << 0, 0, 0,
-          shrink_ * 3 * volumeOf(ball) * balls[b].slopes[3],
-          shrink_ * (ball.weight < 0 ? -cube : cube) * balls[b].slopes[4];
+    for (int b = 0; b < Blobs; ++b) {
+      const UnitBlob& blob = blobs[b].blob;
+      const double cube = blob.radius * blob.radius * blob.radius;
+      j.block(last, kPerBlob * b, 1, kPerBlob) << 0, 0, 0,
+          shrink_ * 3 * volumeOf(blob) * blobs[b].slopes[3],
+          shrink_ * (blob.weight < 0 ? -cube : cube) * blobs[b].slopes[4];
     }
     return true;
   }
@@ -128,24 +128,24 @@ class NearEnergy {
  private:
   struct Near {
     Sample sample;
-    Sum rest;  ///< of the balls that stay
+    Sum rest;  ///< of the blobs that stay
   };
 
-  // By one ball's parameters: of the value, and of the unit gradient at a sample.
+  // By one blob's parameters: of the value, and of the unit gradient at a sample.
   template <class Block>
   void fillRow(const Bounded& bounded, const Vec3& point, const Vec3& unit, double length,
                Block&& block) const {
     block.setZero();
-    const Ball& ball = bounded.ball;
-    const Vec3 offset = point - ball.centre;
-    const double squared = ball.radius * ball.radius;
+    const UnitBlob& blob = bounded.blob;
+    const Vec3 offset = point - blob.centre;
+    const double squared = blob.radius * blob.radius;
     const double q = offset.squaredLength() / squared;
     if (!(q < kReach * kReach)) return;
-    const double shape = std::exp(-kBlobbiness * q), density = ball.weight * shape;
+    const double shape = std::exp(-kBlobbiness * q), density = blob.weight * shape;
     const double k = 2 * kBlobbiness / squared;
     // Of the gradient, -k density offset, by each parameter.
-    Vec3 gradients[kPerBall];
-    double values[kPerBall];
+    Vec3 gradients[kPerBlob];
+    double values[kPerBlob];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       values[axis] = k * density * offset[axis];
       gradients[axis] = offset * (-k * values[axis]);
@@ -155,7 +155,7 @@ class NearEnergy {
     gradients[3] = offset * (k * density * (2 - 2 * kBlobbiness * q));
     values[4] = shape;
     gradients[4] = offset * (-k * shape);
-    for (int p = 0; p < kPerBall; ++p) {
+    for (int p = 0; p < kPerBlob; ++p) {
       const double slope = bounded.slopes[p];
       block(0, p) = value_ * values[p] * slope;
       if (!(length > 0)) continue;
@@ -168,30 +168,30 @@ class NearEnergy {
   std::vector<Near> near_;
 };
 
-template <int Balls>
-std::array<Ball, Balls> solve(const BlobField& field, std::size_t index,
-                              const std::array<Ball, Balls>& start, int iterations) {
-  using Energy = NearEnergy<Balls>;
+template <int Blobs>
+std::array<UnitBlob, Blobs> solve(const BlobField& field, std::size_t index,
+                                  const std::array<UnitBlob, Blobs>& start, int iterations) {
+  using Energy = NearEnergy<Blobs>;
   const Energy energy(field, index, start);
   typename ceres::TinySolver<Energy>::Parameters u;
-  for (int b = 0; b < Balls; ++b) Bounded::parametersOf(start[b], u.data() + kPerBall * b);
+  for (int b = 0; b < Blobs; ++b) Bounded::parametersOf(start[b], u.data() + kPerBlob * b);
   ceres::TinySolver<Energy> solver;
   solver.options.max_num_iterations = iterations;
   solver.options.function_tolerance = 1e-6;
   solver.Solve(energy, &u);
-  std::array<Ball, Balls> balls;
-  for (int b = 0; b < Balls; ++b) balls[b] = Bounded(u.data() + kPerBall * b).ball;
-  return balls;
+  std::array<UnitBlob, Blobs> blobs;
+  for (int b = 0; b < Blobs; ++b) blobs[b] = Bounded(u.data() + kPerBlob * b).blob;
+  return blobs;
 }
 
 }  // namespace
 
-Ball solveBall(const BlobField& field, std::size_t index, int iterations) {
-  return solve<1>(field, index, {field.balls()[index]}, iterations)[0];
+UnitBlob solveBlob(const BlobField& field, std::size_t index, int iterations) {
+  return solve<1>(field, index, {field.blobs()[index]}, iterations)[0];
 }
 
-std::array<Ball, 2> solveBalls(const BlobField& field, std::size_t index,
-                               const std::array<Ball, 2>& start, int iterations) {
+std::array<UnitBlob, 2> solveBlobs(const BlobField& field, std::size_t index,
+                                   const std::array<UnitBlob, 2>& start, int iterations) {
   return solve<2>(field, index, start, iterations);
 }
 

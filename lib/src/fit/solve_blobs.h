@@ -1,0 +1,18 @@
+#pragma once
+
+#include <array>
+
+#include "fit/blob_field.h"
+
+namespace tufa::fit {
+
+/// One blob of a field optimized, the others staying: the energy near it is as small as
+/// `iterations` steps make it.
+[[nodiscard]] UnitBlob solveBlob(const BlobField& field, std::size_t index, int iterations);
+
+/// Two blobs in place of one, optimized together from `start` on.
+[[nodiscard]] std::array<UnitBlob, 2> solveBlobs(const BlobField& field, std::size_t index,
+                                                 const std::array<UnitBlob, 2>& start,
+                                                 int iterations);
+
+}  // namespace tufa::fit
