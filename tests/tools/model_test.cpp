@@ -29,10 +29,12 @@ class Model : public CommandTest {
 /// Twice as coarse as they say, which takes a tenth of the time.
 TEST_F(Model, SampleScenesBecomeClosedMeshes) {
   int scenes = 0;
+  std::string all;
   for (const auto& entry : std::filesystem::directory_iterator(TUFA_SCENES)) {
     if (entry.path().extension() != ".json") continue;
     ++scenes;
     const std::string scene = entry.path().string();
+    all += readBytes(scene);
     const double voxel = Json::parse(readBytes(scene)).at("voxel").get<double>();
     const Outcome made =
         run("model " + scene + " -o s.vdb --json --voxel " + std::to_string(2 * voxel));
@@ -52,7 +54,14 @@ TEST_F(Model, SampleScenesBecomeClosedMeshes) {
     EXPECT_GT(picture.at("covered"), 0.1) << scene;
     EXPECT_LT(picture.at("compare").at("share"), 0.05) << scene;
   }
-  EXPECT_GE(scenes, 10);
+  EXPECT_GE(scenes, 12);
+  for (const char* const type :
+       {"sphere",    "box",         "cylinder", "segment",      "polyline",   "circle",
+        "plane",     "quadric",     "gyroid",   "schwarz_p",    "schwarz_d",  "expression",
+        "metaballs", "convolution", "union",    "intersection", "difference", "complement",
+        "offset",    "repeat",      "shell",    "use"}) {
+    EXPECT_NE(all.find(std::string("\"type\": \"") + type + '"'), std::string::npos) << type;
+  }
 }
 
 TEST_F(Model, LooksAtAPoint) {

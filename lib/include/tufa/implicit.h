@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tufa {
 struct FileBytes;
@@ -27,6 +28,12 @@ struct Interval {
 struct Box {
   Position least{0, 0, 0};     ///< corner
   Position greatest{0, 0, 0};  ///< opposite corner
+};
+
+/// The points from + t direction, for all numbers t.
+struct Line {
+  Position from{0, 0, 0};       ///< where t is 0
+  Position direction{0, 0, 1};  ///< of any length but 0
 };
 
 /// A function of world space whose zero set is a surface, negative inside. To make one of your own,
@@ -72,6 +79,12 @@ class TUFA_API Field {
   /// A field of the same values in a box that is quicker to evaluate there; null if this one is as
   /// good. It may refer to this one, which must outlive it. Default: null.
   [[nodiscard]] virtual std::shared_ptr<const Field> restricted(const Box& box) const;
+
+  /// In closed form, where there is one: appends the ranges of t in which a line is inside, sorted
+  /// and apart, right between `begin` and `end` at least. Rays then need no search. Returns whether
+  /// there is one, the same for all lines; appends nothing if not. Default: there is none.
+  [[nodiscard]] virtual bool insideAlong(const Line& line, double begin, double end,
+                                         std::vector<Interval>& spans) const;
 
   /// The unit vector along gradient() that points outward; (0, 0, 0) where the gradient is 0.
   [[nodiscard]] Position normal(const Position& point) const;

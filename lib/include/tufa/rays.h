@@ -48,7 +48,8 @@ struct RaySurfaceOptions {
 [[nodiscard]] TUFA_API std::shared_ptr<const RaySurface> makeRaySurface(
     std::shared_ptr<const openvdb::GridBase> grid, const RaySurfaceOptions& options = {});
 
-/// The surface of a field. Rays are halved where the field's bounds, and the interval Newton method
+/// The surface of a field. Where the field has a closed form (Field::insideAlong()), its roots are
+/// taken. Other rays are halved where the field's bounds, and the interval Newton method
 /// on its derivative along the ray, cannot say that they meet no surface: none is stepped over,
 /// however thin, but for what rounding hides, some 10^-14 of the coordinates, and for fields
 /// whose bounds do not tell after 5,000 halvings. Throws Error:

@@ -2,6 +2,8 @@
 
 #include <tufa/implicit.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "implicit/boxes.h"
 #include "implicit/fields.h"
 #include "implicit/interval.h"
+#include "implicit/spans.h"
 
 namespace tufa::implicit {
 namespace {
@@ -26,6 +29,26 @@ double shareOfSecond(double a, double b, double radius) {
   const double overlap = radius - std::abs(a - b);
   const double share = overlap > 0 ? overlap / (2 * radius) : 0;
   return b < a ? 1 - share : share;
+}
+
+/// Its range for a range of b - a, in which it falls evenly.
+Interval sharesOfSecond(const Interval& difference, double radius) {
+  const auto share = [&](double apart) { return std::clamp(0.5 - apart / (2 * radius), 0.0, 1.0); };
+  constexpr double kRoom = 1e-15;
+  return {std::max(share(difference.greatest) - kRoom, 0.0),
+          std::min(share(difference.least) + kRoom, 1.0)};
+}
+
+/// Both boxes of vectors in shares, corner by corner.
+Box mixed(const Box& a, const Box& b, double share) {
+  std::array<Interval, 3> sides;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // 0 times an infinite end would be no number.
+    const Interval one = share < 1 ? (1 - share) * sideOf(a, axis) : Interval{0, 0};
+    const Interval other = share > 0 ? share * sideOf(b, axis) : Interval{0, 0};
+    sides[axis] = one + other;
+  }
+  return boxOf(sides);
 }
 
 /// A union; an intersection is the complement of the complements' union. `sign` is -1 for that one.
@@ -68,6 +91,7 @@ class Combination final : public Field {
 
   // Of all that may count: those of a sharp union that may be the least somewhere.
   [[nodiscard]] Box gradientBound(const Box& box) const override {
+    if (radius_ > 0) return blendedGradients(box);
     double leastGreatest = kInfinity;
     std::vector<double> least;
     least.reserve(parts_.size());
@@ -78,7 +102,7 @@ class Combination final : public Field {
     }
     Box all{Vec3(kInfinity), Vec3(-kInfinity)};
     for (std::size_t n = 0; n < parts_.size(); ++n) {
-      if (radius_ > 0 || least[n] <= leastGreatest) all = hull(all, parts_[n]->gradientBound(box));
+      if (least[n] <= leastGreatest) all = hull(all, parts_[n]->gradientBound(box));
     }
     return all;
   }
@@ -140,6 +164,23 @@ class Combination final : public Field {
     return std::make_shared<Combination>(std::move(kept), radius_, sign_);
   }
 
+  [[nodiscard]] bool insideAlong(const Line& line, double begin, double end,
+                                 std::vector<Interval>& spans) const override {
+    if (radius_ > 0) return false;
+    const std::size_t first = spans.size();
+    for (const FieldPtr& part : parts_) {
+      const std::size_t own = spans.size();
+      if (!part->insideAlong(line, begin, end, spans)) {
+        spans.resize(first);
+        return false;
+      }
+      if (sign_ < 0) complementFrom(spans, own);
+    }
+    uniteFrom(spans, first);
+    if (sign_ < 0) complementFrom(spans, first);
+    return true;
+  }
+
  private:
   [[nodiscard]] double join(double a, double b) const {
     return radius_ > 0 ? smoothMin(a, b, radius_) : std::min(a, b);
@@ -151,6 +192,23 @@ class Combination final : public Field {
   }
   [[nodiscard]] Interval signedBound(const Field& part, const Box& box) const {
     return sign_ > 0 ? part.bound(box) : -part.bound(box);
+  }
+  /// As gradient(), with ranges of the shares.
+  [[nodiscard]] Box blendedGradients(const Box& box) const {
+    Interval all = signedBound(*parts_[0], box);
+    Box slopes = parts_[0]->gradientBound(box);
+    for (std::size_t n = 1; n < parts_.size(); ++n) {
+      const Interval next = signedBound(*parts_[n], box);
+      const Interval share = sharesOfSecond(next - all, radius_);
+      if (share.greatest > 0) {
+        const Box own = parts_[n]->gradientBound(box);
+        slopes = share.least < 1
+                     ? hull(mixed(slopes, own, share.least), mixed(slopes, own, share.greatest))
+                     : own;
+      }
+      all = join(all, next);
+    }
+    return slopes;
   }
   /// What blending adds lies within a part of the radius of the parts, in their values; how far
   /// away that is, they tell if they are distances. Boxes of parts may have been turned, and their
@@ -215,6 +273,13 @@ class Shifted final : public Field {
     FieldPtr inner = part_->restricted(box);
     return inner ? std::make_shared<Shifted>(std::move(inner), scale_, shift_) : nullptr;
   }
+  [[nodiscard]] bool insideAlong(const Line& line, double begin, double end,
+                                 std::vector<Interval>& spans) const override {
+    const std::size_t first = spans.size();
+    if (shift_ != 0 || !part_->insideAlong(line, begin, end, spans)) return false;
+    if (scale_ < 0) complementFrom(spans, first);
+    return true;
+  }
 
  private:
   FieldPtr part_;
@@ -229,6 +294,11 @@ class Uniform final : public Field {
   [[nodiscard]] Position gradient(const Position& /*p*/) const override { return {0, 0, 0}; }
   [[nodiscard]] Interval bound(const Box& /*box*/) const override { return {value_, value_}; }
   [[nodiscard]] double lipschitz(const Box& /*box*/) const override { return 0; }
+  [[nodiscard]] bool insideAlong(const Line& /*line*/, double /*begin*/, double /*end*/,
+                                 std::vector<Interval>& spans) const override {
+    if (value_ < 0) spans.push_back(everything());
+    return true;
+  }
 
  private:
   double value_;

@@ -10,6 +10,7 @@
 #include "implicit/boxes.h"
 #include "implicit/dual.h"
 #include "implicit/formula_field.h"
+#include "implicit/kernel_profile.h"
 
 namespace tufa::implicit {
 namespace {
@@ -194,58 +195,6 @@ std::vector<Piece> piecesOf(const SkeletonTriangle& triangle, double width) {
   return pieces;
 }
 
-/// The kernel and the length of its slope, by a distance in widths.
-struct Profile {
-  ConvolutionKernel kernel;
-  [[nodiscard]] double value(double r) const {
-    switch (kernel) {
-      case ConvolutionKernel::Gaussian:
-        return std::exp(-r * r);
-      case ConvolutionKernel::Polynomial:
-        return r < 1 ? square(1 - r * r) : 0;
-      case ConvolutionKernel::Cauchy:
-        break;
-    }
-    return 1 / square(1 + r * r);
-  }
-  /// The distance where the kernel is steepest.
-  [[nodiscard]] double steepest() const {
-    switch (kernel) {
-      case ConvolutionKernel::Gaussian:
-        return std::numbers::sqrt2 / 2;
-      case ConvolutionKernel::Polynomial:
-        return 1 / std::numbers::sqrt3;
-      case ConvolutionKernel::Cauchy:
-        break;
-    }
-    return 1 / std::sqrt(5.0);
-  }
-  /// The greatest slope at this distance or a longer one.
-  [[nodiscard]] double steepestFrom(double distance) const {
-    const double r = std::max(distance, steepest());
-    switch (kernel) {
-      case ConvolutionKernel::Gaussian:
-        return 2 * r * std::exp(-r * r);
-      case ConvolutionKernel::Polynomial:
-        return r < 1 ? 4 * r * (1 - r * r) : 0;
-      case ConvolutionKernel::Cauchy:
-        break;
-    }
-    return 4 * r / (square(1 + r * r) * (1 + r * r));
-  }
-  /// Beyond it the kernel is 0, as doubles go.
-  [[nodiscard]] double reach() const {
-    constexpr double kUnderflow = 27.4;
-    if (kernel == ConvolutionKernel::Cauchy) return kInfinity;
-    return kernel == ConvolutionKernel::Gaussian ? kUnderflow : 1;
-  }
-  /// Over a line without end.
-  [[nodiscard]] double total() const {
-    if (kernel == ConvolutionKernel::Gaussian) return std::sqrt(kPi);
-    return kernel == ConvolutionKernel::Polynomial ? 16.0 / 15 : kPi / 2;
-  }
-};
-
 /// A part, and what its bounds are taken from. Sizes are such that the kernel's integral over a
 /// line or a plane without end is 1.
 struct BoundedPart {
@@ -285,6 +234,19 @@ class Convolution final : public Field {
       steepest += steepestOf(weight, piece, distance);
     });
     return steepest;
+  }
+
+  // Around the gradient in the centre.
+  [[nodiscard]] Box gradientBound(const Box& box) const override {
+    double curvature = 0;
+    forPieces(box, [&](double weight, const Piece& piece, double distance) {
+      curvature += std::abs(weight) * piece.size * profile_.curvatureFrom(distance);
+    });
+    const Vec3 centre = gradient(centreOf(box));
+    const double change = curvature / square(options_.width) * halfOf(box).length();
+    const Box around = grown({centre, centre}, (change + 1e-12 * centre.length()) * (1 + 1e-9));
+    const Box steepest = Field::gradientBound(box);
+    return isFinite(around) ? both(steepest, around) : steepest;
   }
 
   // Beyond the distance where the bounds of all parts together are below the threshold.

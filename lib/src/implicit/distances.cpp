@@ -6,6 +6,7 @@
 
 #include "implicit/fields.h"
 #include "implicit/formula_field.h"
+#include "implicit/spans.h"
 
 namespace tufa::implicit {
 namespace {
@@ -39,6 +40,42 @@ std::pair<Vec3, Vec3> frameOf(const Vec3& normal) {
   return {u, normal.cross(u)};
 }
 
+/// Appends where a line is nearer to the origin than `radius`; of vectors of two components, to an
+/// axis.
+void appendBall(const Vec3& from, const Vec3& direction, double radius, Spans& spans) {
+  const double a = direction.squaredLength();
+  const double b = from.dot(direction);
+  // By Lagrange's identity, which keeps what is left where a line just grazes it.
+  const double reach = radius * std::sqrt(a);
+  const double across = from.cross(direction).length();
+  appendBelow0(a, b, from.squaredLength() - radius * radius, (reach - across) * (reach + across),
+               spans);
+}
+
+/// What is in all of `count` sets of ranges, each of them one range or none, appended from `first`
+/// on.
+void intersectRanges(Spans& spans, std::size_t first, std::size_t count) {
+  Interval range = everything();
+  const bool none = spans.size() < first + count;
+  for (std::size_t n = first; n < spans.size(); ++n) {
+    range = {std::max(range.least, spans[n].least), std::min(range.greatest, spans[n].greatest)};
+  }
+  spans.resize(first);
+  if (!none && range.least < range.greatest) spans.push_back(range);
+}
+
+/// Appends where a line is in a cylinder around the axis from the origin, between `least` and
+/// `greatest` along it.
+void appendCylinder(const Vec3& from, const Vec3& direction, const Vec3& axis, const Interval& ends,
+                    double radius, Spans& spans) {
+  const std::size_t first = spans.size();
+  const double along = axis.dot(direction);
+  const double at = axis.dot(from);
+  appendSlab(along, at - (ends.least + ends.greatest) / 2, (ends.greatest - ends.least) / 2, spans);
+  appendBall(from - axis * at, direction - axis * along, radius, spans);
+  intersectRanges(spans, first, 2);
+}
+
 struct Sphere {
   static constexpr bool kUnitGradient = true;
   Vec3 centre;
@@ -48,6 +85,10 @@ struct Sphere {
     return length(Triple<T>{x - centre[0], y - centre[1], z - centre[2]}) - radius;
   }
   [[nodiscard]] Box extent() const { return boxAround(centre, Vec3(radius)); }
+  [[nodiscard]] bool insideAlong(const Vec3& from, const Vec3& direction, Spans& spans) const {
+    appendBall(from - centre, direction, radius, spans);
+    return true;
+  }
 };
 
 struct Segment {
@@ -64,6 +105,17 @@ struct Segment {
            radius;
   }
   [[nodiscard]] Box extent() const { return grown({minVec3(a, b), maxVec3(a, b)}, radius); }
+  [[nodiscard]] bool insideAlong(const Vec3& from, const Vec3& direction, Spans& spans) const {
+    const std::size_t first = spans.size();
+    const double length = (b - a).length();
+    appendBall(from - a, direction, radius, spans);
+    if (length > 0) {
+      appendBall(from - b, direction, radius, spans);
+      appendCylinder(from - a, direction, (b - a) / length, {0, length}, radius, spans);
+    }
+    uniteFrom(spans, first);
+    return true;
+  }
 };
 
 struct Circle {
@@ -98,6 +150,15 @@ struct RoundBox {
     return outside + min(max(q[0], max(q[1], q[2])), 0.0) - radius;
   }
   [[nodiscard]] Box extent() const { return boxAround(centre, half); }
+  [[nodiscard]] bool insideAlong(const Vec3& from, const Vec3& direction, Spans& spans) const {
+    if (radius > 0) return false;
+    const std::size_t first = spans.size();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      appendSlab(direction[axis], from[axis] - centre[axis], half[axis], spans);
+    }
+    intersectRanges(spans, first, 3);
+    return true;
+  }
 };
 
 struct Plane {
@@ -117,6 +178,10 @@ struct Plane {
       if (normal[axis] == -1) least[axis] = -level;
     }
     return {least, greatest};
+  }
+  [[nodiscard]] bool insideAlong(const Vec3& from, const Vec3& direction, Spans& spans) const {
+    appendHalf(normal.dot(direction), normal.dot(from) - level, spans);
+    return true;
   }
 };
 
@@ -139,6 +204,10 @@ struct Cylinder {
           std::abs(axis[i]) * half + radius * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i]));
     }
     return boxAround(centre, reach);
+  }
+  [[nodiscard]] bool insideAlong(const Vec3& from, const Vec3& direction, Spans& spans) const {
+    appendCylinder(from - centre, direction, axis, {-half, half}, radius, spans);
+    return true;
   }
 };
 

@@ -65,6 +65,11 @@ Box Field::extent() const { return wholeSpace(); }
 
 std::shared_ptr<const Field> Field::restricted(const Box& /*box*/) const { return nullptr; }
 
+bool Field::insideAlong(const Line& /*line*/, double /*begin*/, double /*end*/,
+                        std::vector<Interval>& /*spans*/) const {
+  return false;
+}
+
 Position Field::normal(const Position& point) const {
   Vec3 along = gradient(point);
   // The longest component first: squares of very short or long ones would vanish or overflow.

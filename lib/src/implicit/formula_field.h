@@ -22,7 +22,8 @@ std::array<Dual<T>, 3> variables(const T& x, const T& y, const T& z, const T& on
 /// A field that is one formula. `Formula` has
 /// * `operator()(x, y, z)`, a template, for numbers, intervals and duals of both;
 /// * `extent()`, a box that holds the inside;
-/// * `kUnitGradient`: whether it is a distance.
+/// * `kUnitGradient`: whether it is a distance;
+/// * perhaps `insideAlong(from, direction, spans)`, as Field::insideAlong().
 template <class Formula>
 class FormulaField final : public Field {
  public:
@@ -70,6 +71,13 @@ class FormulaField final : public Field {
 
   [[nodiscard]] bool hasUnitGradient() const override { return Formula::kUnitGradient; }
   [[nodiscard]] Box extent() const override { return formula_.extent(); }
+  [[nodiscard]] bool insideAlong(const Line& line, double /*begin*/, double /*end*/,
+                                 std::vector<Interval>& spans) const override {
+    if constexpr (requires { formula_.insideAlong(Vec3(), Vec3(), spans); }) {
+      return formula_.insideAlong(line.from, line.direction, spans);
+    }
+    return false;
+  }
 
  private:
   /// Where a formula has no derivative, as at the end of a root, 0 stands for it.

@@ -6,6 +6,7 @@
 
 #include "implicit/fields.h"
 #include "implicit/formula_field.h"
+#include "implicit/spans.h"
 
 namespace tufa::implicit {
 namespace {
@@ -35,6 +36,22 @@ struct Quadric {
       half[axis] = std::sqrt(std::max(0.0, depth * inverse.rows[axis][axis])) * (1 + 1e-9);
     }
     return boxAround(centre, half);
+  }
+  [[nodiscard]] bool insideAlong(const Vec3& p, const Vec3& d, Spans& spans) const {
+    const auto product = [&](const Vec3& u, const Vec3& v) {
+      return c[0] * u[0] * v[0] + c[1] * u[1] * v[1] + c[2] * u[2] * v[2] +
+             (c[3] * (u[0] * v[1] + u[1] * v[0]) + c[4] * (u[1] * v[2] + u[2] * v[1]) +
+              c[5] * (u[2] * v[0] + u[0] * v[2])) /
+                 2;
+    };
+    const double a = product(d, d);
+    const double b = product(p, d) + Vec3(c[6], c[7], c[8]).dot(d) / 2;
+    const double constant = (*this)(p[0], p[1], p[2]);
+    // b^2 - a c without what its two products are rounded by (Kahan).
+    const double ac = a * constant;
+    const double discriminant = std::fma(b, b, -ac) + std::fma(-a, constant, ac);
+    appendBelow0(a, b, constant, discriminant, spans);
+    return true;
   }
 };
 

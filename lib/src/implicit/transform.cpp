@@ -8,6 +8,7 @@
 #include "implicit/boxes.h"
 #include "implicit/fields.h"
 #include "implicit/interval.h"
+#include "implicit/spans.h"
 
 namespace tufa::implicit {
 namespace {
@@ -86,6 +87,12 @@ class Transformed final : public Field {
     FieldPtr inner = part_->restricted(imageOf(toPart_, box));
     return inner ? std::make_shared<Transformed>(std::move(inner), toPart_) : nullptr;
   }
+  // Such a map keeps where a line's points are along it.
+  [[nodiscard]] bool insideAlong(const Line& line, double begin, double end,
+                                 std::vector<Interval>& spans) const override {
+    return part_->insideAlong({toPart_(line.from), toPart_.turn(line.direction)}, begin, end,
+                              spans);
+  }
 
  private:
   FieldPtr part_;
@@ -142,6 +149,41 @@ class Repeated final : public Field {
       reach[axis] = steps_[axis] * static_cast<double>(counts_[axis] - 1);
     }
     return {extent_.least, Vec3(extent_.greatest) + reach};
+  }
+  // Where all points have the same nearest copy, what is asked are the same copies: a union of
+  // them.
+  [[nodiscard]] FieldPtr restricted(const Box& box) const override {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Interval side = sideOf(box, axis);
+      if (copyAt(side.least, axis) != copyAt(side.greatest, axis)) return nullptr;
+    }
+    std::vector<FieldPtr> copies;
+    forCopies(around(box), [&](const Vec3& shift) {
+      Affine map;
+      map.shift = shift;
+      copies.push_back(transformed(part_, map));
+    });
+    FieldPtr all = combine(Operation::Union, std::move(copies), 0);
+    FieldPtr fewer = all->restricted(box);
+    return fewer ? fewer : all;
+  }
+  [[nodiscard]] bool insideAlong(const Line& line, double begin, double end,
+                                 std::vector<Interval>& spans) const override {
+    const std::size_t first = spans.size();
+    const Vec3 from = line.from;
+    const Vec3 direction = line.direction;
+    const Vec3 a = from + direction * begin;
+    const Vec3 b = from + direction * end;
+    bool closed = true;
+    forCopies(around(Box{minVec3(a, b), maxVec3(a, b)}), [&](const Vec3& shift) {
+      closed = closed && part_->insideAlong({from - shift, direction}, begin, end, spans);
+    });
+    if (closed) {
+      uniteFrom(spans, first);
+    } else {
+      spans.resize(first);
+    }
+    return closed;
   }
 
  private:

@@ -29,18 +29,20 @@ constexpr double kHidden = 1e-14;
 
 class Search {
  public:
-  Search(const Field& field, const Stretch& stretch, bool inside, int& looks)
-      : field_(field),
-        stretch_(stretch),
-        inside_(inside),
-        looks_(looks),
-        unit_(field.hasUnitGradient()) {
+  Search(const Field& field, const Slopes& slopes, const Stretch& stretch, bool inside, int& looks)
+      : field_(field), slopes_(slopes), stretch_(stretch), inside_(inside), looks_(looks) {
     const double ends = std::max(Vec3(at(stretch.begin)).length(), Vec3(at(stretch.end)).length());
     scale_ = std::max({ends, std::abs(stretch.begin), std::abs(stretch.end)});
   }
 
   [[nodiscard]] std::optional<double> run() {
-    push({stretch_.begin, stretch_.end, false});
+    const Part all{stretch_.begin, stretch_.end, false};
+    const Interval along = dot(stretch_.direction, slopes_.gradient);
+    if (along.least > 0 || along.greatest < 0) {
+      if (changed(all.end)) return onlyRoot(all);
+      return std::nullopt;
+    }
+    push(all);
     while (depth_ > 0) {
       if (const auto found = look(open_[--depth_])) return found;
     }
@@ -62,7 +64,9 @@ class Search {
       push({part.begin, middle, true});
       return std::nullopt;
     }
-    if (!part.crosses && unit_ && std::abs(value) > half + kHidden * scale_) return std::nullopt;
+    // Infinite where there is no bound: nothing is above that.
+    const double change = slopes_.steepest * (half + kHidden * scale_);
+    if (!part.crosses && std::abs(value) > change) return std::nullopt;
     const Position a = at(part.begin);
     const Position b = at(part.end);
     // Ends are rounded: by less than this.
@@ -127,11 +131,11 @@ class Search {
   }
 
   const Field& field_;
+  const Slopes& slopes_;
   const Stretch& stretch_;
   bool inside_;
   int& looks_;        ///< that are left
   double scale_ = 0;  ///< of coordinates and distances
-  bool unit_;         ///< the field changes by no more than the distance
   // One part waits for each halving: of twice the scale at most, down to the shortest.
   std::array<Part, 64> open_;
   std::size_t depth_ = 0;
@@ -139,9 +143,31 @@ class Search {
 
 }  // namespace
 
-std::optional<double> firstCrossing(const Field& field, const Stretch& stretch, bool inside,
-                                    int& looks) {
-  return Search(field, stretch, inside, looks).run();
+std::optional<double> firstCrossing(const Field& field, const Slopes& slopes,
+                                    const Stretch& stretch, bool inside, int& looks) {
+  return Search(field, slopes, stretch, inside, looks).run();
+}
+
+std::optional<double> firstRoot(const Field& field, const Stretch& stretch, bool inside,
+                                implicit::Spans& spans) {
+  // From the middle, so that terms do not cancel.
+  const double middle = (stretch.begin + stretch.end) / 2;
+  const double half = (stretch.end - stretch.begin) / 2;
+  const Vec3 from = stretch.from + stretch.direction * middle;
+  spans.clear();
+  if (!field.insideAlong({from, stretch.direction}, -half, half, spans)) return std::nullopt;
+  implicit::dropShort(spans, kShortest * std::max(from.length(), std::abs(middle)));
+  for (const Interval& span : spans) {
+    if (span.greatest <= -half) continue;
+    if (span.least > half) break;
+    // Where it begins, unless a ray from inside leaves it.
+    const double place = inside ? span.greatest : span.least;
+    if (inside && span.least > -half) return stretch.begin;
+    if (place > half) return std::nullopt;
+    return middle + std::max(place, -half);
+  }
+  if (inside) return stretch.begin;
+  return std::nullopt;
 }
 
 }  // namespace tufa::rays

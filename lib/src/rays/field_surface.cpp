@@ -12,6 +12,7 @@
 #include "base/box_ray.h"
 #include "base/job.h"
 #include "implicit/boxes.h"
+#include "implicit/spans.h"
 #include "rays/field_ray.h"
 #include "rays/surface.h"
 
@@ -29,7 +30,9 @@ struct Cube {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   base::Box box;
   const Field* field = nullptr;  ///< the same values in the box; null where no surface is
+  bool closedForm = false;       ///< whether the field knows where lines are inside
   std::uint32_t firstChild = kNone;
+  Slopes slopes;  ///< of leaves without closed form
 };
 
 /// Bounds that all rays share: cubes without surface, and fields that are quicker in the others.
@@ -37,12 +40,12 @@ class FieldSurface final : public RaySurface {
  public:
   FieldSurface(std::shared_ptr<const Field> field, const Box& bounds, base::Job& job)
       : RaySurface(toBase(bounds), skinOf(bounds)), field_(std::move(field)) {
-    cubes_.push_back({toBase(bounds), field_.get()});
+    cubes_.push_back({toBase(bounds), field_.get(), hasClosedForm(*field_), Cube::kNone, {}});
     std::size_t begin = 0;
     for (int level = 0; level < kLevels; ++level) {
       job.beginStage("bounds", (level + 1.0) / kLevels);
       const std::size_t end = cubes_.size();
-      split(begin, job);
+      split(begin, level + 1 == kLevels, job);
       begin = end;
     }
   }
@@ -50,7 +53,7 @@ class FieldSurface final : public RaySurface {
   [[nodiscard]] std::unique_ptr<Caster> caster() const override;
   [[nodiscard]] const Field& field() const { return *field_; }
 
-  /// Calls visit(field, begin, end) for the parts of a ray in leaves, in their order, until it
+  /// Calls visit(cube, begin, end) for the parts of a ray in leaves, in their order, until it
   /// returns true.
   template <class Visit>
   void forLeaves(const base::BoxRay& ray, double to, const Visit& visit) const {
@@ -63,7 +66,7 @@ class FieldSurface final : public RaySurface {
       const auto [begin, end] = ray.span(cube.box, to);
       if (!(begin <= end)) continue;
       if (cube.firstChild == Cube::kNone) {
-        if (visit(*cube.field, begin, end)) return;
+        if (visit(cube, begin, end)) return;
         continue;
       }
       // The children that the ray enters last go to the bottom.
@@ -76,13 +79,18 @@ class FieldSurface final : public RaySurface {
  private:
   static constexpr int kLevels = 6;
 
+  static bool hasClosedForm(const Field& field) {
+    implicit::Spans spans;
+    return field.insideAlong({}, 0, 0, spans);
+  }
+
   static double skinOf(const Box& bounds) {
     constexpr double kShare = 1e-7;
     return kShare * implicit::halfOf(bounds).length();
   }
 
   /// Gives children to all cubes from `begin` on that the surface may pass.
-  void split(std::size_t begin, base::Job& job) {
+  void split(std::size_t begin, bool leaves, base::Job& job) {
     const std::size_t end = cubes_.size();
     const std::size_t count = end - begin;
     std::vector<std::array<Cube, 8>> children(count);
@@ -90,7 +98,7 @@ class FieldSurface final : public RaySurface {
     job.forRanges(count, 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t n = first; n < last; ++n) {
         const Cube& cube = cubes_[begin + n];
-        if (cube.field != nullptr) children[n] = halved(cube, made[n]);
+        if (cube.field != nullptr) children[n] = halved(cube, leaves, made[n]);
       }
     });
     for (std::size_t n = 0; n < count; ++n) {
@@ -101,7 +109,7 @@ class FieldSurface final : public RaySurface {
     }
   }
 
-  static std::array<Cube, 8> halved(const Cube& cube,
+  static std::array<Cube, 8> halved(const Cube& cube, bool leaves,
                                     std::vector<std::shared_ptr<const Field>>& made) {
     std::array<Cube, 8> children;
     const Vec3 middle = cube.box.centre();
@@ -118,9 +126,15 @@ class FieldSurface final : public RaySurface {
       const implicit::Interval bound = cube.field->bound(around);
       if (bound.least > 0 || bound.greatest < 0) continue;
       children[n].field = cube.field;
+      children[n].closedForm = cube.closedForm;
       if (auto field = cube.field->restricted(around)) {
         children[n].field = field.get();
+        children[n].closedForm = hasClosedForm(*field);
         made.push_back(std::move(field));
+      }
+      if (leaves && !children[n].closedForm) {
+        const Field& own = *children[n].field;
+        children[n].slopes = {own.gradientBound(around), own.lipschitz(around)};
       }
     }
     return children;
@@ -143,8 +157,10 @@ class FieldCaster final : public Caster {
     // Some dozens are enough as a rule.
     int looks = 5000;
     std::optional<double> found;
-    surface_.forLeaves(boxRay, ray.greatest, [&](const Field& field, double from, double to) {
-      found = firstCrossing(field, {ray.origin, ray.direction, from, to}, inside, looks);
+    surface_.forLeaves(boxRay, ray.greatest, [&](const Cube& cube, double from, double to) {
+      const Stretch stretch{ray.origin, ray.direction, from, to};
+      found = cube.closedForm ? firstRoot(*cube.field, stretch, inside, spans_)
+                              : firstCrossing(*cube.field, cube.slopes, stretch, inside, looks);
       return found.has_value();
     });
     if (!found) return std::nullopt;
@@ -154,6 +170,7 @@ class FieldCaster final : public Caster {
 
  private:
   const FieldSurface& surface_;
+  implicit::Spans spans_;
 };
 
 std::unique_ptr<Caster> FieldSurface::caster() const {

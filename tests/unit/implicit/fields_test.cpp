@@ -80,10 +80,11 @@ TEST(Fields, GradientsAreCentralDifferences) {
   }
 }
 
+/// A million samples in all.
 TEST(Fields, BoundsHoldAllSamples) {
   for (const auto& [name, field] : allFields()) {
     Places places;
-    for (int n = 0; n < 300; ++n) {
+    for (int n = 0; n < 400; ++n) {
       const Box box = places.box();
       const Interval bound = field->bound(box);
       const double steepest = field->lipschitz(box);
@@ -155,6 +156,51 @@ TEST(Fields, RestrictedOnesHaveTheSameValues) {
     }
   }
   EXPECT_GT(restrictedOnes, 100);
+}
+
+TEST(Fields, ClosedFormsSayWhichPartsOfLinesAreInside) {
+  int closedForms = 0;
+  for (const auto& [name, field] : allFields()) {
+    Places places;
+    std::vector<Interval> spans;
+    if (!field->insideAlong({}, -3, 3, spans)) {
+      EXPECT_TRUE(spans.empty()) << name;
+      continue;
+    }
+    ++closedForms;
+    int ends = 0;
+    for (int n = 0; n < 400; ++n) {
+      const Vec3 from = places.point(1);
+      // Some along an axis, and of any length.
+      const Vec3 direction = n % 4 == 0 ? Vec3(0, n % 8 == 0 ? 1 : -0.5, 0) : places.point(1.5);
+      spans.assign(1, {7, 8});  // not its own
+      ASSERT_TRUE(field->insideAlong({from, direction}, -3, 3, spans)) << name;
+      ASSERT_EQ(spans[0].least, 7);
+      double last = -implicit::kInfinity;
+      for (std::size_t k = 1; k < spans.size(); ++k) {
+        ASSERT_TRUE(spans[k].least < spans[k].greatest) << name;
+        ASSERT_TRUE(k == 1 || last < spans[k].least) << name;
+        last = spans[k].greatest;
+      }
+      for (double t = -3; t <= 3; t += 0.037) {
+        const double value = field->value(from + direction * t);
+        bool inside = false;
+        double nearest = implicit::kInfinity;
+        for (std::size_t k = 1; k < spans.size(); ++k) {
+          inside = inside || (spans[k].least < t && t < spans[k].greatest);
+          for (const double end : {spans[k].least, spans[k].greatest}) {
+            nearest = std::min(nearest, std::abs(t - end));
+          }
+        }
+        if (nearest > 1e-9 && std::abs(value) > 1e-12) {
+          ASSERT_EQ(inside, value < 0) << name << " " << n << " " << t;
+        }
+        if (nearest < 0.037) ++ends;
+      }
+    }
+    EXPECT_GT(ends, 100) << name;
+  }
+  EXPECT_EQ(closedForms, 15);
 }
 
 TEST(Fields, UnitGradientsAreUnitVectors) {

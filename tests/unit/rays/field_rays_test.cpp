@@ -42,12 +42,41 @@ std::optional<double> sphereDistance(const Vec3& from, const Vec3& direction, co
   return along - std::sqrt((radius - across) * (radius + across));
 }
 
+/// The same field without closed form: rays are searched by bounds.
+class Searched final : public implicit::Field {
+ public:
+  explicit Searched(FieldPtr field) : field_(std::move(field)) {}
+  [[nodiscard]] double value(const Position& p) const override { return field_->value(p); }
+  [[nodiscard]] Position gradient(const Position& p) const override { return field_->gradient(p); }
+  [[nodiscard]] implicit::Interval bound(const implicit::Box& box) const override {
+    return field_->bound(box);
+  }
+  [[nodiscard]] double lipschitz(const implicit::Box& box) const override {
+    return field_->lipschitz(box);
+  }
+  [[nodiscard]] implicit::Box gradientBound(const implicit::Box& box) const override {
+    return field_->gradientBound(box);
+  }
+  [[nodiscard]] implicit::Box extent() const override { return field_->extent(); }
+
+ private:
+  FieldPtr field_;
+};
+
 TEST(FieldRays, MeetASmallSphereWheneverTheClosedFormDoes) {
   const Vec3 centre(0.31, -0.27, 0.12);
   constexpr double kRadius = 1e-3;
-  const auto surface = makeRaySurface(implicit::combine(
-      implicit::Operation::Union,
-      {implicit::makeSphere(centre, kRadius), implicit::makeSphere({-1, -1, -1}, 0.05)}, 0));
+  const FieldPtr other = implicit::makeSphere({-1, -1, -1}, 0.05);
+  const auto beside = [&](const FieldPtr& sphere) {
+    return implicit::combine(implicit::Operation::Union, {sphere, other}, 0);
+  };
+  const FieldPtr sphere = implicit::makeSphere(centre, kRadius);
+  const FieldPtr quadric =
+      implicit::makeQuadric({1, 1, 1, 0, 0, 0, -2 * centre[0], -2 * centre[1], -2 * centre[2],
+                             centre.squaredLength() - kRadius * kRadius});
+  const std::shared_ptr<const RaySurface> surfaces[] = {
+      makeRaySurface(beside(sphere)), makeRaySurface(std::make_shared<Searched>(beside(sphere))),
+      makeRaySurface(beside(quadric))};
   Numbers numbers;
   int hits = 0;
   for (int n = 0; n < 4000; ++n) {
@@ -60,14 +89,17 @@ TEST(FieldRays, MeetASmallSphereWheneverTheClosedFormDoes) {
     const double reach = n % 4 == 0 ? rim : numbers.uniform(0, rim);
     const Vec3 direction = (aim + side * (reach * kRadius)).unitOrX();
     const auto truth = sphereDistance(from, direction, centre, kRadius);
-    const auto hit = castRay(*surface, {from, direction});
-    ASSERT_EQ(hit.has_value(), truth.has_value()) << n;
-    if (!hit) continue;
-    ++hits;
-    ASSERT_NEAR(hit->distance, *truth, 1e-9);
-    ASSERT_NEAR((Vec3(hit->normal) - (Vec3(hit->point) - centre) / kRadius).length(), 0, 1e-5);
+    for (const auto& surface : surfaces) {
+      const auto hit = castRay(*surface, {from, direction});
+      ASSERT_EQ(hit.has_value(), truth.has_value()) << n;
+      if (!hit) continue;
+      ++hits;
+      // The quadric's constant is rounded, by 10^-11 of the squared radius.
+      ASSERT_NEAR(hit->distance, *truth, 1e-8);
+      ASSERT_NEAR((Vec3(hit->normal) - (Vec3(hit->point) - centre) / kRadius).length(), 0, 1e-5);
+    }
   }
-  EXPECT_GT(hits, 3000);
+  EXPECT_GT(hits, 9000);
 }
 
 TEST(FieldRays, MeetQuadricsAtTheirRoots) {
@@ -105,6 +137,78 @@ TEST(FieldRays, MeetQuadricsAtTheirRoots) {
     }
   }
   EXPECT_GT(hits, 500);
+}
+
+FieldPtr randomSolid(Numbers& numbers, int depth) {
+  const auto point = [&] { return numbers.point(0.8); };
+  if (depth == 0) {
+    const double size = numbers.uniform(0.2, 0.6);
+    switch (static_cast<int>(numbers.uniform(0, 5))) {
+      case 0:
+        return implicit::makeBox(point(), Vec3(size, 0.4, 0.7 - size), 0);
+      case 1:
+        return implicit::makeCylinder(point(), point() + Vec3(0, 0, 2), size);
+      case 2:
+        return implicit::makeSegment(point(), point(), size / 2);
+      case 3:
+        return implicit::makeQuadric({1, 2, -1, 0.3, 0, 0.2, 0, 0, size, -size});
+      default:
+        return implicit::makeSphere(point(), size);
+    }
+  }
+  const auto operation =
+      depth % 2 == 0 ? implicit::Operation::Union : implicit::Operation::Intersection;
+  FieldPtr a = randomSolid(numbers, depth - 1);
+  FieldPtr b = randomSolid(numbers, depth - 1);
+  if (operation == implicit::Operation::Intersection) b = implicit::makeComplement(b);
+  implicit::Affine map;
+  map.rows = {Vec3(0.8, 0.6, 0), Vec3(-0.5, 0.9, 0.1), Vec3(0, 0.2, 1.1)};
+  map.shift = point() * 0.2;
+  return implicit::transformed(
+      implicit::combine(operation, {std::move(a), std::move(b), randomSolid(numbers, 0)}, 0), map);
+}
+
+TEST(FieldRays, ByRootsAndByBoundsMeetTheSame) {
+  Numbers numbers;
+  int hits = 0;
+  for (int n = 0; n < 10; ++n) {
+    const FieldPtr solid =
+        implicit::combine(implicit::Operation::Intersection,
+                          {randomSolid(numbers, 3), implicit::makeBox({0, 0, 0}, Vec3(1.5), 0)}, 0);
+    const auto byRoots = makeRaySurface(solid);
+    const auto byBounds = makeRaySurface(std::make_shared<Searched>(solid));
+    for (int k = 0; k < 300; ++k) {
+      // From inside as well, and along axes.
+      const Vec3 from = numbers.point(k % 3 == 0 ? 1 : 3);
+      const Vec3 direction =
+          k % 5 == 0 ? Vec3(0, 0, from[2] > 0 ? -1 : 1) : numbers.point(1) - from;
+      const auto one = castRay(*byRoots, {from, direction});
+      const auto other = castRay(*byBounds, {from, direction});
+      ASSERT_EQ(one.has_value(), other.has_value()) << n << " " << k;
+      if (!one) continue;
+      ++hits;
+      ASSERT_NEAR(one->distance, other->distance, 1e-9) << n << " " << k;
+    }
+  }
+  EXPECT_GT(hits, 500);
+}
+
+/// Solids with faces in common have neither a gap nor a skin between them.
+TEST(FieldRays, CommonFacesAreNoSurface) {
+  Numbers numbers;
+  const FieldPtr left = implicit::makeBox({-0.35, 0.1, 0.2}, {0.35, 0.7, 0.9}, 0);
+  const FieldPtr right = implicit::makeBox({0.3, 0.1, 0.2}, {0.3, 0.7, 0.9}, 0);
+  const auto both = makeRaySurface(implicit::combine(implicit::Operation::Union, {left, right}, 0));
+  const auto neither = makeRaySurface(implicit::combine(implicit::Operation::Intersection,
+                                                        {left, implicit::makeComplement(left)}, 0));
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 from(-0.5, numbers.uniform(-0.1, 0.3), numbers.uniform(0, 0.4));
+    const Vec3 to(0.6, numbers.uniform(-0.1, 0.3), numbers.uniform(0, 0.4));
+    const auto hit = castRay(*both, {from, to - from});
+    ASSERT_TRUE(hit);
+    ASSERT_NEAR(hit->point.x, 0.6, 1e-12) << n;
+    ASSERT_FALSE(castRay(*neither, {from - Vec3(3, 0, 0), to - from})) << n;
+  }
 }
 
 TEST(FieldRays, BeginInsideAndEndEarly) {
