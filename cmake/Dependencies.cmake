@@ -73,6 +73,7 @@ endif()
 if(TUFA_BUILD_TOOLS)
   find_package(CLI11 2.1 REQUIRED)
   find_package(PNG REQUIRED)
+  find_package(ZLIB REQUIRED)
   if(TUFA_USE_ITK)
     # Its package looks for libraries in C, and tells of every program of others that is missing.
     enable_language(C)

@@ -13,9 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -23,6 +21,7 @@
 #include "crash_guard.h"
 #include "image_reader.h"
 #include "paths.h"
+#include "whole_image.h"
 
 namespace tufa::tools {
 namespace {
@@ -68,25 +67,6 @@ ImageIo::Pointer readerOf(const std::string& file) {
   });
 }
 
-/// Throws Error if a NIfTI-1 file that is not compressed ends before its values do: ITK takes what
-/// is missing for 0.
-void requireWholeNifti(const std::string& file, const ImageIo& io) {
-  if (endingOf(file) != ".nii") return;
-  std::array<char, 112> head{};
-  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
-  const auto at = [&]<class Number>(std::size_t place, Number number) {
-    std::memcpy(&number, head.data() + place, sizeof(Number));
-    return number;
-  };
-  constexpr std::int32_t kHeadBytes = 348;
-  // Another version, or another order of bytes.
-  if (at(0, std::int32_t{}) != kHeadBytes) return;
-  const double bytes = static_cast<double>(io.GetImageSizeInPixels()) * at(72, std::int16_t{}) / 8;
-  const double size = static_cast<double>(std::filesystem::file_size(file));
-  if (static_cast<double>(at(108, 0.0F)) + bytes <= size) return;
-  fail(file, "it ends before the last of the values that it says it has");
-}
-
 /// The image in one file: its place and its values.
 class ImageFile {
  public:
@@ -95,7 +75,7 @@ class ImageFile {
       fail(file, "it has " + std::to_string(io_->GetNumberOfComponents()) +
                      " values for each voxel, such as a colour; one is needed");
     }
-    requireWholeNifti(file, *io_);
+    requireWholeImage(file, static_cast<double>(io_->GetImageSizeInBytes()));
     dimensions_ = io_->GetNumberOfDimensions();
     for (unsigned n = 3; n < dimensions_; ++n) {
       if (io_->GetDimensions(n) != 1) fail(file, "it has more than three dimensions");
@@ -158,11 +138,13 @@ class ImageFile {
     bytes_ = std::make_unique_for_overwrite<char[]>(size);
     // ITK does not say of all formats that a file ends early: what it leaves in the last value
     // tells.
+    std::vector<bool> left(width, true);
     for (const char mark : {'\x5a', '\xa5'}) {
       char* const last = bytes_.get() + size - width;
       std::fill_n(last, width, mark);
       guarded(file_, [&] { io_->Read(bytes_.get()); });
-      if (!std::all_of(last, last + width, [&](char c) { return c == mark; })) return;
+      for (std::size_t n = 0; n < width; ++n) left[n] = left[n] && last[n] == mark;
+      if (std::find(left.begin(), left.end(), true) == left.end()) return;
     }
     fail(file_, "it ends before the last of the values that it says it has");
   }

@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <zlib.h>
 
 #include <tufa/import.h>
 #include <tufa/io.h>
-#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -105,6 +105,63 @@ std::string tiff(int z) {
   return bytes + std::string(4, '\0');
 }
 
+/// All slices as pages, each of them behind its values.
+std::string tiffPages() {
+  std::string bytes = "II*" + std::string(5, '\0');
+  std::size_t link = 4;
+  const auto size = [&] { return static_cast<std::uint32_t>(bytes.size()); };
+  for (int z = 0; z < kSize[2]; ++z) {
+    const std::uint32_t values = size();
+    bytes += slice(z);
+    bytes.replace(link, 4, bytesOf(size()));
+    const std::vector<std::array<std::uint32_t, 2>> tags = {{256, 5}, {257, 4}, {258, 16},
+                                                            {259, 1}, {262, 1}, {273, values},
+                                                            {277, 1}, {278, 4}, {279, 40}};
+    bytes += bytesOf(static_cast<std::uint16_t>(tags.size()));
+    for (const auto& [tag, value] : tags) {
+      bytes += bytesOf(static_cast<std::uint16_t>(tag)) + bytesOf(std::uint16_t{4}) +
+               bytesOf(std::uint32_t{1}) + bytesOf(value);
+    }
+    link = bytes.size();
+    bytes += std::string(4, '\0');
+  }
+  return bytes;
+}
+
+std::string packed(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string out(size, '\0');
+  compress(reinterpret_cast<Bytef*>(out.data()), &size,
+           reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  return out.substr(0, size);
+}
+
+template <class Number>
+std::string bigEndian(Number number) {
+  const std::string bytes = bytesOf(number);
+  return {bytes.rbegin(), bytes.rend()};
+}
+
+/// A slice in 16 bits of grey.
+std::string png(int z) {
+  std::string rows;
+  for (int y = 0; y < kSize[1]; ++y) {
+    rows += '\0';
+    for (int x = 0; x < kSize[0]; ++x) rows += bigEndian(valueAt(x, y, z));
+  }
+  const auto chunk = [](const std::string& type, const std::string& data) {
+    const std::string all = type + data;
+    const auto sum =
+        crc32(0, reinterpret_cast<const Bytef*>(all.data()), static_cast<uInt>(all.size()));
+    return bigEndian(static_cast<std::uint32_t>(data.size())) + all +
+           bigEndian(static_cast<std::uint32_t>(sum));
+  };
+  return "\x89PNG\r\n\x1a\n" +
+         chunk("IHDR", bigEndian(std::uint32_t{5}) + bigEndian(std::uint32_t{4}) +
+                           std::string("\x10\0\0\0\0", 5)) +
+         chunk("IDAT", packed(rows)) + chunk("IEND", "");
+}
+
 /// The 348 bytes of NIfTI-1 and the four behind them.
 std::string nifti() {
   std::string head(352, '\0');
@@ -157,6 +214,15 @@ class Images : public CommandTest {
     EXPECT_EQ(grid->activeVoxelCount(), 5u * 4 * 6 - 1) << inputs;
   }
 
+  void writePackedMetaImage() const {
+    writeBytes(folder / "packed.mha",
+               "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+               "CompressedData = True\nCompressedDataSize = " +
+                   std::to_string(packed(allSlices()).size()) +
+                   "\nDimSize = 5 4 6\nElementType = MET_USHORT\nElementDataFile = LOCAL\n" +
+                   packed(allSlices()));
+  }
+
   void writeMetaImage(const std::string& name, const std::string& more = "") const {
     writeBytes(folder / (name + ".raw"), allSlices());
     writeBytes(folder / (name + ".mhd"),
@@ -187,7 +253,19 @@ TEST_F(Images, OfAllFormatsKeepValuesAndPlaces) {
     writeBytes(folder / name, tiff(z));
     names += " " + name;
   }
-  expectImage("--spacing 0.5,0.5,2" + names, {0, 0, 0}, {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 2}}});
+  const std::array<openvdb::Vec3d, 3> steps = {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 2}}};
+  expectImage("--spacing 0.5,0.5,2" + names, {0, 0, 0}, steps);
+  names.clear();
+  for (int z = 0; z < kSize[2]; ++z) {
+    const std::string name = "p" + std::to_string(z) + ".png";
+    writeBytes(folder / name, png(z));
+    names += " " + name;
+  }
+  expectImage("--spacing 0.5,0.5,2" + names, {0, 0, 0}, steps);
+  writeBytes(folder / "pages.tif", tiffPages());
+  expectImage("--spacing 0.5,0.5,2 pages.tif", {0, 0, 0}, steps);
+  writePackedMetaImage();
+  expectImage("packed.mha --spacing 0.5,0.5,2", {0, 0, 0}, steps);
 }
 
 TEST_F(Images, OfADicomSeriesAreOrderedByTheirPlaces) {
@@ -217,62 +295,26 @@ TEST_F(Images, KeepLabelsAsIntegers) {
   EXPECT_EQ(grid->tree().getValue(openvdb::Coord(4, 3, 5)), valueAt(4, 3, 5));
 }
 
-/// Raw values need no ITK.
-class LabelMeshes : public CommandTest {
- protected:
-  void SetUp() override {
-    CommandTest::SetUp();
-    // A block of 2 in one of 7, and a bar of 300 that touches both.
-    std::string bytes;
-    for (int z = 0; z < 20; ++z) {
-      for (int y = 0; y < 20; ++y) {
-        for (int x = 0; x < 20; ++x) {
-          const auto in = [&](int least, int most) {
-            return std::min({x, y, z}) >= least && std::max({x, y, z}) <= most;
-          };
-          const bool bar = x >= 10 && std::max(y, z) <= 11 && std::min(y, z) >= 9 && x <= 17;
-          bytes += bytesOf(static_cast<std::uint16_t>(bar         ? 300
-                                                      : in(6, 9)  ? 2
-                                                      : in(3, 14) ? 7
-                                                                  : 0));
-        }
-      }
+/// ITK takes what is missing for 0, or leaves out pages.
+TEST_F(Images, ThatAreCutOrDamagedAreRefused) {
+  writePackedMetaImage();
+  writeBytes(folder / "pages.tif", tiffPages());
+  writeBytes(folder / "p.png", png(1));
+  writeBytes(folder / "n.nii", nifti());
+  ASSERT_EQ(std::system(("gzip -k " + (folder / "n.nii").string()).c_str()), 0);
+  for (const std::string name : {"packed.mha", "pages.tif", "p.png", "n.nii", "n.nii.gz"}) {
+    ASSERT_EQ(run("import -o v.vdb " + name).exitCode, 0) << name;
+    const std::string bytes = readBytes(folder / name);
+    for (const std::size_t size : {bytes.size() - 1, bytes.size() - 9, bytes.size() * 3 / 4,
+                                   bytes.size() / 2, std::size_t{30}, std::size_t{3}}) {
+      writeBytes(folder / ("cut_" + name), bytes.substr(0, size));
+      expectFailure("import -o o.vdb cut_" + name, 3, "cannot read cut_" + name);
     }
-    writeBytes(folder / "l.raw", bytes);
-    ASSERT_EQ(run("import l.raw -o l.vdb --size 20,20,20 --type u16 --labels").exitCode, 0);
   }
-};
-
-TEST_F(LabelMeshes, AreClosedEachOfItsOwn) {
-  const Outcome made = run("mesh l.vdb -o 'm_{}.ply' --labels all --check --json --uniform");
-  ASSERT_EQ(made.exitCode, 0) << made.err;
-  const auto json = nlohmann::json::parse(made.out);
-  const std::vector<std::string> names = {"label_2", "label_7", "label_300"};
-  // Voxels of each, less what the corners and edges lose.
-  const std::vector<double> voxels = {4 * 4 * 4, 12 * 12 * 12 - 64 - 5 * 9, 8 * 9};
-  ASSERT_EQ(json.at("grids").size(), names.size());
-  for (std::size_t n = 0; n < names.size(); ++n) {
-    const auto& grid = json.at("grids").at(n);
-    EXPECT_EQ(grid.at("grid"), names[n]);
-    EXPECT_EQ(grid.at("active_voxels"), voxels[n]);
-    const double volume = grid.at("check").at("volume");
-    EXPECT_GT(volume, 0.8 * voxels[n]) << names[n];
-    EXPECT_LT(volume, 1.05 * voxels[n]) << names[n];
-    EXPECT_TRUE(std::filesystem::exists(folder / ("m_" + names[n] + ".ply")));
-  }
-  EXPECT_EQ(run("mesh l.vdb -o m.obj --labels 300,2 --check").exitCode, 0);
-  EXPECT_EQ(run("mesh l.vdb -o m.ply --labels 7 --smooth gaussian --check").exitCode, 0);
-}
-
-TEST_F(LabelMeshes, RefuseWhatIsNoLabel) {
-  expectFailure("mesh l.vdb -o m.ply --labels 3", 3, "no label 3");
-  expectFailure("mesh l.vdb -o m.ply --labels x", 2, "--labels takes all");
-  expectFailure("mesh l.vdb -o m.ply --labels 2,2", 2, "asked for twice");
-  expectFailure("mesh l.vdb -o m.ply --labels all", 2, "would hold 3");
-  expectFailure("mesh l.vdb -o m.ply --labels 2 --iso 1", 2, "no --iso");
-  ASSERT_EQ(run("make sphere -o s.vdb --voxel 0.2").exitCode, 0);
-  expectFailure("mesh s.vdb -o m.ply --labels all", 3, "no grid of 32- or 64-bit integers");
-  expectFailure("mesh s.vdb -o m.ply --labels all --grid '*'", 3, "no grid");
+  std::string damaged = readBytes(folder / "n.nii.gz");
+  damaged[damaged.size() - 6] = static_cast<char>(damaged[damaged.size() - 6] ^ 1);
+  writeBytes(folder / "d.nii.gz", damaged);
+  expectFailure("import -o o.vdb d.nii.gz", 3, "cannot read d.nii.gz");
 }
 
 TEST_F(Images, RefuseWhatIsNone) {
