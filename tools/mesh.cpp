@@ -159,6 +159,9 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
       "--labels", arguments->labels,
       "all, or numbers with commas between them: mesh each label of a grid of integers "
       "apart, as label_1 and so on");
+  mesh->add_flag("--share-interfaces", arguments->shareInterfaces,
+                 "--labels: where labels meet, their meshes have the same vertices and faces, to "
+                 "the bit; by --method surface-nets");
   addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);
   addFilterOptions(*mesh, arguments->filters);
@@ -181,6 +184,9 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
   mesh->callback([mesh, arguments, sequence, &chosen] {
     chosen = [mesh, arguments, sequence] {
       orderFilters(*mesh, arguments->filters);
+      if (arguments->shareInterfaces && mesh->get_option("--method")->count() == 0) {
+        arguments->method = Method::SurfaceNets;
+      }
       requireMeaning(*mesh, arguments->method);
       if (isSequence(*arguments, *sequence)) return runSequence(*arguments, *sequence);
       requireSequence(*mesh, *arguments);

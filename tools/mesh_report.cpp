@@ -54,6 +54,10 @@ void addGrid(Json& json, const GridRun& run, const AttributeWords& words) {
   json["vertices"] = run.mesh.positions.size();
   json["triangles"] = run.mesh.triangleCount();
   json["quads"] = run.mesh.quads.size();
+  if (run.interfaces) {
+    json["interfaces"] = {{"shared_vertices", run.interfaces->sharedVertices},
+                          {"touching_vertices", run.interfaces->touchingVertices}};
+  }
   if (!run.mesh.attributes.empty()) {
     json["attributes"] = tools::toJson(run.mesh.attributes, words);
   }

@@ -59,6 +59,7 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
     options.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
   }
   options.progress = bar.callback();
+  options.keepCells = arguments.shareInterfaces;
   run.contourSeconds = timed([&] {
     const double refine = readTolerance("--refine", arguments.refine, *grid);
     run.mesh =
@@ -68,13 +69,14 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
   if (!arguments.allowEmpty) {
     requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
   }
-  grid.reset();
-  if (!arguments.attributes.empty()) {
-    run.attributeSeconds = timed([&] {
-      run.mesh.attributes = AttributeGrids(arguments.input, arguments.attributes)
-                                .sample(run.mesh.positions, options.threads);
-    });
-  }
+}
+
+void sampleAttributes(const MeshArguments& arguments, GridRun& run) {
+  if (arguments.attributes.empty()) return;
+  run.attributeSeconds = timed([&] {
+    run.mesh.attributes = AttributeGrids(arguments.input, arguments.attributes)
+                              .sample(run.mesh.positions, arguments.contour.threads);
+  });
 }
 
 GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string>& name,
@@ -205,8 +207,13 @@ std::vector<std::int64_t> chooseLabels(const MeshArguments& arguments,
   return chosen;
 }
 
-/// A volume for each label that was asked for.
-std::vector<std::shared_ptr<openvdb::GridBase>> readLabels(const MeshArguments& arguments) {
+/// The labels that were asked for, and their grid.
+struct Labels {
+  std::shared_ptr<openvdb::GridBase> grid;
+  std::vector<std::int64_t> numbers;
+};
+
+Labels readLabels(const MeshArguments& arguments) {
   if (arguments.isovalue || arguments.grids.size() > 1) {
     throw Error(ErrorCode::InvalidArgument, "--labels takes no --iso, and one --grid at most");
   }
@@ -219,8 +226,38 @@ std::vector<std::shared_ptr<openvdb::GridBase>> readLabels(const MeshArguments& 
     throw Error(ErrorCode::UnsupportedGrid,
                 shownInput(arguments.input) + " has no grid of 32- or 64-bit integers");
   }
-  const auto grid = readVolume(arguments.input, name);
-  return labelVolumes(*grid, chooseLabels(arguments, *grid));
+  auto grid = readVolume(arguments.input, name);
+  std::vector<std::int64_t> numbers = chooseLabels(arguments, *grid);
+  return {std::move(grid), std::move(numbers)};
+}
+
+/// Makes the meshes of labels fit each other.
+void fitLabels(const Labels& labels, std::vector<GridRun>& runs) {
+  std::vector<Mesh> meshes;
+  for (GridRun& run : runs) meshes.push_back(std::move(run.mesh));
+  std::vector<InterfaceReport> reports;
+  const double seconds =
+      timed([&] { reports = shareInterfaces(*labels.grid, labels.numbers, meshes); });
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    runs[n].mesh = std::move(meshes[n]);
+    runs[n].mesh.cells = {};
+    runs[n].interfaces = reports[n];
+    runs[n].contourSeconds += seconds / static_cast<double>(runs.size());
+  }
+}
+
+/// Meshes some labels, a mesh each.
+std::vector<GridRun> meshLabels(const MeshArguments& arguments, const Labels& labels,
+                                std::vector<std::shared_ptr<openvdb::GridBase>> volumes,
+                                ProgressBar& bar) {
+  std::vector<GridRun> runs;
+  for (auto& volume : volumes) {
+    GridRun& run = runs.emplace_back();
+    run.grid = nameOf(*volume);
+    meshVolume(arguments, std::move(volume), bar, run);
+  }
+  if (arguments.shareInterfaces) fitLabels(labels, runs);
+  return runs;
 }
 
 /// Of the calls that a run makes: how long each is likely to take.
@@ -245,6 +282,12 @@ void requireFeasible(const MeshArguments& arguments) {
     throw Error(ErrorCode::InvalidArgument,
                 "--join union is for level sets, and --labels for grids of integers");
   }
+  if (arguments.shareInterfaces &&
+      (!arguments.labels || !arguments.filters.inOrder.empty() ||
+       arguments.method != Method::SurfaceNets || numberIn<double>(arguments.refine) != 0.0)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--share-interfaces is for --labels, by surface nets without filters and --refine");
+  }
   requireDistinct(arguments.output, {arguments.input});
   requireMeshOutput(arguments.output, arguments.format);
   if (!arguments.attributes.empty() || arguments.attributes.shutter) {
@@ -265,11 +308,15 @@ void requireFeasible(const MeshArguments& arguments) {
 MeshRun meshFile(const MeshArguments& arguments) {
   MeshRun run;
   std::vector<std::string> names;
-  std::vector<std::shared_ptr<openvdb::GridBase>> labels;
+  Labels labels;
+  std::vector<std::shared_ptr<openvdb::GridBase>> volumes;
   double labelSeconds = 0;
   if (arguments.labels) {
-    labelSeconds = timed([&] { labels = readLabels(arguments); });
-    for (const auto& label : labels) names.push_back(nameOf(*label));
+    labelSeconds = timed([&] {
+      labels = readLabels(arguments);
+      volumes = labelVolumes(*labels.grid, labels.numbers);
+    });
+    for (const auto& volume : volumes) names.push_back(nameOf(*volume));
   } else if (arguments.join == Join::Union && arguments.grids.empty()) {
     names = chooseGrids(arguments.input, {"*"});
   } else if (!arguments.grids.empty()) {
@@ -282,12 +329,8 @@ MeshRun meshFile(const MeshArguments& arguments) {
     requireDistinct(outputOf(arguments.output, name), {arguments.input});
   }
   ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, meshes.size())));
-  for (auto& label : labels) {
-    GridRun& grid = run.grids.emplace_back();
-    grid.grid = nameOf(*label);
-    meshVolume(arguments, std::move(label), bar, grid);
-  }
-  if (!labels.empty()) {
+  if (arguments.labels) {
+    run.grids = meshLabels(arguments, labels, std::move(volumes), bar);
     run.grids.front().readSeconds = labelSeconds;
   } else if (united) {
     run.grids.push_back(meshUnion(arguments, names, bar));
@@ -297,6 +340,7 @@ MeshRun meshFile(const MeshArguments& arguments) {
   } else {
     for (const std::string& name : names) run.grids.push_back(meshGrid(arguments, name, bar));
   }
+  for (GridRun& grid : run.grids) sampleAttributes(arguments, grid);
   if (arguments.check) {
     for (GridRun& grid : run.grids) checkMesh(grid, arguments, bar);
   }

@@ -4,6 +4,7 @@
 #include <tufa/contour.h>
 #include <tufa/extract.h>
 #include <tufa/io.h>
+#include <tufa/labels.h>
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -29,6 +30,7 @@ struct MeshArguments {
   std::vector<std::string> grids;     ///< names and patterns; none: the library chooses one
   Join join = Join::Separate;
   std::optional<std::string> labels;  ///< "all", or numbers with commas between them
+  bool shareInterfaces = false;       ///< of labels
   Method method = Method::Dual;
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
   std::string refine = "0";                         ///< a length; not for dual
@@ -56,6 +58,7 @@ struct GridRun {
   FilterRun filters;
   Mesh mesh;
   ContourReport contour;
+  std::optional<InterfaceReport> interfaces;  ///< of a label
   std::optional<CheckReport> check;
   double readSeconds = 0;
   double uniteSeconds = 0;

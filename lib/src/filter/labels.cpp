@@ -9,6 +9,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "filter/integer_grid.h"
 #include "grid/openvdb_templates.h"
 
 namespace tufa {
@@ -16,20 +17,6 @@ namespace {
 
 using openvdb::FloatGrid;
 using FloatLeaf = openvdb::FloatTree::LeafNodeType;
-
-/// Calls visit(typed grid) for a grid of integers.
-template <class Visit>
-void withIntegers(const openvdb::GridBase& grid, const Visit& visit) {
-  if (grid.isType<openvdb::Int32Grid>()) {
-    visit(static_cast<const openvdb::Int32Grid&>(grid));
-  } else if (grid.isType<openvdb::Int64Grid>()) {
-    visit(static_cast<const openvdb::Int64Grid&>(grid));
-  } else {
-    throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() +
-                                                "\" holds values of type " + grid.valueType() +
-                                                "; labels are 32- or 64-bit integers");
-  }
-}
 
 /// Calls onLeaf(leaf) for all leaves and onTile(box, value) for all active tiles.
 template <class GridT, class OnLeaf, class OnTile>
@@ -96,7 +83,7 @@ std::vector<LabelCount> labelsIn(const openvdb::GridBase& grid) {
     throw Error(ErrorCode::LimitExceeded, "grid \"" + grid.getName() + "\" has more than " +
                                               std::to_string(kMost) + " labels");
   };
-  withIntegers(grid, [&](const auto& typed) {
+  filter::withIntegers(grid, [&](const auto& typed) {
     forNodes(
         typed,
         [&](const auto& leaf) {
@@ -124,7 +111,7 @@ std::vector<LabelCount> labelsIn(const openvdb::GridBase& grid) {
 std::vector<openvdb::GridBase::Ptr> labelVolumes(const openvdb::GridBase& grid,
                                                  const std::vector<std::int64_t>& labels) {
   Volumes volumes(grid, labels);
-  withIntegers(grid, [&](const auto& typed) {
+  filter::withIntegers(grid, [&](const auto& typed) {
     forNodes(
         typed, [&](const auto& leaf) { volumes.addLeaf(leaf); },
         [&](const openvdb::CoordBBox& box, std::int64_t label) { volumes.addTile(box, label); });
