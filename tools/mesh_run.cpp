@@ -336,11 +336,11 @@ MeshRun meshFile(const MeshArguments& arguments) {
     run.grids.push_back(meshUnion(arguments, names, bar));
   } else if (names.empty()) {
     run.grids.push_back(meshGrid(arguments, {}, bar));
-    if (!arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);
   } else {
     for (const std::string& name : names) run.grids.push_back(meshGrid(arguments, name, bar));
   }
   for (GridRun& grid : run.grids) sampleAttributes(arguments, grid);
+  if (names.empty() && !arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);
   if (arguments.check) {
     for (GridRun& grid : run.grids) checkMesh(grid, arguments, bar);
   }
