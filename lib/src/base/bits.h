@@ -26,4 +26,15 @@ inline int countBits(std::uint64_t word) {
 /// The bits below bit `index`.
 inline std::uint64_t bitsBelow(int index) { return (std::uint64_t{1} << index) - 1; }
 
+/// Puts two zero bits between the lowest 21 bits of `x`. Three of these, shifted by 0, 1 and 2,
+/// make a Morton code.
+inline std::uint64_t spreadBits(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x001f00000000ffff;
+  x = (x | x << 16) & 0x001f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
 }  // namespace tufa::base

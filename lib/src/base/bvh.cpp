@@ -3,20 +3,11 @@
 #include <cmath>
 #include <functional>
 
+#include "base/bits.h"
 #include "base/parallel.h"
 
 namespace tufa::base {
 namespace {
-
-/// Puts two zero bits between the lowest 21 bits of `x`.
-std::uint64_t spreadBits(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x001f00000000ffff;
-  x = (x | x << 16) & 0x001f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
-}
 
 /// The place of a box's centre on the Morton curve through `all`. One scale serves all axes, so
 /// that neighbours on the curve are neighbours in a flat volume too.

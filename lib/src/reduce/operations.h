@@ -32,6 +32,7 @@ inline constexpr std::size_t kOutcomes = 15;
 struct OperationCounts {
   std::array<std::uint64_t, kOutcomes> collapses{};
   std::array<std::uint64_t, kOutcomes> flips{};
+  std::array<std::uint64_t, kOutcomes> contractions{};  ///< of clusters
   std::uint64_t overQuota = 0;  ///< collapses that were left when a part's quota was spent
 
   [[nodiscard]] std::uint64_t collapsed() const { return collapses[0]; }
@@ -40,6 +41,7 @@ struct OperationCounts {
     for (std::size_t i = 0; i < kOutcomes; ++i) {
       collapses[i] += other.collapses[i];
       flips[i] += other.flips[i];
+      contractions[i] += other.contractions[i];
     }
     overQuota += other.overQuota;
     return *this;
@@ -53,6 +55,7 @@ struct PhaseLimits {
   float leastSine2 = 0.03f;  ///< squared sine of an angle under which a triangle is a sliver
   float sliverShare = 0;     ///< of a part's triangles that may become slivers nevertheless
   float turnCosine = 0.5f;   ///< least cosine between a triangle's normal before and after
+  bool clusters = false;     ///< contracts clusters first
   bool flips = true;
   int mostValence = 16;  ///< of a new star, unless it was higher
   LineMode lines = LineMode::Free;

@@ -20,8 +20,8 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   flags_.resize(vertexCount_), inner_.resize(vertexCount_), face_.resize(vertexCount_);
   corner_.resize(vertexCount_);
   version_.assign(vertexCount_, 0), stamp_.assign(vertexCount_, 0);
-  moved_.assign(vertexCount_, 0);
-  now_ = 0;
+  moved_.assign(vertexCount_, 0), merged_.assign(vertexCount_, 0);
+  now_ = mergedNow_ = 0;
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
     position_[i] = surface.position[v], axis_[i] = surface.axis[v];
@@ -32,6 +32,7 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   loadSamples(surface);
   loadLines(surface);
   lowest_ = kBuckets;
+  contracted_ = 0;
   hasBoxList_ = false;
   boxList_.clear();
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "reduce/box_list.h"
@@ -25,6 +26,9 @@ class Part {
  public:
   void load(const Surface& surface, const ReferenceMesh& reference, const Partition& partition,
             Index number, const PhaseLimits& limits);
+  /// Contracts clusters, connected vertices of one cube, each to one vertex. For meshes as fine as
+  /// voxels.
+  void contractClusters();
   /// Collapses edges, the cheapest first, until none is left.
   void collapseAll();
   /// Flips edges of slivers.
@@ -81,6 +85,8 @@ class Part {
   void giveSamples();
   [[nodiscard]] Index around(Index c) const { return nextCorner(opposite_[nextCorner(c)]); }
   [[nodiscard]] bool isDead(Index t) const { return vertex_[3 * t] == kNone; }
+  /// Whether the attempt at hand makes one vertex of v and others.
+  [[nodiscard]] bool isMerged(Index v) const { return merged_[v] == mergedNow_; }
   [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis_[v]) != 0; }
   /// Whether a guard is to be obeyed; tests switch single ones off.
   [[nodiscard]] bool isOn(Outcome guard) const { return limits_.switchedOff != guard; }
@@ -95,6 +101,20 @@ class Part {
   bool gatherRing(Index a, Index b);
   bool addToRing(Index corner);
   void apply(Index a, Index b);
+
+  // part_cluster.cpp.
+  void sortByCubes();
+  void contractRange(Index begin, Index end, int halvings);
+  bool contractCube(Index begin, Index end);
+  void gatherCluster(Index first, Index open);
+  Outcome tryContraction();
+  bool solveCluster(Vec3f& place);
+  [[nodiscard]] Index nearestMember() const;
+  bool gatherClusterRing();
+  Outcome clusterShapeGuard();
+  Outcome clusterDistanceGuard(Index nearest);
+  bool clusterSamplesNear(Index t);
+  void applyContraction();
 
   // part_line.cpp.
   void loadLines(const Surface& surface);
@@ -119,17 +139,19 @@ class Part {
   [[nodiscard]] bool mayFlipAtLine(const Index* v) const;
 
   // part_star.cpp.
+  bool makeStar();
   Outcome shapeGuard(Index a, Index b);
   bool windsInFrame();
   bool isSimpleStar(Index a, Index b) const;
   Outcome trianglesGuard(Vec3f a, Vec3f b);
+  [[nodiscard]] float sharpestAfter() const;
   [[nodiscard]] bool foldGuard(Index a, Index b) const;
   [[nodiscard]] float sharpestBefore(Index a, Index b) const;
   [[nodiscard]] Vec3f outerNormal(Index corner) const;
-  bool ringGuard(Index a, Index b);
-  [[nodiscard]] Link linkAfterCollapse(Index v, Index a, Index b) const;
+  bool ringGuard();
+  [[nodiscard]] Link linkAfterMerging(Index v) const;
   bool starGuard(Index v, const Link& link);
-  [[nodiscard]] bool sideGuard(Index a, Index b) const;
+  [[nodiscard]] bool sideGuard() const;
 
   // part_distance.cpp.
   Outcome distanceGuard(Index a, Index b);
@@ -182,7 +204,7 @@ class Part {
   std::vector<Vec3f> position_, axis_;
   std::vector<LocalQuadric> quadric_;
   std::vector<std::uint8_t> flags_, inner_, moved_;
-  std::vector<Index> face_, corner_, version_, stamp_;
+  std::vector<Index> face_, corner_, version_, stamp_, merged_;
   bool hasLines_ = false;
   std::vector<LineVertex> line_;
   std::vector<Index> region_;                   ///< of each triangle
@@ -198,7 +220,18 @@ class Part {
   std::array<Index, kBuckets> heads_{};
   Index lowest_ = kBuckets;
 
-  Index now_ = 0;                    ///< the last stamp
+  // Clusters: the vertices by their cubes, and for each vertex its cluster, kNone once that is
+  // contracted.
+  std::vector<std::pair<std::uint64_t, Index>> cubes_;
+  std::vector<Index> clusterOf_;
+  Index nextCluster_ = 0;
+  Index contracted_ = 0;          ///< vertices that are gone
+  std::vector<Index> cluster_;    ///< at hand
+  std::vector<Index> vanishing_;  ///< its triangles that are not at the ring
+  float turns_[kMostRing] = {};   ///< of the spokes, rising
+  int first_ = 0;                 ///< the spoke with the least turn
+
+  Index now_ = 0, mergedNow_ = 0;    ///< the last stamps
   int alive_ = 0, sliverCount_ = 0;  ///< triangles
   bool hasBoxList_ = false;
   BoxList boxList_;

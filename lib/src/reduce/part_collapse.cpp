@@ -14,7 +14,7 @@ void Part::collapseAll() {
     if (a < b || opposite_[c] == kNone) propose(a, b);
   }
   Candidate e;
-  Index done = 0;
+  Index done = contracted_;
   while (pop(e)) {
     if (version_[e.a] != e.versionA || version_[e.b] != e.versionB) continue;
     if (done >= limits_.quota) {
@@ -104,10 +104,10 @@ Outcome Part::tryPlace(Index a, Index b, Vec3f place) {
   if (hasLines_ && !mayHold(a, b)) return Outcome::Place;
   if (const Outcome o = shapeGuard(a, b); o != Outcome::Done) return o;
   if (isOn(Outcome::Fold) && !foldGuard(a, b)) return Outcome::Fold;
-  if (!ringGuard(a, b) && isOn(Outcome::Star)) return Outcome::Star;
+  if (!ringGuard() && isOn(Outcome::Star)) return Outcome::Star;
   if (const Outcome o = distanceGuard(a, b); o != Outcome::Done) return o;
   if (isOn(Outcome::Intersection) && starIntersects(a, b)) return Outcome::Intersection;
-  if (isOn(Outcome::Side) && (!sideGuard(a, b) || passesOver(a, b))) return Outcome::Side;
+  if (isOn(Outcome::Side) && (!sideGuard() || passesOver(a, b))) return Outcome::Side;
   return Outcome::Done;
 }
 
@@ -124,6 +124,7 @@ bool Part::addToRing(Index c) {
 bool Part::gatherRing(Index a, Index b) {
   size_ = split_ = 0;
   kept_ = a, gone_ = b, flip_[0] = kNone;
+  merged_[a] = merged_[b] = ++mergedNow_;
   ringStamp_ = ++now_;
   Index c = corner_[a];
   int valenceA = 1, valenceB = 0;

@@ -14,14 +14,15 @@ constexpr float kLeastLength = 1e-6f;  // of a cross product, in squared voxels:
 
 }  // namespace
 
-// The new star, as seen from the place: spokes, normals, axis and frame.
-Outcome Part::shapeGuard(Index a, Index b) {
+// The new star, as seen from the place: spokes, normals, axis and frame. Whether all triangles have
+// area.
+bool Part::makeStar() {
   for (int i = 0; i < size_; ++i) spoke_[i] = position_[ring_[i]] - place_;
   spoke_[size_] = spoke_[0];
   for (int i = 0; i < size_; ++i) {
     const Vec3f c = cross(spoke_[i], spoke_[i + 1]);
     const float l = length(c);
-    if (!(l > kLeastLength)) return Outcome::Flat;
+    if (!(l > kLeastLength)) return false;
     normal_[i] = c * (1 / l);
   }
   float leastCosine;
@@ -32,6 +33,11 @@ Outcome Part::shapeGuard(Index a, Index b) {
     z_[i] = {dot(spoke_[i], frame_.x), dot(spoke_[i], frame_.y), dot(spoke_[i], n_)};
   }
   z_[size_] = z_[0];
+  return true;
+}
+
+Outcome Part::shapeGuard(Index a, Index b) {
+  if (!makeStar()) return Outcome::Flat;
   if (!(isGraph_ ? windsInFrame() : isSimpleStar(a, b)) && isOn(Outcome::Flat)) {
     return Outcome::Flat;
   }
@@ -108,13 +114,11 @@ Vec3f Part::outerNormal(Index c) const {
   return cross(position_[vertex_[nextCorner(d)]] - p, position_[vertex_[previousCorner(d)]] - p);
 }
 
-// The edges of the new star: the spokes and the ring. A sharper turn than kFoldCosine passes only
-// where the old star had one as sharp, which it has on a wedge of the solid. Faces without area to
-// speak of, as between vertices that stand close together on a crease, make no fold that shows;
+// The least cosine at an edge of the new star, a spoke or one of the ring, or 1. Faces without area
+// to speak of, as between vertices that stand close together on a crease, make no fold that shows;
 // what would cross is the business of the star guards.
-bool Part::foldGuard(Index a, Index b) const {
+float Part::sharpestAfter() const {
   constexpr float kFoldCosine2 = 0.6f;  // less than the square, so that the root is seldom taken
-  constexpr float kSlack = 0.01f;
   float sharpest = 1;
   const auto isTiny = [&](int i) {
     return squaredLength(cross(spoke_[i], spoke_[i + 1])) <= kTinyFace2;
@@ -129,6 +133,14 @@ bool Part::foldGuard(Index a, Index b) const {
       sharpest = std::min(sharpest, cosine / length(outer));
     }
   }
+  return sharpest;
+}
+
+// A sharper turn than kFoldCosine passes only where the old star had one as sharp, which it has on
+// a wedge of the solid.
+bool Part::foldGuard(Index a, Index b) const {
+  constexpr float kSlack = 0.01f;
+  const float sharpest = sharpestAfter();
   if (sharpest >= kFoldCosine) return true;
   return sharpest >= kSharpestCosine && sharpest >= sharpestBefore(a, b) - kSlack;
 }
@@ -151,7 +163,7 @@ float Part::sharpestBefore(Index a, Index b) const {
 }
 
 // The stars of the ring, where the new triangles do not face the axes that they have.
-bool Part::ringGuard(Index a, Index b) {
+bool Part::ringGuard() {
   newAxes_ = 0;
   for (int i = 0; i < size_; ++i) {
     const Index v = ring_[i];
@@ -161,19 +173,19 @@ bool Part::ringGuard(Index a, Index b) {
       continue;
     }
     if (inner_[v] == 0) return false;
-    if (!starGuard(v, linkAfterCollapse(v, a, b))) return false;
+    if (!starGuard(v, linkAfterMerging(v))) return false;
   }
   return true;
 }
 
-// Once a and b are one vertex at the place.
-Part::Link Part::linkAfterCollapse(Index v, Index a, Index b) const {
+// Once all merged vertices are one at the place.
+Part::Link Part::linkAfterMerging(Index v) const {
   Link link;
   Index c = corner_[v];
   do {
     const Index x = vertex_[nextCorner(c)], y = vertex_[previousCorner(c)];
-    if (!((x == a && y == b) || (x == b && y == a))) {
-      const bool isNew = x == a || x == b;
+    const bool isNew = isMerged(x);
+    if (!isNew || !isMerged(y)) {
       if (isNew) link.changed = link.count;
       link.add((isNew ? place_ : position_[x]) - position_[v]);
     }
@@ -212,10 +224,10 @@ bool Part::starGuard(Index v, const Link& link) {
 // Small components keep their inside. Larger ones cannot be turned inside out without an
 // intersection on the way; in one of few triangles all may share a vertex with the star, so that
 // there is no pair to test.
-bool Part::sideGuard(Index a, Index b) const {
+bool Part::sideGuard() const {
   constexpr int kMost = 16;  // triangles
   if (size_ > kMost / 2) return true;
-  Index found[kMost] = {left_ / 3};
+  Index found[kMost] = {at_[0] / 3};
   int count = 1;
   for (int k = 0; k < count; ++k) {
     for (Index i = 0; i < 3; ++i) {
@@ -232,7 +244,7 @@ bool Part::sideGuard(Index a, Index b) const {
     for (Index i = 0; i < 3; ++i) {
       const Index v = vertex_[3 * found[k] + i];
       p[i] = position_[v] - place_;
-      q[i] = v == a || v == b ? Vec3f() : p[i];
+      q[i] = isMerged(v) ? Vec3f() : p[i];
     }
     before += dot(p[0], cross(p[1], p[2]));
     after += dot(q[0], cross(q[1], q[2]));

@@ -138,6 +138,7 @@ void Reduction::descendTo(float tolerance) {
 // Each phase sees other parts. The first one spends a share of the tolerance only, so that surface
 // along its parts' borders does not lag behind; once phases find little more, one tries harder.
 void Reduction::reduce(float tolerance, Index count, int phases) {
+  const bool isFirst = tolerance_ == 0;
   tolerance_ = std::max(tolerance_, tolerance);
   PhaseLimits limits;
   const float sine = std::sin(options_.leastAngle * kRadians);
@@ -158,6 +159,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
     limits.distance = tolerance * options_.margin * (i == 0 ? options_.firstShare : 1);
     limits.errorShare = isLast ? kLargeErrorShare : kErrorShare;
     limits.allPlaces = isLast;
+    limits.clusters = options_.clusters && isFirst && i == 0 && lines_ == LineMode::Free;
     const Index before = triangleCount();
     buildParts();
     if (i == 0) markNarrow(surface_, partition_, options_.clearance * tolerance, job_);
@@ -251,6 +253,7 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
       PhaseLimits own = limits;
       own.quota = quota[p];
       part->load(surface_, reference_, partition_, static_cast<Index>(p), own);
+      if (own.clusters) part->contractClusters();
       part->collapseAll();
       if (limits.flips) part->flipAll();
       part->store(surface_, dead);

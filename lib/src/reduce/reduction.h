@@ -49,6 +49,7 @@ struct Options {
   float mostTurn = 60;         ///< degrees by which a triangle's normal may turn at a time
   int phases = 8;              ///< most at one tolerance
   float firstShare = 0.5f;     ///< of the tolerance, for the first phase
+  bool clusters = true;        ///< whether clusters are contracted first
   bool flips = true;
   /// Triangles of a result that may not be, say as they intersect once they are written in another
   /// precision. Around them less is reduced. Empty: none.
