@@ -111,6 +111,12 @@ class Part {
   bool solveCluster(Vec3f& place);
   [[nodiscard]] Index nearestMember() const;
   bool gatherClusterRing();
+  bool fillNotches();
+  /// Whether a vertex may go into a cluster.
+  [[nodiscard]] bool isFree(Index v) const {
+    return inner_[v] != 0 && clusterOf_[v] != kNone && (flags_[v] & (kNarrow | kBorder)) == 0 &&
+           !isOnLine(v);
+  }
   Outcome clusterShapeGuard();
   Outcome clusterDistanceGuard(Index nearest);
   bool clusterSamplesNear(Index t);

@@ -21,9 +21,9 @@ namespace {
 
 constexpr float kLeastCube = 2;  // voxels
 constexpr int kHalvings = 2;     // from the largest cubes to these
-// Squared sine of 4 degrees. Stars of high valence have thin triangles until their neighbours are
+// Squared sine of 1.4 degrees. Stars of high valence have thin triangles until their neighbours are
 // contracted, too.
-constexpr float kClusterSine2 = 5e-3f;
+constexpr float kClusterSine2 = 6e-4f;
 
 // Grows with the angle of a direction from the first axis, 0 to 4.
 float turnOf(float x, float y) {
@@ -34,8 +34,8 @@ float turnOf(float x, float y) {
 }  // namespace
 
 void Part::contractClusters() {
-  sortByCubes();
   clusterOf_.assign(vertexCount_, 0);
+  sortByCubes();
   nextCluster_ = 0;
   contractRange(0, static_cast<Index>(cubes_.size()), kHalvings + 1);
 }
@@ -44,7 +44,7 @@ void Part::contractClusters() {
 void Part::sortByCubes() {
   cubes_.clear();
   for (Index v = 0; v < vertexCount_; ++v) {
-    if (inner_[v] == 0 || isOnLine(v) || (flags_[v] & (kNarrow | kBorder)) != 0) continue;
+    if (!isFree(v)) continue;
     std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
       constexpr float kMiddle = 1 << 20;
@@ -116,13 +116,19 @@ void Part::gatherCluster(Index first, Index open) {
 }
 
 Outcome Part::tryContraction() {
-  const auto members = static_cast<Index>(cluster_.size());
-  if (contracted_ + members - 1 > limits_.quota) return Outcome::Place;
+  if (contracted_ + cluster_.size() - 1 > limits_.quota) return Outcome::Place;
   Vec3f exact;
   if (!solveCluster(exact)) return Outcome::Sample;
   place_ = surface_->roundedPlace(exact);
   if (!box_.hasInside(place_)) return Outcome::Place;
   if (!gatherClusterRing()) return Outcome::Link;
+  if (const std::size_t before = cluster_.size(); !fillNotches()) {
+    return Outcome::Link;
+  } else if (cluster_.size() > before) {
+    if (!solveCluster(exact)) return Outcome::Sample;
+    place_ = surface_->roundedPlace(exact);
+    if (!box_.hasInside(place_)) return Outcome::Place;
+  }
   const Index kept = nearestMember();
   if (hasLines_ && surface_->mayHold &&
       !surface_->mayHold(region_[at_[0] / 3], kNone, place_, position_[kept], position_[kept])) {
@@ -134,7 +140,7 @@ Outcome Part::tryContraction() {
   if (!sideGuard()) return Outcome::Side;
   sum_.moveBy(place_ - exact);
   applyContraction();
-  contracted_ += members - 1;
+  contracted_ += static_cast<Index>(cluster_.size() - 1);
   return Outcome::Done;
 }
 
@@ -208,6 +214,32 @@ bool Part::gatherClusterRing() {
   split_ = size_;
   return size_ >= 3 && static_cast<Index>(size_) == atRing &&
          std::none_of(ring_, ring_ + size_, [&](Index v) { return (flags_[v] & kNarrow) != 0; });
+}
+
+// Takes in vertices of the ring where it runs towards the place or back, as it may between cubes:
+// the triangles there would be needles. Whether there still is a ring that can be taken.
+bool Part::fillNotches() {
+  constexpr int kMostTimes = 3;
+  for (int i = 0; i < kMostTimes; ++i) {
+    const Vec3f axis = axis_[nearestMember()];
+    const std::size_t before = cluster_.size();
+    Vec3f at = position_[ring_[size_ - 1]] - place_;
+    for (int k = 0; k < size_; ++k) {
+      const Vec3f last = at;
+      at = position_[ring_[k]] - place_;
+      const float turn = dot(cross(last, at), axis);
+      const float a2 = squaredLength(last), b2 = squaredLength(at);
+      if (turn > 0 && turn * turn > kClusterSine2 * a2 * b2) continue;
+      const Index nearer = ring_[a2 < b2 ? (k == 0 ? size_ : k) - 1 : k];
+      if (isFree(nearer) && !isMerged(nearer)) {
+        merged_[nearer] = mergedNow_;
+        cluster_.push_back(nearer);
+      }
+    }
+    if (cluster_.size() == before) break;
+    if (!gatherClusterRing()) return false;
+  }
+  return true;
 }
 
 // The new star is a graph that its border winds around once, without folds and needles, and no
