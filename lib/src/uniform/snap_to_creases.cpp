@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "uniform/point_grid.h"
+
 namespace tufa::uniform {
 namespace {
 
@@ -63,7 +65,7 @@ std::optional<Vec3> onAll(const Plane& a, const Plane& b, const Plane& c) {
 class CreaseSnapper {
  public:
   CreaseSnapper(Mesh& mesh, VertexSheets& sheets, double voxelSize)
-      : mesh_(mesh), sheets_(sheets), voxelSize_(voxelSize) {}
+      : mesh_(mesh), sheets_(sheets), voxelSize_(voxelSize), corners_(kSameCorner * voxelSize) {}
 
   std::size_t run(base::Job& job) {
     collectCorners();
@@ -92,7 +94,7 @@ class CreaseSnapper {
     for (std::size_t v = 0; v < mesh_.positions.size(); ++v) {
       const auto vertex = static_cast<VertexIndex>(v);
       if (sheets_.kind(vertex) != VertexSheets::Kind::Meeting) continue;
-      if (sheets_.sheets(mesh_, vertex).count > 2) corners_.push_back(pointOf(vertex));
+      if (sheets_.sheets(mesh_, vertex).count > 2) corners_.add(pointOf(vertex));
     }
   }
 
@@ -101,11 +103,7 @@ class CreaseSnapper {
     return {p.x, p.y, p.z};
   }
 
-  [[nodiscard]] bool isCorner(const Vec3& point) const {
-    return std::any_of(corners_.begin(), corners_.end(), [&](const Vec3& corner) {
-      return (corner - point).squaredLength() < std::pow(kSameCorner * voxelSize_, 2);
-    });
-  }
+  [[nodiscard]] bool isCorner(const Vec3& point) const { return corners_.hasNear(point); }
 
   // Finds the snap of each quad that needs one. After the first round only quads with a vertex
   // moved in the last one, or whose snap had to wait, can need one.
@@ -284,13 +282,13 @@ class CreaseSnapper {
     mesh_.normals[move.vertex] = toNormal(sum.unitOrX());
     sheets_.setMeeting(move.vertex, move.sheets);
     sheets_.setOutOfCell(move.vertex);
-    if (move.sheets.count > 2) corners_.push_back(move.point);
+    if (move.sheets.count > 2) corners_.add(move.point);
   }
 
   Mesh& mesh_;
   VertexSheets& sheets_;
   double voxelSize_;
-  std::vector<Vec3> corners_;
+  PointGrid corners_;
   std::vector<std::uint8_t> touched_;  // vertices around which the next round looks
   static constexpr std::uint64_t kNoMove = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint64_t> lowest_;  // order of the moves of each vertex, kNoMove between rounds
