@@ -57,6 +57,15 @@ Index Partition::moveBelow(Index begin, Index end, int axis, float plane) {
   return static_cast<Index>(middle - items_.begin());
 }
 
+// A plane between the items before `end` and others from `least` on: on it, the vertices of a face
+// across the axis could not move.
+float Partition::planeBelow(float least, int axis, Index begin, Index end) const {
+  float most = items_[begin].p[axis];
+  for (Index i = begin; i < end; ++i) most = std::max(most, items_[i].p[axis]);
+  const float middle = most + (least - most) / 2;
+  return middle > most ? middle : least;
+}
+
 Index Partition::split(Index begin, Index end, const Box3f& box, Index most, float share) {
   const Index me = static_cast<Index>(nodes_.size());
   nodes_.push_back({-1, 0, 0, 0});
@@ -70,9 +79,10 @@ Index Partition::split(Index begin, Index end, const Box3f& box, Index most, flo
   std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
     return a.p[axis] < b.p[axis] || (a.p[axis] == b.p[axis] && a.vertex < b.vertex);
   });
-  const float plane = middle->p[axis];
-  const Index cut = moveBelow(begin, end, axis, plane);
+  const float least = middle->p[axis];  // of the upper side
+  const Index cut = moveBelow(begin, end, axis, least);
   if (cut == begin) return nodes_[me].low = addPart(end, box), me;
+  const float plane = planeBelow(least, axis, begin, cut);
   Box3f low = box, high = box;
   low.upper[axis] = plane, high.lower[axis] = plane;
   const Index l = split(begin, cut, low, most, share), h = split(cut, end, high, most, share);

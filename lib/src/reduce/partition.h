@@ -79,6 +79,7 @@ class Partition {
   void finish(const Surface& surface, base::Job& job);
   [[nodiscard]] Index addPart(Index end, const Box3f& box);
   [[nodiscard]] Index moveBelow(Index begin, Index end, int axis, float plane);
+  [[nodiscard]] float planeBelow(float least, int axis, Index begin, Index end) const;
   Index split(Index begin, Index end, const Box3f& box, Index most, float share);
   void splitAlong(Index node, Index begin, Index end, const Box3f& box);
   void numberVertices(base::Job& job);

@@ -14,7 +14,7 @@ namespace {
 constexpr float kRadians = 0.01745329252f;
 // PhaseLimits::errorShare of most phases, and of one that tries harder.
 constexpr float kErrorShare = 1;
-constexpr float kLargeErrorShare = 4;
+constexpr float kLargeErrorShare = 2;
 // On the way to a large tolerance each is this share of the next, down to kRampEnd voxels.
 constexpr float kRamp = 0.25f;
 constexpr float kRampEnd = 0.09f;

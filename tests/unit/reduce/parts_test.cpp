@@ -212,6 +212,23 @@ TEST_F(ReferenceMeshTest, TellsWhereASectionPassesItsEnd) {
   }
 }
 
+// A vertex on a part's border may not move.
+TEST(Partition, CutsBetweenVertices) {
+  const test::FineMesh mesh = test::subdivided(test::box(24, 16, 8), 5);  // in rows
+  base::Job job(1, {});
+  const Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  for (const float share : {1.0f / 3, 0.5f}) {
+    Partition partition;
+    partition.build(surface, 300, share, job);
+    ASSERT_GT(partition.size(), 10U);
+    for (Index p = 0; p < partition.size(); ++p) {
+      for (const Index v : partition.vertices(p)) {
+        EXPECT_TRUE(partition.box(p).hasInside(surface.position[v]));
+      }
+    }
+  }
+}
+
 TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   const test::FineMesh mesh = test::bumpySphere(5, 20, 1, 1);
   base::Job job(1, {});
