@@ -77,7 +77,7 @@ struct Options {
 /// certificate is measured. Where it is beyond the tolerance, which folds of the reference can
 /// bring about, the mesh is reduced again from what it was, and less there.
 ///
-/// Cost: 4 to 10 microseconds a collapse on one thread, 20 in narrow places.
+/// Cost: 4 to 10 microseconds an operation on one thread, 20 in narrow places.
 class Reduction {
  public:
   /// `standsFor`: for each reference vertex the input vertex that stands for it; empty if the input
