@@ -31,13 +31,16 @@ enum class Method {
   /// Marching cubes on the dual grid of an octree (Schaefer and Warren 2004): adaptive, with leaves
   /// of up to 8 samples along an edge where the field is affine to half of the tolerance.
   OctreeCubes,
+  /// Cubical marching squares (Ho et al. 2005): contours of the cells' faces first, with sharp
+  /// points, then the loops that they form, with vertices on creases and corners.
+  CubicalMarchingSquares,
 };
 
 /// The method of that name ("dual", "mc", ...), if there is one.
 [[nodiscard]] TUFA_API std::optional<Method> methodByName(std::string_view name);
 
 /// Names of all methods, in the order of the enum.
-[[nodiscard]] TUFA_API const std::array<std::string_view, 10>& methodNames();
+[[nodiscard]] TUFA_API const std::array<std::string_view, 11>& methodNames();
 
 /// Options of extract().
 struct ExtractOptions {
@@ -45,8 +48,9 @@ struct ExtractOptions {
   /// `cap`, `tileFaces`, `threads` and `progress`; `tolerance` for Method::OctreeCubes.
   /// Method::Dual takes the others too.
   ContourOptions contour;
-  /// Extended marching cubes: normals at the crossings of a cell that differ by more, in degrees,
-  /// mean a crease; 0 to 180. The default is that of the paper: a cosine of 0.9.
+  /// Extended marching cubes and cubical marching squares: normals at the crossings of a cell that
+  /// differ by more, in degrees, mean a crease; 0 to 180. The default is that of Kobbelt et al.: a
+  /// cosine of 0.9.
   double sharpAngle = 25.84;
   /// Split triangles where their middle, or that of an edge, is farther from the trilinear surface,
   /// in voxels, with the new vertices on it, down to edges of a sixteenth of a voxel; 0: off.

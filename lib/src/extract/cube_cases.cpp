@@ -81,6 +81,10 @@ CaseCode codeOf(CornerMask mask, FaceBits joined, int tunnel) {
   return static_cast<CaseCode>(mask | bits << 8 | tunnel << 14);
 }
 
+FaceBits joinedFacesOf(CaseCode code) {
+  return spread(uniform::ambiguousFaces(static_cast<CornerMask>(code & 0xff)), (code >> 8) & 0x3f);
+}
+
 const CubeCase& caseOf(CaseCode code) {
   return (*kCasesByTunnel[code >> 14])[code & 0xff][(code >> 8) & 0x3f];
 }

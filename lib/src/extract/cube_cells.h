@@ -3,6 +3,7 @@
 #include <tufa/contour.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "base/job.h"
@@ -54,6 +55,23 @@ struct CubeCells {
   std::vector<Counts> counts;    ///< of each surface block
   std::vector<CaseCode> codes;   ///< of each surface cell, 0 for one with open edges
   std::uint64_t edgeCount = 0;
+
+  /// A surface cell: its block among the surface blocks, and itself among all surface cells.
+  struct Place {
+    std::size_t block = 0;
+    std::uint64_t cell = 0;
+  };
+
+  /// The surface cell at this many lattice steps from the origin of a block; nothing if no surface
+  /// passes the block there. The cell must be one that the surface passes.
+  [[nodiscard]] std::optional<Place> find(const uniform::SurfaceBlock& from,
+                                          const std::array<int, 3>& at) const {
+    const auto index = topology.neighbour(from, at[0] >> 3, at[1] >> 3, at[2] >> 3);
+    if (index == uniform::kNoSurfaceBlock) return std::nullopt;
+    const uniform::SurfaceBlock& owner = topology.blocks[index];
+    const int local = grid::cellIndex(at[0] & 7, at[1] & 7, at[2] & 7);
+    return Place{index, owner.firstVertex + topology.firstVertexInBlock(owner, local)};
+  }
 
   /// Calls body(x, bit, code) for each surface cell of a block.
   template <class Body>

@@ -10,6 +10,7 @@
 #include "base/known_enum.h"
 #include "base/part_of_progress.h"
 #include "base/run_call.h"
+#include "extract/cms.h"
 #include "extract/cube_mesher.h"
 #include "extract/emc.h"
 #include "extract/marching_cubes.h"
@@ -40,6 +41,8 @@ Mesh meshOf(const grid::Volume& volume, Method method, const ExtractOptions& all
       return extraction::meshCubes(volume, extraction::mc33Rule(), options, report, job);
     case Method::ExtendedMarchingCubes:
       return extraction::meshSharp(volume, all.sharpAngle, options, report, job);
+    case Method::CubicalMarchingSquares:
+      return extraction::meshSquares(volume, all.sharpAngle, options, report, job);
     case Method::SurfaceNets:
       return extraction::meshSurfaceNets(volume, options, report, job);
     case Method::OctreeCubes:
@@ -81,6 +84,7 @@ double stayBeyond(Method method, const ExtractOptions& options) {
     case Method::MarchingCubes:
     case Method::MarchingCubes33:
     case Method::ExtendedMarchingCubes:
+    case Method::CubicalMarchingSquares:
       return options.refine;
     default:
       return std::numeric_limits<double>::infinity();
@@ -122,9 +126,9 @@ Mesh refinedDual(const openvdb::GridBase& grid, const ExtractOptions& options,
 
 }  // namespace
 
-const std::array<std::string_view, 10>& methodNames() {
-  static constexpr std::array<std::string_view, 10> kNames = {
-      "dual", "mc", "mc33", "emc", "surface-nets", "mt5", "mt6", "mt24", "bcc", "octree-mc"};
+const std::array<std::string_view, 11>& methodNames() {
+  static constexpr std::array<std::string_view, 11> kNames = {
+      "dual", "mc", "mc33", "emc", "surface-nets", "mt5", "mt6", "mt24", "bcc", "octree-mc", "cms"};
   return kNames;
 }
 
@@ -137,7 +141,7 @@ std::optional<Method> methodByName(std::string_view name) {
 
 Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions& options,
              ContourReport* report) {
-  base::requireKnown(method, Method::OctreeCubes, "the method");
+  base::requireKnown(method, Method::CubicalMarchingSquares, "the method");
   requireAngle(options.sharpAngle);
   requireTolerance("the distance to refine to", options.refine);
   if (method == Method::Dual) {

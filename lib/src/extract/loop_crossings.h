@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "extract/cell_features.h"
 #include "extract/cube_cells.h"
 #include "grid/affine.h"
 #include "uniform/qef.h"
@@ -71,5 +72,17 @@ class LoopCrossings {
   std::array<VertexIndex, kEdges> vertices_{};
   int size_ = 0;
 };
+
+/// The vertex of a loop at a point counted from the middle of its cell, with the mean normal of the
+/// crossings.
+inline Feature featureAt(const uniform::Vector& point, const Coord& corner,
+                         const LoopCrossings& crossings, const grid::Affine& affine) {
+  Vec3 sum(0);
+  for (int i = 0; i < crossings.size(); ++i) sum += Vec3(crossings.normal(i));
+  if (!sum.normalize()) sum = Vec3(0);
+  return {affine.position(corner, 0.5 + static_cast<double>(point[0]),
+                          0.5 + static_cast<double>(point[1]), 0.5 + static_cast<double>(point[2])),
+          Normal(sum)};
+}
 
 }  // namespace tufa::extraction

@@ -1,0 +1,356 @@
+#include "extract/cms.h"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "base/huge_pages.h"
+#include "extract/cell_walk.h"
+#include "extract/cube_mesher.h"
+#include "extract/face_arcs.h"
+#include "extract/loop_crossings.h"
+#include "extract/marching_cubes.h"
+#include "extract/place_crossings.h"
+#include "extract/sharp_loops.h"
+#include "uniform/uniform_surface.h"
+
+namespace tufa::extraction {
+
+using uniform::SurfaceBlock;
+
+namespace {
+
+// Shares of the time that stages took on the sample volumes.
+constexpr double kVerticesEnd = 0.6, kFacesEnd = 0.7, kFeaturesEnd = 0.85, kTrianglesEnd = 0.95;
+
+// The number of an arc of the face at a cell's lower end across an axis.
+constexpr int arcPart(int axis, int arc) { return 2 * axis + arc; }
+
+Vec3 toVec3(const uniform::Vector& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+// Where the crease at a point of a cell passes the face at a height along an axis, counted from the
+// middle of the cell. Of more than two sheets, those are meant that are most like the tangent
+// planes at the ends of an arc.
+std::optional<FacePoint> creaseAt(const uniform::CreasePlacement& crease, int axis, double height,
+                                  const std::array<Vec3, 2>& ends) {
+  constexpr double kLeastSine = 0.05;  // between the crease and the face
+  if (crease.planes < 2) return std::nullopt;
+  std::array<int, 2> nearest{};
+  for (int end = 0; end < 2; ++end) {
+    for (int sheet = 1; sheet < crease.planes; ++sheet) {
+      const auto likeness = [&](int k) { return toVec3(crease.sheets[k]).dot(ends[end]); };
+      if (likeness(sheet) > likeness(nearest[end])) nearest[end] = sheet;
+    }
+  }
+  if (nearest[0] == nearest[1]) return std::nullopt;
+  const Vec3 way = toVec3(crease.sheets[nearest[0]]).cross(toVec3(crease.sheets[nearest[1]]));
+  if (!(std::abs(way[axis]) > kLeastSine * way.length())) return std::nullopt;
+  const Vec3 point = toVec3(crease.point);
+  const Vec3 there = point + way * ((height - point[axis]) / way[axis]);
+  const auto [u, v] = uniform::otherAxes(axis);
+  return FacePoint{0.5 + there[u], 0.5 + there[v]};
+}
+
+class SquaresMesher {
+ public:
+  SquaresMesher(const grid::Volume& volume, CubeCells& cells, double sharpAngle, base::Job& job)
+      : volume_(volume),
+        cells_(cells),
+        topology_(cells.topology),
+        leastCosine_(std::cos(sharpAngle * std::numbers::pi / 180)),
+        job_(job) {}
+
+  Mesh run() {
+    job_.beginStage("vertices", kVerticesEnd);
+    base::resizeLarge(mesh_.positions, cells_.edgeCount, job_);
+    base::resizeLarge(mesh_.normals, cells_.edgeCount, job_);
+    placeCrossings(volume_, topology_, cells_.edges, mesh_, job_);
+    job_.beginStage("faces", kFacesEnd);
+    joinFaces();
+    job_.beginStage("features", kFeaturesEnd);
+    loops_ = findSharpLoops(volume_, cells_, mesh_, leastCosine_, job_);
+    placePoints();
+    countTriangles();
+    number();
+    job_.beginStage("triangles", kTrianglesEnd);
+    base::resizeLarge(mesh_.triangles, triangleCount_, job_);
+    emit();
+    if (topology_.openEdges > 0) dropUnused(mesh_, job_);
+    return std::move(mesh_);
+  }
+
+  [[nodiscard]] std::size_t featureCount() const { return featureCount_; }
+
+ private:
+  struct BlockPoints {
+    std::vector<Feature> points;  ///< of arcs
+    std::uint64_t firstTriangle = 0;
+    std::uint64_t firstVertex = 0;  ///< points, then those of loops, then the means of other loops
+    std::uint32_t triangles = 0;
+    std::uint32_t centres = 0;
+  };
+
+  // The crossing of an edge, seen in a face across an axis. The same numbers for both cells there.
+  [[nodiscard]] FaceCrossing crossingAt(const WalkedCell& cell, int edge, int axis) const {
+    const VertexIndex vertex = cell.table[cell.tablePlace() + kEdgeOffsets[edge]];
+    const Vec3 at =
+        volume_.affine.latticePoint(mesh_.positions[vertex], cell.corner(volume_.blocks));
+    const Vec3 plane = volume_.affine.planeInLattice(mesh_.normals[vertex]);
+    const auto [u, v] = uniform::otherAxes(axis);
+    return {{at[u], at[v]}, {plane[u], plane[v]}, mesh_.normals[vertex]};
+  }
+
+  // Decides the ambiguous faces of all cells.
+  void joinFaces() {
+    walkCells(cells_, job_, [&](const WalkedCell& cell) {
+      const CornerMask mask = cell.mask();
+      if (uniform::ambiguousFaces(mask) == 0) return;
+      const FaceBits saddles = joinedFacesOf(cell.code);
+      unsigned joined = 0;
+      base::forEachBit(uniform::ambiguousFaces(mask), [&](int face) {
+        std::array<FaceCrossing, 4> crossings;
+        for (int i = 0; i < 4; ++i) {
+          crossings[i] = crossingAt(cell, uniform::kFaceEdges[face][i], face / 2);
+        }
+        const bool otherwise = ((saddles >> face) & 1) != 0;
+        if (joinsInside(mask, face, crossings, leastCosine_, otherwise)) joined |= 1u << face;
+      });
+      cells_.codes[cell.place.cell] = codeOf(mask, static_cast<FaceBits>(joined));
+    });
+  }
+
+  // Finds the sharp points of the faces at the lower ends of cells.
+  void placePoints() {
+    blocks_.resize(topology_.blocks.size());
+    base::resizeLarge(arcs_, topology_.cellCount, job_);
+    walkCells(cells_, job_, [&](const WalkedCell& cell) {
+      std::vector<Feature>& points = blocks_[cell.place.block].points;
+      CellFeatures& arcs = arcs_[cell.place.cell];
+      arcs.first = static_cast<VertexIndex>(points.size());
+      if (loops_.cells[cell.place.cell].parts == 0) return;
+      const FaceBits joined = joinedFacesOf(cell.code);
+      for (int axis = 0; axis < 3; ++axis) {
+        const int face = 2 * axis;
+        const FaceArcs contour = arcsOf(cell.mask(), face, ((joined >> face) & 1) != 0);
+        for (int arc = 0; arc < contour.count; ++arc) {
+          const auto point = pointOf(cell, axis, contour.arcs[arc]);
+          if (!point) continue;
+          arcs.add(arcPart(axis, arc));
+          points.push_back(*point);
+        }
+      }
+    });
+  }
+
+  // The point of an arc of the face at a cell's lower end across an axis.
+  [[nodiscard]] std::optional<Feature> pointOf(const WalkedCell& cell, int axis,
+                                               const FaceArc& arc) const {
+    const auto& edges = uniform::kFaceEdges[2 * axis];
+    const FaceCrossing from = crossingAt(cell, edges[arc.from], axis);
+    const FaceCrossing to = crossingAt(cell, edges[arc.to], axis);
+    const LoopFeature* const own = featureOf(cell.place, edges[arc.from]);
+    const LoopFeature* const below = featureBelow(cell, axis, edges[arc.from]);
+    const bool both = own != nullptr && below != nullptr;
+    std::optional<FacePoint> point;
+    if (isSharp(from, to, leastCosine_)) {
+      point = pointOfCrease({own, below}, axis, from, to);
+      if (!point) point = sharpPoint(from, to, leastCosine_);
+    }
+    Vec3 normal = Vec3(from.normal) + Vec3(to.normal);
+    if (!normal.normalize()) normal = Vec3(from.normal);
+    if (point) {
+      const auto [u, v] = uniform::otherAxes(axis);
+      std::array<double, 3> in{};
+      in[u] = (*point)[0];
+      in[v] = (*point)[1];
+      return Feature{volume_.affine.position(cell.corner(volume_.blocks), in[0], in[1], in[2]),
+                     Normal(normal)};
+    }
+    if (!both || !volume_.scale.distance) return std::nullopt;
+    // The crease passes beside the face: half way between the vertices of both cells.
+    return Feature{(Vec3(own->vertex.position) + Vec3(below->vertex.position)) / 2, Normal(normal)};
+  }
+
+  // The feature of the loop that has an edge of a cell.
+  [[nodiscard]] const LoopFeature* featureOf(const CubeCells::Place& place, int edge) const {
+    const CubeCase& chosen = caseOf(cells_.codes[place.cell]);
+    return chosen.next[edge] < 0 ? nullptr : loops_.of(place, chosen.loopOf[edge]);
+  }
+  [[nodiscard]] const LoopFeature* featureBelow(const WalkedCell& cell, int axis, int edge) const {
+    std::array<int, 3> at = cell.at;
+    --at[axis];
+    const auto below = cells_.find(cell.block, at);
+    return below ? featureOf(*below, kBeyond[edge][axis]) : nullptr;
+  }
+
+  // Where the crease that the loops on both sides of a face know passes it: the mean of the two.
+  [[nodiscard]] std::optional<FacePoint> pointOfCrease(
+      const std::array<const LoopFeature*, 2>& sides, int axis, const FaceCrossing& from,
+      const FaceCrossing& to) const {
+    const Vec3 first = volume_.affine.planeInLattice(from.normal);
+    const Vec3 second = volume_.affine.planeInLattice(to.normal);
+    FacePoint sum{};
+    int count = 0;
+    for (int side = 0; side < 2; ++side) {
+      if (sides[side] == nullptr) continue;
+      const auto point =
+          creaseAt(sides[side]->sheets, axis, side == 0 ? -0.5 : 0.5, {first, second});
+      if (!point) continue;
+      sum[0] += (*point)[0];
+      sum[1] += (*point)[1];
+      ++count;
+    }
+    if (count == 0) return std::nullopt;
+    const FacePoint mean = {sum[0] / count, sum[1] / count};
+    return isInFace(mean) ? std::optional(mean) : std::nullopt;
+  }
+
+  // The sharp point of the arc from a crossing to the next, if it has one.
+  struct ArcPoint {
+    CubeCells::Place place;
+    int part = 0;
+  };
+  [[nodiscard]] std::optional<ArcPoint> pointAfter(const WalkedCell& cell, int edge) const {
+    const int next = cell.cubeCase().next[edge], face = kFaceOf[edge][next], axis = face / 2;
+    const ArcPoint own{cell.place, arcPart(axis, arcWith(cell.mask(), face, edge, next))};
+    if ((face & 1) == 0) return has(own) ? std::optional(own) : std::nullopt;
+    std::array<int, 3> at = cell.at;
+    ++at[axis];
+    const auto beyond = cells_.find(cell.block, at);
+    if (!beyond) return std::nullopt;
+    const ArcPoint others{*beyond, own.part};
+    return has(others) ? std::optional(others) : std::nullopt;
+  }
+  [[nodiscard]] bool has(const ArcPoint& point) const {
+    return arcs_[point.place.cell].has(point.part);
+  }
+  // Its number in its block, or, once all are numbered, its vertex.
+  [[nodiscard]] VertexIndex indexOf(const ArcPoint& point) const {
+    return arcs_[point.place.cell].of(point.part);
+  }
+
+  void countTriangles() {
+    walkCells(cells_, job_, [&](const WalkedCell& cell) {
+      BlockPoints& own = blocks_[cell.place.block];
+      const CellFeatures& loops = loops_.cells[cell.place.cell];
+      const CubeCase& chosen = cell.cubeCase();
+      for (int i = 0; i < chosen.count; ++i) own.triangles += isKept(chosen, i, loops) ? 1 : 0;
+      own.centres += hasCentre(chosen, loops) ? 1 : 0;
+      for (int loop = 0; loop < chosen.loopCount; ++loop) {
+        if (!loops.has(loop)) continue;
+        forLoop(chosen, loop, [&](int edge) { own.triangles += pointAfter(cell, edge) ? 2 : 1; });
+      }
+    });
+  }
+
+  void number() {
+    std::uint64_t vertices = cells_.edgeCount;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      job_.pollCancelled(i);
+      BlockPoints& own = blocks_[i];
+      own.firstVertex = vertices;
+      own.firstTriangle = triangleCount_;
+      vertices += own.points.size() + loops_.blocks[i].size() + own.centres;
+      triangleCount_ += own.triangles;
+      featureCount_ += loops_.blocks[i].size();
+    }
+    uniform::requireIndexable(vertices);
+    base::resizeLarge(mesh_.positions, vertices, job_);
+    base::resizeLarge(mesh_.normals, vertices, job_);
+    job_.forRanges(blocks_.size(), 32, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const SurfaceBlock& block = topology_.blocks[i];
+        const BlockPoints& own = blocks_[i];
+        const auto first = static_cast<VertexIndex>(own.firstVertex);
+        const auto firstLoop = first + static_cast<VertexIndex>(own.points.size());
+        for (std::uint32_t cell = 0; cell < block.cellCount; ++cell) {
+          arcs_[block.firstVertex + cell].first += first;
+          loops_.cells[block.firstVertex + cell].first += firstLoop;
+        }
+        for (std::size_t k = 0; k < own.points.size(); ++k) write(own.points[k], first + k);
+        for (std::size_t k = 0; k < loops_.blocks[i].size(); ++k)
+          write(loops_.blocks[i][k].vertex, firstLoop + k);
+      }
+    });
+  }
+
+  void write(const Feature& feature, std::size_t vertex) {
+    mesh_.positions[vertex] = feature.position;
+    mesh_.normals[vertex] = feature.normal;
+  }
+
+  void emit() {
+    // Of each block, where its next triangle and its next mean go. A block is done by one thread.
+    std::vector<std::pair<Triangle*, VertexIndex>> next(blocks_.size());
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const BlockPoints& own = blocks_[i];
+      next[i] = {
+          mesh_.triangles.data() + own.firstTriangle,
+          static_cast<VertexIndex>(own.firstVertex + own.points.size() + loops_.blocks[i].size())};
+    }
+    walkCells(cells_, job_, [&](const WalkedCell& cell) {
+      auto& [triangle, centre] = next[cell.place.block];
+      emitCell(cell, triangle, centre);
+    });
+  }
+
+  void emitCell(const WalkedCell& cell, Triangle*& triangle, VertexIndex& centre) {
+    const CubeCase& chosen = cell.cubeCase();
+    const CellFeatures& loops = loops_.cells[cell.place.cell];
+    const bool mirrored = volume_.affine.mirrored();
+    const auto add = [&](VertexIndex a, VertexIndex b, VertexIndex c) {
+      *triangle++ = mirrored ? Triangle(a, c, b) : Triangle(a, b, c);
+    };
+    const auto at = [&](int edge) {
+      return edge < kEdges ? cell.table[cell.tablePlace() + kEdgeOffsets[edge]] : centre;
+    };
+    for (int t = 0; t < chosen.count; ++t) {
+      const auto& [a, b, c] = chosen.triangles[t];
+      if (isKept(chosen, t, loops)) add(at(a), at(b), at(c));
+    }
+    for (int loop = 0; loop < chosen.loopCount; ++loop) {
+      if (!loops.has(loop)) continue;
+      const VertexIndex middle = loops.of(loop);
+      forLoop(chosen, loop, [&](int edge) {
+        VertexIndex from = at(edge);
+        if (const auto point = pointAfter(cell, edge)) {
+          add(from, indexOf(*point), middle);
+          from = indexOf(*point);
+        }
+        add(from, at(chosen.next[edge]), middle);
+      });
+    }
+    if (hasCentre(chosen, loops)) {
+      placeCentre(chosen.aroundCentre[0], cell.tablePlace(), cell.table, centre++, mesh_);
+    }
+  }
+
+  const grid::Volume& volume_;
+  CubeCells& cells_;
+  const uniform::CellTopology& topology_;
+  double leastCosine_;
+  base::Job& job_;
+  Mesh mesh_;
+  std::vector<BlockPoints> blocks_;
+  std::vector<CellFeatures> arcs_;  ///< of each surface cell: arcs of its lower faces
+  SharpLoops loops_;                ///< numbers in the mesh, once they are given
+  std::uint64_t triangleCount_ = 0;
+  std::size_t featureCount_ = 0;
+};
+
+}  // namespace
+
+Mesh meshSquares(const grid::Volume& volume, double sharpAngle, const ContourOptions& options,
+                 ContourReport& report, base::Job& job) {
+  CubeCells cells = chooseCases(volume, marchingCubesRule(Ambiguity::Asymptotic), options.cap, job);
+  report = uniform::reportOf(volume, cells.topology);
+  SquaresMesher mesher(volume, cells, sharpAngle, job);
+  Mesh mesh = mesher.run();
+  report.creaseCells = mesher.featureCount();
+  return mesh;
+}
+
+}  // namespace tufa::extraction
