@@ -147,7 +147,7 @@ void addCompareCommand(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   compare
       ->add_option("--sharp-angle", arguments->options.extract.sharpAngle,
-                   "of emc: normals in a cell that differ by more, in degrees, mean a crease")
+                   "of emc and cms: normals in a cell that differ by more, in degrees, mean a crease")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   addContourOptions(*compare, arguments->options.extract.contour, arguments->isovalue);

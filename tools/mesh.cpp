@@ -97,8 +97,9 @@ void addMethodOption(CLI::App& app, MeshArguments& arguments) {
          "how the surface is extracted (default dual); all others make a triangle mesh or, "
          "surface-nets, quads, of the finest cells, but octree-mc: they are not adaptive")
       ->check(CLI::IsMember(names));
-  app.add_option("--sharp-angle", arguments.sharpAngle,
-                 "--method emc: normals in a cell that differ by more, in degrees, mean a crease")
+  app.add_option(
+         "--sharp-angle", arguments.sharpAngle,
+         "--method emc, cms: normals in a cell that differ by more, in degrees, mean a crease")
       ->capture_default_str();
   app.add_option(
          "--refine", arguments.refine,
@@ -109,8 +110,10 @@ void addMethodOption(CLI::App& app, MeshArguments& arguments) {
 
 /// Throws Error for options that mean nothing to the method.
 void requireMeaning(const CLI::App& app, Method method) {
-  if (method != Method::ExtendedMarchingCubes && app.get_option("--sharp-angle")->count() > 0) {
-    throw Error(ErrorCode::InvalidArgument, "--sharp-angle is for --method emc alone");
+  const bool sharp =
+      method == Method::ExtendedMarchingCubes || method == Method::CubicalMarchingSquares;
+  if (!sharp && app.get_option("--sharp-angle")->count() > 0) {
+    throw Error(ErrorCode::InvalidArgument, "--sharp-angle is for --method emc and cms alone");
   }
   if (method == Method::Dual) return;
   if (method != Method::OctreeCubes && app.get_option("--tolerance")->count() > 0) {

@@ -32,7 +32,7 @@ struct MeshArguments {
   std::optional<std::string> labels;  ///< "all", or numbers with commas between them
   bool shareInterfaces = false;       ///< of labels
   Method method = Method::Dual;
-  double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc
+  double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc and cms
   std::string refine = "0";                         ///< a length; not for dual
   FilterWords filters;
   AttributeWords attributes;

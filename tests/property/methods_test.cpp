@@ -233,8 +233,8 @@ TEST(MethodsOfCubes, PutTheSameVerticesOnLatticeEdges) {
   options.contour.isovalue = 0;
   options.contour.inside = Inside::Below;
   const Mesh plain = extract(*grid, Method::MarchingCubes, options);
-  for (const Method method : {Method::MarchingCubes33, Method::ExtendedMarchingCubes,
-                              Method::CubicalMarchingSquares}) {
+  for (const Method method :
+       {Method::MarchingCubes33, Method::ExtendedMarchingCubes, Method::CubicalMarchingSquares}) {
     const Mesh mesh = extract(*grid, method, options);
     ASSERT_GE(mesh.positions.size(), plain.positions.size());
     for (std::size_t i = 0; i < plain.positions.size(); ++i) {

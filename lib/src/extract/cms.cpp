@@ -155,7 +155,10 @@ class SquaresMesher {
     const LoopFeature* const below = featureBelow(cell, axis, edges[arc.from]);
     const bool both = own != nullptr && below != nullptr;
     std::optional<FacePoint> point;
-    if (isSharp(from, to, leastCosine_)) {
+    // Where one of the vertices is beyond the face, the contour would run back.
+    const bool apart = own != nullptr && own->sheets.point[axis] > -0.5F &&
+                       (below == nullptr || below->sheets.point[axis] < 0.5F);
+    if (isSharp(from, to, leastCosine_) && apart) {
       point = pointOfCrease({own, below}, axis, from, to);
       if (!point) point = sharpPoint(from, to, leastCosine_);
     }
@@ -170,8 +173,10 @@ class SquaresMesher {
                      Normal(normal)};
     }
     if (!both || !volume_.scale.distance) return std::nullopt;
+    const Vec3 first(own->vertex.position), second(below->vertex.position);
+    if (first == second) return std::nullopt;
     // The crease passes beside the face: half way between the vertices of both cells.
-    return Feature{(Vec3(own->vertex.position) + Vec3(below->vertex.position)) / 2, Normal(normal)};
+    return Feature{(first + second) / 2, Normal(normal)};
   }
 
   // The feature of the loop that has an edge of a cell.

@@ -20,8 +20,9 @@ namespace tufa::extraction {
 /// is a 2-manifold.
 ///
 /// Departures: the octree is left out, cells are the finest; each loop is a disk, where the paper
-/// may join two in a tunnel; and in distance fields points leave their face or cell, by a voxel at
-/// most, where a crease runs through faces or cells without sign changes.
+/// may join two in a tunnel; and in distance fields vertices are those of findSharpLoops(), and an
+/// arc's point is where their crease passes the face, or, if it passes beside the face, half way
+/// between the vertices of the two loops.
 [[nodiscard]] Mesh meshSquares(const grid::Volume& volume, double sharpAngle,
                                const ContourOptions& options, ContourReport& report,
                                base::Job& job);

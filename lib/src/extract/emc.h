@@ -13,12 +13,10 @@ namespace tufa::extraction {
 /// best point for their tangent planes; where two such loops share an arc of a face, the arc's edge
 /// is flipped, so that creases run from vertex to vertex.
 ///
-/// Departures: a vertex leaves its cell only in distance fields, and only where its planes do not
-/// meet in it, as where a crease runs through cells without sign changes. A loop whose own normals
-/// differ little has a vertex, too, where the sheets of the loops beyond its arcs meet in its cell:
-/// a crease clips it. Which directions the planes leave free is told by the eigenvalues
-/// (uniform::solve) in place of a second angle for corners. The edge of an arc is not flipped where
-/// both loops own both arcs of an ambiguous face: there would be an edge of four triangles.
+/// Departures: in distance fields vertices follow the sheets around their cell, and there are more
+/// of them, see findSharpLoops(); which directions planes leave free is told by eigenvalues in
+/// place of a second angle for corners. The edge of an arc is not flipped where both loops own both
+/// arcs of an ambiguous face: there would be an edge of four triangles.
 [[nodiscard]] Mesh meshSharp(const grid::Volume& volume, double sharpAngle,
                              const ContourOptions& options, ContourReport& report, base::Job& job);
 
