@@ -146,7 +146,7 @@ class Adviser {
 
   void findCrease(const extraction::LoopCrossings& loop, const Place& place,
                   CellFeature& feature) const {
-    if (loop.leastCosine() >= leastCosine_) return;
+    if (loop.areWithin(leastCosine_)) return;
     feature.sharp = true;
     const Coord corner =
         volume_.blocks.origin(place.block.block).offsetBy(place.at[0], place.at[1], place.at[2]);

@@ -39,17 +39,18 @@ class LoopCrossings {
   [[nodiscard]] const Position& position(int i) const { return mesh_.positions[vertices_[i]]; }
   [[nodiscard]] const Normal& normal(int i) const { return mesh_.normals[vertices_[i]]; }
 
-  /// The cosine of the largest angle between two of the normals.
-  [[nodiscard]] double leastCosine() const {
-    double least = 1;
-    for (int i = 0; i < size_; ++i) {
-      const Normal& a = normal(i);
+  /// Whether no two of the normals differ by more than an angle of this cosine.
+  [[nodiscard]] bool areWithin(double leastCosine) const {
+    // Those within half of the angle of the first one are, as angles add up.
+    double nearest = 1;
+    for (int i = 1; i < size_; ++i) nearest = std::min(nearest, cosine(0, i));
+    if (nearest > 0 && 2 * nearest * nearest - 1 >= leastCosine) return true;
+    for (int i = 1; i < size_; ++i) {
       for (int k = 0; k < i; ++k) {
-        const Normal& b = normal(k);
-        least = std::min(least, static_cast<double>(a.x * b.x + a.y * b.y + a.z * b.z));
+        if (cosine(i, k) < leastCosine) return false;
       }
     }
-    return least;
+    return true;
   }
 
   /// The tangent planes, counted from the middle of the cell whose lowest corner is `corner`, in
@@ -68,6 +69,12 @@ class LoopCrossings {
   }
 
  private:
+  [[nodiscard]] double cosine(int i, int k) const {
+    const Normal& a = normal(i);
+    const Normal& b = normal(k);
+    return static_cast<double>(a.x * b.x + a.y * b.y + a.z * b.z);
+  }
+
   const Mesh& mesh_;
   std::array<VertexIndex, kEdges> vertices_{};
   int size_ = 0;

@@ -202,20 +202,24 @@ struct Lanes {
 
 }  // namespace
 
-Vector solve(const Qef& qef, float halfSize) {
+std::optional<Vector> solveInside(const Qef& qef, float halfSize) {
   const Solution quick = solveOneDirection(qef, halfSize);
-  if ((quick.oneDirection & quick.inside) != 0) return {quick.x, quick.y, quick.z};
+  if ((quick.oneDirection & quick.inside) != 0) return Vector{quick.x, quick.y, quick.z};
+  if (quick.oneDirection != 0) return std::nullopt;
   const Vector c = qef.massPoint();
-  const Vector residual = residualAt(qef, c);
-  Vector x{};
-  if (quick.oneDirection == 0) {
-    const Vector step = truncatedStep(qef, residual);
-    x = {c[0] + step[0], c[1] + step[1], c[2] + step[2]};
-    if (std::abs(x[0]) <= halfSize && std::abs(x[1]) <= halfSize && std::abs(x[2]) <= halfSize) {
-      return x;
-    }
+  const Vector step = truncatedStep(qef, residualAt(qef, c));
+  const Vector x = {c[0] + step[0], c[1] + step[1], c[2] + step[2]};
+  if (std::abs(x[0]) <= halfSize && std::abs(x[1]) <= halfSize && std::abs(x[2]) <= halfSize) {
+    return x;
   }
-  const Vector step = boundedStep(qef, residual, c, halfSize);
+  return std::nullopt;
+}
+
+Vector solve(const Qef& qef, float halfSize) {
+  if (const auto inside = solveInside(qef, halfSize)) return *inside;
+  const Vector c = qef.massPoint();
+  const Vector step = boundedStep(qef, residualAt(qef, c), c, halfSize);
+  Vector x{};
   for (int i = 0; i < 3; ++i) x[i] = std::clamp(c[i] + step[i], -halfSize, halfSize);
   return x;
 }

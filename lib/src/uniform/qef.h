@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace tufa::uniform {
 
@@ -73,6 +74,10 @@ struct alignas(16) Qef {
 /// the cube's faces, edges and corners. The mass point must lie in the cube and the count must not
 /// be 0.
 [[nodiscard]] Vector solve(const Qef& qef, float halfSize);
+
+/// The point with the least error, as solve() has it where that is in the cube; nothing where it is
+/// not, which costs a tenth of looking for the best point in the cube.
+[[nodiscard]] std::optional<Vector> solveInside(const Qef& qef, float halfSize);
 
 /// Solves `count` problems, each in the cube around an origin of its own: bit for bit
 /// solutions[i] = solve(qefs[i].seenFrom(origins[i]), halfSize), but several at a time.
