@@ -233,6 +233,24 @@ TEST(Qef, BoundedSolutionIsTheBestOfTheCube) {
   EXPECT_GT(bounded, 50);
 }
 
+TEST(Qef, SolutionInsideIsThatOfTheCubeOrNone) {
+  Planes random(9);
+  int inside = 0, none = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const auto planes = random.about(random.direction(), n % 2 == 0 ? 2 : 0.1, random.count(3, 8));
+    const auto found = solveInside(sumOf(planes), 0.5F);
+    const Vector far = solve(sumOf(planes), kFar);
+    // Where the far cube binds, so does the near one.
+    EXPECT_EQ(found.has_value(), isInCube(toVec3(far), 0.5)) << n;
+    ++(found ? inside : none);
+    if (found) {
+      EXPECT_EQ(*found, solve(sumOf(planes), 0.5F));
+    }
+  }
+  EXPECT_GT(inside, 200);
+  EXPECT_GT(none, 200);
+}
+
 TEST(Qef, BoundedSolutionIsNotTheClampedOne) {
   // A slanted crease that leaves the cube: clamping its nearest point would leave both planes.
   const std::vector<Plane> planes = {{{0.4, 0.4, 0}, Vec3(1, 0, 1).unitOrX()},
