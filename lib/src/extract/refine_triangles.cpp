@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/huge_pages.h"
@@ -29,13 +30,14 @@ class Refiner {
   Refinement run() {
     mesh_.triangles = triangulate(mesh_);
     mesh_.quads = {};
-    settleVertices();
+    findMoves();
     isNew_.assign(mesh_.triangles.size(), 1);
     const std::size_t before = mesh_.positions.size();
     Refinement reached;
-    while (reached.rounds < kMostRounds) {
+    while (true) {
       const TriangleEdges edges(mesh_.triangles, job_);
-      if (!markEdges(edges)) break;
+      settle(edges);
+      if (reached.rounds == kMostRounds || !markEdges(edges)) break;
       markLongest(edges);
       splitEdges(edges);
       splitTriangles(edges);
@@ -89,8 +91,8 @@ class Refiner {
     return foot;
   }
 
-  // Moves vertices onto the surface, and finds those that stay where they are.
-  void settleVertices() {
+  // Finds where the vertices go, and those that stay where they are.
+  void findMoves() {
     std::vector<Vec3> normals(mesh_.positions.size(), Vec3(0));
     std::vector<double> reach(mesh_.positions.size(), TrilinearSurface::kReach);
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
@@ -107,17 +109,89 @@ class Refiner {
       }
     }
     stays_.assign(mesh_.positions.size(), 0);
-    forEach(stays_.size(), [&](TrilinearSurface& surface, std::size_t i) {
+    moves_.assign(mesh_.positions.size(), {});
+    forEach(moves_.size(), [&](TrilinearSurface& surface, std::size_t i) {
       const double distance = surface.distanceOf(mesh_.positions[i], rule_.tolerance);
-      if (distance <= rule_.tolerance) return;
+      if (distance <= rule_.tolerance || distance > rule_.stayBeyond) return;
       const auto foot = footOf(surface, mesh_.positions[i], reach[i], normals[i]);
-      if (distance > rule_.stayBeyond || !foot) {
-        stays_[i] = 1;
+      if (foot) moves_[i] = {foot->point, foot->normal, true};
+    });
+  }
+
+  // Where one of the last vertices goes, if it does.
+  struct Move {
+    Vec3 to;
+    Normal normal;
+    bool moves = false;
+  };
+
+  // Makes the moves, but for those that would fold the mesh.
+  void settle(const TriangleEdges& edges) {
+    const std::size_t first = mesh_.positions.size() - moves_.size();
+    refuseFolds(edges, first);
+    forEach(moves_.size(), [&](TrilinearSurface& surface, std::size_t i) {
+      const std::size_t vertex = first + i;
+      if (!moves_[i].moves) {
+        const double distance = surface.distanceOf(mesh_.positions[vertex], rule_.tolerance);
+        stays_[vertex] = distance > rule_.tolerance ? 1 : 0;
         return;
       }
-      mesh_.positions[i] = foot->point;
-      if (!mesh_.normals.empty()) mesh_.normals[i] = foot->normal;
+      mesh_.positions[vertex] = moves_[i].to;
+      if (!mesh_.normals.empty()) mesh_.normals[vertex] = moves_[i].normal;
     });
+  }
+
+  // Refuses the moves around triangles that they would turn too far, and around edges that they
+  // would fold over, until there are none. Each round refuses some, so it ends: without moves all
+  // is as it was.
+  void refuseFolds(const TriangleEdges& edges, std::size_t first) {
+    const auto after = [&](VertexIndex vertex) {
+      return vertex < first || !moves_[vertex - first].moves ? at(vertex)
+                                                             : moves_[vertex - first].to;
+    };
+    std::vector<Vec3> normals(mesh_.triangles.size(), Vec3(0));
+    std::vector<std::uint8_t> folded(mesh_.triangles.size());
+    for (bool found = true; found;) {
+      forEach(folded.size(), [&](TrilinearSurface&, std::size_t i) {
+        const auto& [a, b, c] = mesh_.triangles[i].vertices;
+        normals[i] = (after(b) - after(a)).cross(after(c) - after(a));
+        folded[i] = turns(normalOf(mesh_.triangles[i]), normals[i]) ? 1 : 0;
+      });
+      forEach(folded.size(), [&](TrilinearSurface&, std::size_t i) {
+        for (const EdgeIndex edge : edges.sides(i)) {
+          if (foldsOver(edges.around(edge), normals)) folded[i] = 1;
+        }
+      });
+      found = false;
+      for (std::size_t i = 0; i < folded.size(); ++i) {
+        job_.pollCancelled(i);
+        if (folded[i] == 0) continue;
+        for (const VertexIndex vertex : mesh_.triangles[i].vertices) {
+          if (vertex < first || !moves_[vertex - first].moves) continue;
+          moves_[vertex - first].moves = false;
+          found = true;
+        }
+      }
+    }
+  }
+
+  static bool turns(const Vec3& before, const Vec3& after) {
+    constexpr double kLeastCosine = 0.5;
+    const double lengths = before.length() * after.length();
+    return before.squaredLength() > 0 && !(before.dot(after) > kLeastCosine * lengths);
+  }
+
+  // Whether the two triangles around an edge come to face each other, more so than they did.
+  bool foldsOver(std::span<const std::uint32_t> around, const std::vector<Vec3>& after) const {
+    constexpr double kLeastCosine = -0.5;
+    if (around.size() != 2) return false;
+    const auto cosine = [](const Vec3& a, const Vec3& b) {
+      const double lengths = a.length() * b.length();
+      return lengths > 0 ? a.dot(b) / lengths : 1;
+    };
+    const double now = cosine(after[around[0]], after[around[1]]);
+    if (now >= kLeastCosine) return false;
+    return now < cosine(normalOf(mesh_.triangles[around[0]]), normalOf(mesh_.triangles[around[1]]));
   }
 
   // Marks the edges whose middles are off, and the longest edges of triangles whose own middle
@@ -192,8 +266,8 @@ class Refiner {
     }
   }
 
-  // Puts a vertex on each marked edge: on the surface, or, where the edge ends on a crease or the
-  // surface is not near, in its middle.
+  // Puts a vertex into the middle of each marked edge, and finds its way to the surface, unless the
+  // edge ends on a crease.
   void splitEdges(const TriangleEdges& edges) {
     const std::size_t before = mesh_.positions.size();
     std::size_t count = before;
@@ -210,25 +284,21 @@ class Refiner {
     mesh_.positions.resize(count);
     if (normals) mesh_.normals.resize(count);
     stays_.resize(count, 0);
+    // Into the middles first: so the parts of a triangle have its normal.
+    moves_.assign(split.size(), {});
     forEach(split.size(), [&](TrilinearSurface& surface, std::size_t i) {
       const std::size_t vertex = before + i;
       const auto [a, b] = edges.ends(split[i]);
       const Vec3 middle = (at(a) + at(b)) / 2;
-      std::optional<TrilinearSurface::Foot> foot;
-      if ((stays_[a] | stays_[b]) == 0) {
-        foot = footOf(surface, middle, reachOf(split[i]), normalOf(edges, split[i]));
-      }
-      if (foot) {
-        mesh_.positions[vertex] = foot->point;
-        if (normals) mesh_.normals[vertex] = foot->normal;
-        return;
-      }
       mesh_.positions[vertex] = middle;
-      stays_[vertex] = surface.distanceOf(middle, rule_.tolerance) > rule_.tolerance ? 1 : 0;
-      if (!normals) return;
-      Vec3 normal = Vec3(mesh_.normals[a]) + Vec3(mesh_.normals[b]);
-      if (!normal.normalize()) normal = Vec3(mesh_.normals[a]);
-      mesh_.normals[vertex] = Normal(normal);
+      if (normals) {
+        Vec3 normal = Vec3(mesh_.normals[a]) + Vec3(mesh_.normals[b]);
+        if (!normal.normalize()) normal = Vec3(mesh_.normals[a]);
+        mesh_.normals[vertex] = Normal(normal);
+      }
+      if ((stays_[a] | stays_[b]) != 0) return;
+      const auto foot = footOf(surface, middle, reachOf(split[i]), normalOf(edges, split[i]));
+      if (foot) moves_[i] = {foot->point, foot->normal, true};
     });
   }
 
@@ -323,6 +393,7 @@ class Refiner {
   std::vector<double> squaredLengths_;  ///< of each edge, world units
   std::vector<std::uint8_t> marked_;    ///< of each edge: to be split
   std::vector<VertexIndex> added_;      ///< of each edge: the vertex on it
+  std::vector<Move> moves_;             ///< of the vertices of the last round
 };
 
 }  // namespace

@@ -27,8 +27,9 @@ struct RefineRule {
 /// Ends when the tolerance holds, or where edges are shorter than an eighth of a voxel, whose
 /// halves would be the finest. Vertices go at most 60 degrees beside the mesh's normal, by half of
 /// their shortest edge, and new ones by a quarter of their edge, so that they find no other sheet
-/// and edges get shorter; others stay where they are. Positions are counted from the volume's
-/// affine.origin(); quads become triangles. Returns what was reached.
+/// and edges get shorter; others stay where they are, as do those whose move would turn a triangle
+/// by more than 60 degrees or fold the mesh over at an edge. Positions are counted from the
+/// volume's affine.origin(); quads become triangles. Returns what was reached.
 Refinement refineTriangles(const grid::Volume& volume, const RefineRule& rule, Mesh& mesh,
                            base::Job& job);
 

@@ -10,9 +10,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "base/vec3.h"
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
@@ -188,6 +193,71 @@ TEST(Refine, KeepsTheTopologyOfAnyField) {
       // It came to an end of its own.
       EXPECT_LT(report.refinement.value().rounds, 32);
     }
+  }
+}
+
+/// The volume of each component, by the least of its vertices.
+std::map<VertexIndex, double> volumes(const Mesh& mesh) {
+  std::vector<VertexIndex> root(mesh.positions.size());
+  std::iota(root.begin(), root.end(), VertexIndex{0});
+  const auto find = [&](VertexIndex vertex) {
+    while (root[vertex] != vertex) vertex = root[vertex] = root[root[vertex]];
+    return vertex;
+  };
+  for (const Triangle& triangle : mesh.triangles) {
+    for (std::size_t i = 1; i < 3; ++i) {
+      const VertexIndex a = find(triangle.vertices[0]), b = find(triangle.vertices[i]);
+      root[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::map<VertexIndex, double> sums;
+  for (const Triangle& triangle : mesh.triangles) {
+    // From a point of the component, lest digits cancel.
+    const VertexIndex least = find(triangle.vertices[0]);
+    const Vec3 from(mesh.positions[least]);
+    const auto at = [&](int i) { return Vec3(mesh.positions[triangle.vertices[i]]) - from; };
+    sums[least] += at(0).dot(at(1).cross(at(2))) / 6;
+  }
+  return sums;
+}
+
+/// How many edges the mesh is folded over at: the normals of their two triangles are opposed.
+std::size_t folds(const Mesh& mesh) {
+  std::map<std::pair<VertexIndex, VertexIndex>, Vec3> normals;
+  std::size_t count = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto at = [&](std::size_t i) { return Vec3(mesh.positions[triangle.vertices[i]]); };
+    const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexIndex a = triangle.vertices[i], b = triangle.vertices[(i + 1) % 3];
+      normals.emplace(std::pair(a, b), normal);
+      const auto beyond = normals.find({b, a});
+      if (beyond == normals.end()) continue;
+      const double lengths = normal.length() * beyond->second.length();
+      count += normal.dot(beyond->second) < -0.9 * lengths ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+TEST(Refine, FoldsNothingAndTurnsNoPieceInsideOut) {
+  const auto noise = test::noise<openvdb::FloatGrid>({.size = 24});
+  ExtractOptions options;
+  options.contour.isovalue = 0;
+  options.contour.inside = Inside::Below;
+  for (const Method method : {Method::Dual, Method::SurfaceNets, Method::MarchingCubes}) {
+    SCOPED_TRACE(methodNames().at(static_cast<std::size_t>(method)));
+    options.refine = 0;
+    Mesh plain = extract(*noise, method, options);
+    plain.triangles = triangulate(plain);
+    options.refine = 0.05;
+    const Mesh mesh = extract(*noise, method, options);
+    const auto before = volumes(plain), after = volumes(mesh);
+    ASSERT_EQ(before.size(), after.size());
+    EXPECT_GT(before.size(), 20U);
+    for (const auto& [least, volume] : before) EXPECT_GE(volume * after.at(least), 0) << least;
+    // An edge that was folded before may be split. Without a guard there are ten times as many.
+    EXPECT_LE(folds(mesh), folds(plain) * 5 / 4);
   }
 }
 
