@@ -31,6 +31,7 @@ cd "$work"
 "$bin/tufa_render" -o "$out/gallery_algebraic.png" --size 330x290 \
   clebsch.ply:azimuth=30,elevation=20 barth.ply:azimuth=20,elevation=20 \
   metaballs.ply:azimuth=-60,elevation=15
+"$bin/tufa_render" -o "$out/gallery_meshes.png" --size 900x420 meshes.ply:azimuth=35,elevation=20
 "$bin/tufa_render" -o "$out/gallery_skeletons.png" --size 330x290 \
   particles.ply:azimuth=30,elevation=20 convolution.ply:azimuth=-70,elevation=15 \
   sails.ply:azimuth=-60,elevation=15

@@ -59,7 +59,7 @@ TEST_F(Model, SampleScenesBecomeClosedMeshes) {
        {"sphere",    "box",         "cylinder", "segment",      "polyline",   "circle",
         "plane",     "quadric",     "gyroid",   "schwarz_p",    "schwarz_d",  "expression",
         "metaballs", "convolution", "union",    "intersection", "difference", "complement",
-        "offset",    "repeat",      "shell",    "use"}) {
+        "offset",    "repeat",      "shell",    "use",          "mesh"}) {
     EXPECT_NE(all.find(std::string("\"type\": \"") + type + '"'), std::string::npos) << type;
   }
 }
@@ -108,6 +108,35 @@ TEST_F(Model, NamesWhatNoSampleShows) {
             std::string::npos)
       << made.err;
   EXPECT_GT(Json::parse(made.out).at("hidden_voxels"), 0);
+}
+
+TEST_F(Model, ReadsMeshesFromFiles) {
+  std::filesystem::create_directory(folder / "sub");
+  const std::string tetrahedron = "OFF\n4 4 0\n0 0 0\n2 0 0\n0 2 0\n0 0 2\n";
+  writeBytes(folder / "sub/t.off", tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  writeScene("sub/s.json", R"({"type": "mesh", "file": "t.off"})");
+  const Outcome inside = run("model sub/s.json --at 0.5,0.4,0.3 --json");
+  EXPECT_NEAR(Json::parse(inside.out).at("value").get<double>(), -0.3, 1e-12) << inside.err;
+  ASSERT_EQ(run("model sub/s.json -o s.vdb --voxel 0.05").exitCode, 0);
+  EXPECT_EQ(run("mesh s.vdb -o s.ply --check").exitCode, 0);
+  const Outcome picture =
+      run("picture sub/s.json -o s.png --size 160x120 --samples 2 --compare s.ply --json");
+  ASSERT_EQ(picture.exitCode, 0) << picture.err;
+  EXPECT_LT(Json::parse(picture.out).at("compare").at("share"), 0.02);
+  const auto refused = [&](const std::string& bytes, const std::string& part) {
+    writeBytes(folder / "sub/m.off", bytes);
+    writeScene("sub/s.json", R"({"type": "mesh", "file": "m.off"})");
+    expectFailure("model sub/s.json -o o.vdb", 3, "/objects/0/file: " + part);
+  };
+  refused(tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 1 3\n", "the mesh has 3 edges of one face");
+  refused(tetrahedron, "cannot read sub/m.off");
+  refused("", "cannot read sub/m.off");
+  writeScene("sub/s.json", R"({"type": "mesh", "file": "none.off"})");
+  expectFailure("model sub/s.json -o o.vdb", 3, "/objects/0/file: cannot read sub/none.off");
+  writeScene("sub/s.json", R"({"type": "mesh", "file": "t.off", "thickness": 0})");
+  expectFailure("model sub/s.json -o o.vdb", 3, "/objects/0/thickness: must be a number above 0");
+  writeScene("sub/s.json", R"({"type": "mesh", "file": "t.txt"})");
+  expectFailure("model sub/s.json -o o.vdb", 3, "/objects/0/file: ");
 }
 
 /// Blinn's balls in a table, and the same in a point cloud.

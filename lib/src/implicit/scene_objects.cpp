@@ -1,9 +1,11 @@
 #include "implicit/scene_objects.h"
 
 #include <tufa/error.h>
+#include <tufa/io.h>
 #include <cmath>
 #include <map>
 
+#include "implicit/mesh_distance.h"
 #include "implicit/scene_skeletons.h"
 
 namespace tufa::implicit {
@@ -134,8 +136,28 @@ FieldPtr readExpression(SceneObject& object) {
   }
 }
 
-/// The one type that reads another file.
-constexpr const char* kMetaballs = "metaballs";
+FieldPtr readMeshObject(SceneObject& object, const std::filesystem::path& folder) {
+  const SceneValue file = object.at("file");
+  std::optional<double> thickness;
+  if (const auto sheet = object.find("thickness")) thickness = sheet->above0();
+  const std::filesystem::path path = folder / std::filesystem::path(file.text());
+  try {
+    return thickness ? makeMeshSheet(readMesh(path), *thickness) : makeMeshSolid(readMesh(path));
+  } catch (const Error& error) {
+    const ErrorCode code = error.code();
+    if (code != ErrorCode::UnreadableFile && code != ErrorCode::InvalidArgument) throw;
+    file.fail(error.what());
+  }
+}
+
+/// Those that read another file, from the scene's folder.
+using FileReader = FieldPtr (*)(SceneObject&, const std::filesystem::path&);
+
+const std::map<std::string, FileReader>& fileReaders() {
+  static const std::map<std::string, FileReader> kReaders = {{"mesh", readMeshObject},
+                                                             {"metaballs", readMetaballs}};
+  return kReaders;
+}
 
 using Reader = FieldPtr (*)(SceneObject&);
 
@@ -162,13 +184,16 @@ const std::map<std::string, Reader>& readers() {
 
 FieldPtr readPrimitive(const std::string& type, SceneObject& object,
                        const std::filesystem::path& folder) {
-  if (type == kMetaballs) return readMetaballs(object, folder);
+  if (const auto reader = fileReaders().find(type); reader != fileReaders().end()) {
+    return reader->second(object, folder);
+  }
   const auto reader = readers().find(type);
   return reader == readers().end() ? nullptr : reader->second(object);
 }
 
 std::string primitiveNames() {
-  std::string names = kMetaballs;
+  std::string names;
+  for (const auto& [name, reader] : fileReaders()) names += (names.empty() ? "" : ", ") + name;
   for (const auto& [name, reader] : readers()) names += ", " + name;
   return names;
 }

@@ -1,12 +1,39 @@
 #include "unit/implicit/field_list.h"
 
+#include <utility>
+
 #include "implicit/convolution.h"
 #include "implicit/fields.h"
+#include "implicit/mesh_distance.h"
 #include "implicit/metaballs.h"
 
 namespace tufa::test {
 
 using namespace implicit;  // NOLINT: all of it is about them
+
+Mesh spikes() {
+  Mesh mesh;
+  mesh.positions = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (const int x : {0, 1}) {
+    for (const int y : {0, 1}) {
+      for (const int z : {0, 1}) {
+        const auto a = static_cast<VertexIndex>(x);
+        const auto b = static_cast<VertexIndex>(2 + y);
+        const auto c = static_cast<VertexIndex>(4 + z);
+        const auto tip = static_cast<VertexIndex>(mesh.positions.size());
+        const double height = (x + y + z) % 2 == 0 ? 0.9 : 0.2;
+        mesh.positions.emplace_back(height * (1 - 2 * x), height * (1 - 2 * y),
+                                    height * (1 - 2 * z));
+        const bool turned = (x + y + z) % 2 != 0;
+        for (auto [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+          if (turned) std::swap(p, q);
+          mesh.triangles.emplace_back(p, q, tip);
+        }
+      }
+    }
+  }
+  return mesh;
+}
 
 std::vector<NamedField> allFields() {
   const FieldPtr sphere = makeSphere({0.1, 0.2, -0.1}, 0.9);
@@ -80,6 +107,8 @@ std::vector<NamedField> allFields() {
   const SkeletonArc bow{{0.1, 0, -0.1}, Vec3(2, 1, 2) / 3.0, Vec3(1, -2, 0) * 0.3, 4};
   all.push_back({"triangle", makeConvolution({{sail, 1}}, {ConvolutionKernel::Cauchy, 0.4, 0.3})});
   all.push_back({"arc", makeConvolution({{bow, 1}}, {ConvolutionKernel::Cauchy, 0.3, 0.4})});
+  all.push_back({"mesh", makeMeshSolid(spikes())});
+  all.push_back({"mesh sheet", makeMeshSheet(spikes(), 0.2)});
   return all;
 }
 

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <tufa/mesh.h>
+
+#include "implicit/fields.h"
+
+namespace tufa::implicit {
+
+/// The exact signed distance to a closed mesh that does not intersect itself. Throws
+/// Error(InvalidArgument) for meshes without faces, with vertices that are no numbers, open ones,
+/// such as have edges of more than two faces or of faces that turn both ways, and those that face
+/// inward.
+[[nodiscard]] FieldPtr makeMeshSolid(const Mesh& mesh);
+
+/// What is nearer to a mesh, which may be open, than half the thickness. Throws
+/// Error(InvalidArgument) as above for the first two.
+[[nodiscard]] FieldPtr makeMeshSheet(const Mesh& mesh, double thickness);
+
+}  // namespace tufa::implicit
