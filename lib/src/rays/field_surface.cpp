@@ -30,6 +30,7 @@ struct Cube {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   base::Box box;
   const Field* field = nullptr;  ///< the same values in the box; null where no surface is
+  bool inside = false;           ///< of those without surface
   bool closedForm = false;       ///< whether the field knows where lines are inside
   std::uint32_t firstChild = kNone;
   Slopes slopes;  ///< of leaves without closed form
@@ -40,7 +41,8 @@ class FieldSurface final : public RaySurface {
  public:
   FieldSurface(std::shared_ptr<const Field> field, const Box& bounds, base::Job& job)
       : RaySurface(toBase(bounds), skinOf(bounds)), field_(std::move(field)) {
-    cubes_.push_back({toBase(bounds), field_.get(), hasClosedForm(*field_), Cube::kNone, {}});
+    cubes_.push_back(
+        {toBase(bounds), field_.get(), false, hasClosedForm(*field_), Cube::kNone, {}});
     std::size_t begin = 0;
     for (int level = 0; level < kLevels; ++level) {
       job.beginStage("bounds", (level + 1.0) / kLevels);
@@ -51,7 +53,18 @@ class FieldSurface final : public RaySurface {
   }
 
   [[nodiscard]] std::unique_ptr<Caster> caster() const override;
-  [[nodiscard]] const Field& field() const { return *field_; }
+
+  /// Whether a point within the bounds is inside, by the cube that it lies in.
+  [[nodiscard]] bool isInside(const Vec3& point) const {
+    const Cube* cube = cubes_.data();
+    while (cube->firstChild != Cube::kNone) {
+      const Vec3 middle = cube->box.centre();
+      const unsigned child = (point[0] >= middle[0] ? 1U : 0U) | (point[1] >= middle[1] ? 2U : 0U) |
+                             (point[2] >= middle[2] ? 4U : 0U);
+      cube = &cubes_[cube->firstChild + child];
+    }
+    return cube->field != nullptr ? cube->field->value(point) < 0 : cube->inside;
+  }
 
   /// Calls visit(cube, begin, end) for the parts of a ray in leaves, in their order, until it
   /// returns true.
@@ -124,6 +137,7 @@ class FieldSurface final : public RaySurface {
       const double room = 1e-12 * (box.lower.length() + box.upper.length());
       const Box around = implicit::grown({box.lower, box.upper}, room);
       const implicit::Interval bound = cube.field->bound(around);
+      children[n].inside = bound.greatest < 0;
       if (bound.least > 0 || bound.greatest < 0) continue;
       children[n].field = cube.field;
       children[n].closedForm = cube.closedForm;
@@ -153,19 +167,22 @@ class FieldCaster final : public Caster {
     const base::BoxRay boxRay(ray.origin, ray.direction, ray.least);
     const auto [begin, end] = boxRay.span(surface_.bounds(), ray.greatest);
     if (!(begin <= end)) return std::nullopt;
-    const bool inside = surface_.field().value(ray.at(begin)) < 0;
+    // The bounds are a little larger than what holds all of the inside.
+    const bool inside = begin == ray.least && surface_.isInside(ray.at(begin));
     // Some dozens are enough as a rule.
     int looks = 5000;
     std::optional<double> found;
+    const Field* field = nullptr;
     surface_.forLeaves(boxRay, ray.greatest, [&](const Cube& cube, double from, double to) {
       const Stretch stretch{ray.origin, ray.direction, from, to};
       found = cube.closedForm ? firstRoot(*cube.field, stretch, inside, spans_)
                               : firstCrossing(*cube.field, cube.slopes, stretch, inside, looks);
+      field = cube.field;
       return found.has_value();
     });
     if (!found) return std::nullopt;
     const Vec3 point = ray.at(*found);
-    return RayHit{*found, point, static_cast<Normal>(Vec3(surface_.field().normal(point)))};
+    return RayHit{*found, point, static_cast<Normal>(Vec3(field->normal(point)))};
   }
 
  private:
