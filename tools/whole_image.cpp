@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "paths.h"
@@ -40,27 +41,57 @@ Number numberAt(const char* bytes, bool swapped) {
   return number;
 }
 
-void requireWholeNifti(const std::string& file, double bytes) {
+/// What a file holds once it is unpacked, if it is packed at all.
+struct Unpacked {
+  std::array<char, 112> head{};  ///< its first bytes
+  double size = 0;
+};
+
+Unpacked unpack(const std::string& file) {
   // Files that are not packed it gives as they are.
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> in(gzopen(file.c_str(), "rb"), gzclose_r);
   if (!in) fail(file, "it cannot be opened");
-  std::array<char, 112> head{};
-  double size = 0;
+  Unpacked all;
   std::vector<char> piece(kPiece);
   int count = 0;
   while ((count = gzread(in.get(), piece.data(), kPiece)) > 0) {
-    if (size == 0) std::copy_n(piece.begin(), std::min(count, 112), head.begin());
-    size += count;
+    if (all.size == 0) std::copy_n(piece.begin(), std::min(count, 112), all.head.begin());
+    all.size += count;
   }
   int error = Z_OK;
   const std::string why = gzerror(in.get(), &error);
   if (error != Z_OK && error != Z_STREAM_END) failPacked(file, why);
+  return all;
+}
+
+/// The header and the values are in one file, or in two.
+void requireWholeNifti(const std::string& header, const std::string& file, double bytes) {
+  const Unpacked head = unpack(header);
+  const double size = file == header ? head.size : unpack(file).size;
   constexpr std::int32_t kHeadBytes = 348;
   for (const bool swapped : {false, true}) {
-    if (numberAt<std::int32_t>(head.data(), swapped) != kHeadBytes) continue;
+    if (numberAt<std::int32_t>(head.head.data(), swapped) != kHeadBytes) continue;
     constexpr std::size_t kPlace = 108;
-    if (numberAt<float>(head.data() + kPlace, swapped) + bytes > size) failCut(file);
+    if (numberAt<float>(head.head.data() + kPlace, swapped) + bytes > size) failCut(file);
   }
+}
+
+/// Of a header or values in a file of their own: x.hdr and x.img, packed or not.
+void requireWholePair(const std::filesystem::path& file, double bytes) {
+  std::filesystem::path stem = file;
+  if (stem.extension() == ".gz") stem.replace_extension();
+  const auto part = [&](const char* ending) -> std::string {
+    for (const char* const packed : {"", ".gz"}) {
+      std::filesystem::path path = stem;
+      path.replace_extension(ending);
+      path += packed;
+      if (std::filesystem::exists(path)) return path.string();
+    }
+    return {};
+  };
+  const std::string header = part(".hdr");
+  const std::string values = part(".img");
+  if (!header.empty() && !values.empty()) requireWholeNifti(header, values, bytes);
 }
 
 /// Unpacks the rest of a stream, in the format of zlib or gzip.
@@ -118,6 +149,96 @@ void requireWholeMetaImage(const std::string& file, double bytes) {
   }
 }
 
+/// The head is lines of `key: value` up to an empty one.
+void requireWholeNrrd(const std::string& file, double bytes) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  std::string values;
+  bool packed = false;
+  constexpr int kMostLines = 1000;
+  for (int n = 0; n < kMostLines && std::getline(in, line); ++n) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty()) break;
+    const auto valueOf = [&](const std::string& key) {
+      return line.rfind(key + ": ", 0) == 0 ? line.substr(key.size() + 2) : std::string();
+    };
+    if (const std::string coding = valueOf("encoding"); coding == "gzip" || coding == "gz") {
+      packed = true;
+    }
+    for (const char* const key : {"data file", "datafile"}) {
+      if (const std::string name = valueOf(key); !name.empty()) values = name;
+    }
+    // Something before the packed values is left out first.
+    if (line.rfind("line skip", 0) == 0 || line.rfind("byte skip", 0) == 0) return;
+  }
+  if (!packed) return;
+  if (values.empty()) return requirePacked(file, in, bytes);
+  const std::filesystem::path other = std::filesystem::path(file).parent_path() / values;
+  std::ifstream apart(other, std::ios::binary);
+  // A list or a pattern of files, of which ITK says what is missing.
+  if (apart) requirePacked(other.string(), apart, bytes);
+}
+
+/// Where the values of a DICOM file lie, as the element that holds them says.
+class DicomValues {
+ public:
+  DicomValues(const std::string& file, double values) : file_(file), values_(values) {}
+
+  /// ITK takes values that are missing for 0.
+  void requireWhole() const {
+    std::ifstream in(file_, std::ios::binary);
+    constexpr std::streamoff kMark = 128;
+    std::array<char, 4> mark{};
+    in.seekg(kMark);
+    in.read(mark.data(), mark.size());
+    if (!in || std::string_view(mark.data(), mark.size()) != "DICM") return;
+    const auto size = static_cast<std::uint64_t>(std::filesystem::file_size(file_));
+    std::string bytes;
+    std::uint64_t begin = kMark + 4;
+    bool claimed = false;
+    while (in) {
+      const std::size_t kept = bytes.size();
+      bytes.resize(kept + kPiece);
+      in.read(bytes.data() + kept, kPiece);
+      bytes.resize(kept + static_cast<std::size_t>(in.gcount()));
+      const Element found = lookIn(bytes, begin, size);
+      if (found == Element::Whole) return;
+      claimed = claimed || found == Element::Cut;
+      // An element may lie across the end.
+      const std::size_t left = std::min<std::size_t>(bytes.size(), kHead - 1);
+      begin += bytes.size() - left;
+      bytes.erase(0, bytes.size() - left);
+    }
+    if (claimed) failCut(file_);
+  }
+
+ private:
+  enum class Element { None, Cut, Whole };
+  static constexpr std::size_t kHead = 12;  ///< bytes of the longest head of an element
+
+  /// An element of as many bytes as the values take, at one bit each: that of an icon is shorter.
+  /// Those that are packed have no length.
+  [[nodiscard]] Element lookIn(std::string_view bytes, std::uint64_t begin,
+                               std::uint64_t size) const {
+    constexpr std::string_view kTag("\xe0\x7f\x10\0", 4);
+    Element found = Element::None;
+    for (auto at = bytes.find(kTag); at != std::string_view::npos; at = bytes.find(kTag, at + 1)) {
+      if (bytes.size() - at < kHead) break;
+      const std::string_view type = bytes.substr(at + 4, 2);
+      const bool typed = type == "OW" || type == "OB";
+      const auto length = numberAt<std::uint32_t>(bytes.data() + at + (typed ? 8 : 4), false);
+      constexpr std::uint32_t kNone = 0xffffffff;
+      if (length == kNone || length < values_ / 8) continue;
+      if (begin + at + (typed ? kHead : 8) + length <= size) return Element::Whole;
+      found = Element::Cut;
+    }
+    return found;
+  }
+
+  std::string file_;
+  double values_;
+};
+
 /// ITK leaves out the pages that come after the first place where the file is cut.
 void requireWholeTiff(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -153,11 +274,23 @@ void requireWholeTiff(const std::string& file) {
 
 }  // namespace
 
-void requireWholeImage(const std::string& file, double bytes) {
-  const std::string ending = endingOf(file);
-  if (ending == ".nii" || ending == ".gz") requireWholeNifti(file, bytes);
-  if (ending == ".mha" || ending == ".mhd") requireWholeMetaImage(file, bytes);
-  if (ending == ".tif" || ending == ".tiff") requireWholeTiff(file);
+void requireWholeImage(const std::string& file, double values, double bytesOfEach) {
+  const double bytes = values * bytesOfEach;
+  std::string ending = endingOf(file);
+  if (ending == ".gz") ending = endingOf(file.substr(0, file.size() - 3)) + ending;
+  if (ending == ".hdr" || ending == ".img" || ending == ".hdr.gz" || ending == ".img.gz") {
+    requireWholePair(file, bytes);
+  } else if (ending == ".nii" || ending == ".nii.gz") {
+    requireWholeNifti(file, file, bytes);
+  } else if (ending == ".mha" || ending == ".mhd") {
+    requireWholeMetaImage(file, bytes);
+  } else if (ending == ".nrrd" || ending == ".nhdr") {
+    requireWholeNrrd(file, bytes);
+  } else if (ending == ".tif" || ending == ".tiff") {
+    requireWholeTiff(file);
+  } else {
+    DicomValues(file, values).requireWhole();
+  }
 }
 
 }  // namespace tufa::tools

@@ -11,6 +11,7 @@
 #include <tufa/error.h>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -42,7 +43,13 @@ auto guarded(const std::string& file, const Work& work) {
     // "ITK ERROR: MetaImageIO(0x55...): what is wrong.", and further lines.
     std::string text = error.GetDescription();
     if (const auto end = text.find("): "); end != std::string::npos) text.erase(0, end + 3);
-    text = text.substr(0, text.find('\n'));
+    // What is wrong comes last, after what was being done.
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) {
+      text.pop_back();
+    }
+    const std::string first = text.substr(0, text.find('\n'));
+    const std::string last = text.substr(text.rfind('\n') + 1);
+    text = first.ends_with(':') ? first + ' ' + last : first;
     fail(file, "ITK says: " + (text.empty() ? "no image" : text));
   }
 }
@@ -75,7 +82,8 @@ class ImageFile {
       fail(file, "it has " + std::to_string(io_->GetNumberOfComponents()) +
                      " values for each voxel, such as a colour; one is needed");
     }
-    requireWholeImage(file, static_cast<double>(io_->GetImageSizeInBytes()));
+    requireWholeImage(file, static_cast<double>(io_->GetImageSizeInComponents()),
+                      static_cast<double>(io_->GetComponentSize()));
     dimensions_ = io_->GetNumberOfDimensions();
     for (unsigned n = 3; n < dimensions_; ++n) {
       if (io_->GetDimensions(n) != 1) fail(file, "it has more than three dimensions");

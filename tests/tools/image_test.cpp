@@ -128,12 +128,20 @@ std::string tiffPages() {
   return bytes;
 }
 
-std::string packed(const std::string& bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string out(size, '\0');
-  compress(reinterpret_cast<Bytef*>(out.data()), &size,
-           reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  return out.substr(0, size);
+/// In the format of zlib, or of gzip if `more` is 16.
+std::string packed(const std::string& bytes, int more = 0) {
+  z_stream stream{};
+  deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + more, 8, Z_DEFAULT_STRATEGY);
+  std::string in = bytes;
+  std::string out(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(in.data());
+  stream.avail_in = static_cast<uInt>(in.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
 }
 
 template <class Number>
@@ -311,6 +319,34 @@ TEST_F(Images, ThatAreCutOrDamagedAreRefused) {
       expectFailure("import -o o.vdb cut_" + name, 3, "cannot read cut_" + name);
     }
   }
+  const auto cut = [&](const std::string& argument, const std::string& name, std::size_t header) {
+    ASSERT_EQ(run("import -o v.vdb " + argument).exitCode, 0) << argument;
+    const std::string bytes = readBytes(folder / name);
+    for (const std::size_t left : {bytes.size() - 1, bytes.size() - 30, header + 1}) {
+      writeBytes(folder / name, bytes.substr(0, left));
+      expectFailure("import -o o.vdb " + argument, 3, "cannot read " + name);
+    }
+    writeBytes(folder / name, bytes);
+  };
+  // The header, and values in a file of their own.
+  std::string header = nifti().substr(0, 348);
+  header.replace(344, 4, std::string("ni1\0", 4));
+  header.replace(108, 4, std::string(4, '\0'));
+  writeBytes(folder / "n.hdr", header);
+  writeBytes(folder / "n.img", allSlices());
+  cut("n.hdr", "n.img", 0);
+  const std::string nrrd =
+      "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 5 4 6\nendian: little\nencoding: gzip\n";
+  writeBytes(folder / "z.nrrd", nrrd + "\n" + packed(allSlices(), 16));
+  cut("z.nrrd", "z.nrrd", nrrd.size() + 1);
+  writeBytes(folder / "a.nhdr", nrrd + "data file: a.gz\n");
+  writeBytes(folder / "a.gz", packed(allSlices(), 16));
+  cut("a.nhdr", "a.gz", 1);
+  std::filesystem::create_directory(folder / "ct");
+  for (int z = 0; z < kSize[2]; ++z) {
+    writeBytes(folder / "ct" / ("f" + std::to_string(z)), dicom(z, "1.2.3.7"));
+  }
+  cut("ct", "ct/f4", dicom(4, "1.2.3.7").size() - slice(4).size());
   std::string damaged = readBytes(folder / "n.nii.gz");
   damaged[damaged.size() - 6] = static_cast<char>(damaged[damaged.size() - 6] ^ 1);
   writeBytes(folder / "d.nii.gz", damaged);
