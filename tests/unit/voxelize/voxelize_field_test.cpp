@@ -217,7 +217,12 @@ TEST(VoxelizeField, CreasesStayWithinATenthOfAVoxel) {
   const auto [rim, side] = worstOf(finest);
   EXPECT_LT(rim, 0.1);
   EXPECT_LT(side, 0.02);
-  // An adaptive mesh may be a tolerance of 0.1 away from that.
+  ContourOptions half;
+  half.tolerance = 0.05;
+  const auto [rimHalf, sideHalf] = worstOf(contour(*grid, half));
+  EXPECT_LT(rimHalf, 0.1);
+  EXPECT_LT(sideHalf, 0.1);
+  // An adaptive mesh may be its tolerance away from the uniform one: by default, 0.1.
   const auto [rimAdaptive, sideAdaptive] = worstOf(adaptive);
   EXPECT_LT(rimAdaptive, 0.15);
   EXPECT_LT(sideAdaptive, 0.12);
