@@ -61,6 +61,16 @@ class Bvh {
          });
   }
 
+  /// Calls visit(item) for items whose boxes overlap `box`, until it returns true.
+  template <class Visit>
+  void itemsMeetingUntil(const Box& box, const Visit& visit) const {
+    bool done = false;
+    walk([&](const Node& node) { return !done && boxOf(node).meets(box); },
+         [&](std::size_t i) {
+           if (!done && boxes_[i].meets(box)) done = visit(items_[i]);
+         });
+  }
+
   /// Calls visit(item) for each item whose box the ray from `point` towards +z passes.
   template <class Visit>
   void itemsAbove(const Vec3& point, const Visit& visit) const {

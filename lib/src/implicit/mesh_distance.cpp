@@ -174,6 +174,8 @@ class MeshDistance final : public Field {
     if (!(reach < kSmall * halfOf(triangles_->extent()).length())) return any;
     const Near near = nearestTo(centre);
     Box all{Vec3(kInfinity), Vec3(-kInfinity)};
+    constexpr int kMost = 64;
+    int count = 0;
     forNear(centre, near.distance, reach, [&](std::uint32_t n, const Vec3& offset, double left) {
       Box slopes = any;
       if (near.distance > reach) {
@@ -183,7 +185,9 @@ class MeshDistance final : public Field {
       }
       if (!half_) slopes = both(slopes, triangles_->cone(n));
       all = hull(all, slopes);
+      return ++count > kMost;
     });
+    if (count > kMost) return any;
     return both(all, any);
   }
 
@@ -197,11 +201,14 @@ class MeshDistance final : public Field {
     const Vec3 centre = centreOf(box);
     const double reach = halfOf(box).length();
     if (!(reach < halfOf(triangles_->extent()).length())) return nullptr;
+    const std::size_t most = few_.empty() ? kMost : few_.size() - 1;
     std::vector<std::uint32_t> few;
     forNear(centre, nearestTo(centre).distance, reach,
-            [&](std::uint32_t n, const Vec3& /*offset*/, double /*left*/) { few.push_back(n); });
-    const std::size_t before = few_.empty() ? kMost + 1 : few_.size();
-    if (few.empty() || few.size() >= before) return nullptr;
+            [&](std::uint32_t n, const Vec3& /*offset*/, double /*left*/) {
+              few.push_back(n);
+              return few.size() > most;
+            });
+    if (few.empty() || few.size() > most) return nullptr;
     return std::make_shared<MeshDistance>(triangles_, half_, std::move(few));
   }
 
@@ -267,20 +274,21 @@ class MeshDistance final : public Field {
   }
 
   /// Calls visit(triangle, offset of the centre from its nearest place, left) for all triangles
-  /// that may be nearest to a point within `reach` of a centre: in a triangle such a place has a
-  /// squared distance of at most `left` from the centre's.
+  /// that may be nearest to a point within `reach` of a centre, until it returns true: in a
+  /// triangle such a place has a squared distance of at most `left` from the centre's.
   template <class Visit>
   void forNear(const Vec3& centre, double distance, double reach, const Visit& visit) const {
     const double most = (distance + 2 * reach) * (1 + 1e-9);
     const auto look = [&](std::uint32_t n) {
       const Vec3 offset = centre - triangles_->foot(centre, n).point;
       const double left = most * most - offset.squaredLength();
-      if (left >= 0) visit(n, offset, left);
+      return left >= 0 && visit(n, offset, left);
     };
-    for (const std::uint32_t n : few_) look(n);
-    if (!few_.empty()) return;
-    triangles_->tree().itemsMeeting({centre - Vec3(most), centre + Vec3(most)},
-                                    [&](std::uint32_t n, const base::Box& /*box*/) { look(n); });
+    if (few_.empty()) {
+      triangles_->tree().itemsMeetingUntil({centre - Vec3(most), centre + Vec3(most)}, look);
+    } else {
+      static_cast<void>(std::any_of(few_.begin(), few_.end(), look));
+    }
   }
 
   /// Of points of which the offset from the nearest place is known up to `room`, and its length.
