@@ -68,18 +68,16 @@ int tellPoint(const ModelArguments& arguments) {
   return kDone;
 }
 
-void noteHidden(const VoxelizeReport& report) {
-  const std::string where =
-      ", near " + shownPoint(report.firstHidden) +
-      (report.hiddenVoxels + report.undecidedVoxels > 1 ? " and elsewhere; take smaller voxels"
-                                                        : "; take smaller voxels");
-  if (report.hiddenVoxels > 0) {
-    printNote(formatCount(report.hiddenVoxels) +
-              " voxels hold parts of the surface that no sample shows" + where);
-  } else if (report.undecidedVoxels > 0) {
-    printNote(formatCount(report.undecidedVoxels) +
-              " voxels may hold parts of the surface that no sample shows" + where);
-  }
+/// Of parts of the surface between samples; empty if there are none.
+std::string hiddenNote(const VoxelizeReport& report) {
+  const bool found = report.hiddenVoxels > 0;
+  const std::size_t count = found ? report.hiddenVoxels : report.undecidedVoxels;
+  if (count == 0) return {};
+  const char* const holds = !found ? " may hold" : count == 1 ? " holds" : " hold";
+  const bool elsewhere = report.hiddenVoxels + report.undecidedVoxels > 1;
+  return formatCount(count) + (count == 1 ? " voxel" : " voxels") + holds +
+         " parts of the surface that no sample shows, near " + shownPoint(report.firstHidden) +
+         (elsewhere ? " and elsewhere" : "") + "; take smaller voxels";
 }
 
 int runModel(const ModelArguments& arguments) {
@@ -106,12 +104,14 @@ int runModel(const ModelArguments& arguments) {
     options.progress = bar.callback();
     grid = voxelize(*scene.field, options, &report);
   });
-  noteHidden(report);
+  const std::string hidden = hiddenNote(report);
   if (report.activeVoxels == 0) {
     throw Error(ErrorCode::UnsupportedGrid,
                 shownInput(arguments.input) + " has no surface that voxels of " +
-                    formatNumber(options.voxelSize) + " show within its bounds");
+                    formatNumber(options.voxelSize) + " show within its bounds" +
+                    (hidden.empty() ? "" : "; " + hidden));
   }
+  if (!hidden.empty()) printNote(hidden);
   grid->setName(scene.name);
   WrittenGrid written;
   written.input = arguments.input;

@@ -104,8 +104,7 @@ TEST_F(Model, NamesWhatNoSampleShows) {
                           {"type": "sphere", "center": [2.05, 0.05, 0.05], "radius": 0.02})");
   const Outcome made = run("model s.json -o s.vdb --voxel 0.1 --json");
   EXPECT_EQ(made.exitCode, 0);
-  EXPECT_NE(made.err.find("hold parts of the surface that no sample shows, near (2"),
-            std::string::npos)
+  EXPECT_NE(made.err.find(" parts of the surface that no sample shows, near (2"), std::string::npos)
       << made.err;
   EXPECT_GT(Json::parse(made.out).at("hidden_voxels"), 0);
 }
@@ -194,6 +193,8 @@ TEST_F(Model, RefusesHostileScenes) {
   expectFailure("model plane.json -o o.vdb --bounds 5,5,5,6,6,6", 3, "no surface");
   expectFailure("model plane.json -o o.ply --bounds=-1,-1,-1,1,1,1", 2, ".vdb");
   expectFailure("model plane.json -o o.vdb --voxel 0", 2, "--voxel");
+  writeScene("none.json", R"({"type": "expression", "text": "1/0"})");
+  expectFailure("model none.json -o o.vdb --bounds=-1,-1,-1,1,1,1 --voxel 0.2", 3, "no surface");
   writeScene("ball.json", R"({"type": "sphere", "radius": 1e6})");
   expectFailure("model ball.json -o o.vdb --voxel 0.01", 3, "--band-voxels");
   expectFailure("model ball.json -o o.vdb --voxel 1", 3, "--band-voxels");

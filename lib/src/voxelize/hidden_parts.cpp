@@ -42,7 +42,11 @@ bool mayChange(const Field& field, const Box& box, bool inside) {
 
 enum class Answer { None, Undecided, Found };
 
-Answer search(const Field& field, const Vec3& centre, double half, bool inside, int depth) {
+/// Each part looked at takes one of `looks`; without any left, nothing is decided.
+Answer search(const Field& field, const Vec3& centre, double half, bool inside, int depth,
+              int& looks) {
+  if (looks == 0) return Answer::Undecided;
+  --looks;
   if (!mayChange(field, cubeAround(centre, half), inside)) return Answer::None;
   if (isInside(field.value(centre)) != inside) return Answer::Found;
   if (depth == 0) return Answer::Undecided;
@@ -51,7 +55,7 @@ Answer search(const Field& field, const Vec3& centre, double half, bool inside, 
   for (int child = 0; child < 8; ++child) {
     const Vec3 step((child & 4) ? quarter : -quarter, (child & 2) ? quarter : -quarter,
                     (child & 1) ? quarter : -quarter);
-    const Answer part = search(field, centre + step, quarter, inside, depth - 1);
+    const Answer part = search(field, centre + step, quarter, inside, depth - 1, looks);
     if (part == Answer::Found) return part;
     all = std::max(all, part);
   }
@@ -84,6 +88,8 @@ HiddenParts findHiddenParts(const SampledBlock& block) {
   const Box whole{block.point(0, 0, 0) - Vec3(half), block.point(7, 7, 7) + Vec3(half)};
   const double most = block.field.lipschitz(whole) * std::sqrt(3.0) * half * (1 + 1e-9);
   HiddenParts parts;
+  // A field without bounds, such as 1/0, would take two million for each block.
+  int looks = 100000;
   for (int x = 0; x < kSide; ++x) {
     std::uint64_t candidates = block.sampled[x] & ~(nearInside[x] & nearOutside[x]);
     for (; candidates != 0; candidates &= candidates - 1) {
@@ -96,7 +102,7 @@ HiddenParts findHiddenParts(const SampledBlock& block) {
       const bool inside = (block.inside[x] >> bit & 1) != 0;
       if (!mayChange(block.field, cubeAround(point, half), inside)) continue;
       if (changesBeyond(block, x, y, z, inside)) continue;
-      const Answer answer = search(block.field, point, half, inside, kHalvings);
+      const Answer answer = search(block.field, point, half, inside, kHalvings, looks);
       if (answer == Answer::None) continue;
       if (parts.found + parts.undecided == 0) parts.first = point;
       ++(answer == Answer::Found ? parts.found : parts.undecided);

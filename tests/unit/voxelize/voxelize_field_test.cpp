@@ -10,6 +10,7 @@
 #include <tufa/memory.h>
 #include <tufa/voxelize.h>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -263,6 +264,32 @@ TEST(VoxelizeField, PartsBetweenSamplesAreNamed) {
   // Nothing is said of what the samples show.
   static_cast<void>(voxelize(*ball, voxelsOf(kVoxel), &report));
   EXPECT_EQ(report.hiddenVoxels + report.undecidedVoxels, 0u);
+}
+
+/// Counts how often it is asked, and tells nothing.
+class Boundless final : public Field {
+ public:
+  [[nodiscard]] double value(const Position& /*p*/) const override { return 1; }
+  [[nodiscard]] Position gradient(const Position& /*p*/) const override { return {0, 0, 0}; }
+  [[nodiscard]] implicit::Interval bound(const implicit::Box& /*box*/) const override {
+    ++asked;
+    return implicit::everything();
+  }
+  [[nodiscard]] double lipschitz(const implicit::Box& /*box*/) const override {
+    return implicit::kInfinity;
+  }
+  [[nodiscard]] implicit::Box extent() const override { return {{-1, -1, -1}, {1, 1, 1}}; }
+  mutable std::atomic<std::size_t> asked{0};
+};
+
+TEST(VoxelizeField, FieldsWithoutBoundsEndSoon) {
+  const Boundless field;
+  VoxelizeReport report;
+  const auto grid = voxelize(field, voxelsOf(0.05), &report);
+  EXPECT_EQ(grid->activeVoxelCount(), 0u);
+  EXPECT_EQ(report.hiddenVoxels, 0u);
+  EXPECT_GT(report.undecidedVoxels, 40u * 40 * 40);
+  EXPECT_LT(field.asked, 110000 * report.blocks);
 }
 
 TEST(VoxelizeField, RefusesWhatItCannotDo) {
