@@ -11,6 +11,7 @@
 #include "implicit/dual.h"
 #include "implicit/formula_field.h"
 #include "implicit/kernel_profile.h"
+#include "implicit/near_field.h"
 
 namespace tufa::implicit {
 namespace {
@@ -236,17 +237,9 @@ class Convolution final : public Field {
     return steepest;
   }
 
-  // Around the gradient in the centre.
   [[nodiscard]] Box gradientBound(const Box& box) const override {
-    double curvature = 0;
-    forPieces(box, [&](double weight, const Piece& piece, double distance) {
-      curvature += std::abs(weight) * piece.size * profile_.curvatureFrom(distance);
-    });
-    const Vec3 centre = gradient(centreOf(box));
-    const double change = curvature / square(options_.width) * halfOf(box).length();
-    const Box around = grown({centre, centre}, (change + 1e-12 * centre.length()) * (1 + 1e-9));
-    const Box steepest = Field::gradientBound(box);
-    return isFinite(around) ? both(steepest, around) : steepest;
+    if (!isFinite(box)) return Field::gradientBound(box);
+    return makeNearField(*this, boundsNear(box))->gradientBound(box);
   }
 
   // Beyond the distance where the bounds of all parts together are below the threshold.
@@ -274,7 +267,7 @@ class Convolution final : public Field {
   }
 
   [[nodiscard]] FieldPtr restricted(const Box& box) const override {
-    if (!(profile_.reach() < kInfinity)) return nullptr;
+    if (!(profile_.reach() < kInfinity)) return withNearBounds(box);
     std::vector<BoundedPart> near;
     for (const BoundedPart& part : parts_) {
       const auto reaches = [&](const Piece& piece) {
@@ -287,6 +280,21 @@ class Convolution final : public Field {
   }
 
  private:
+  [[nodiscard]] NearBounds boundsNear(const Box& box) const {
+    NearBounds bounds{box};
+    forPieces(box, [&](double weight, const Piece& piece, double distance) {
+      bounds.steepest += steepestOf(weight, piece, distance);
+      bounds.curvature += std::abs(weight) * piece.size * profile_.curvatureFrom(distance);
+    });
+    bounds.curvature *= (1 + 1e-9) / square(options_.width);
+    return bounds;
+  }
+  /// In small boxes bounds of all pieces together are as good as those of each.
+  [[nodiscard]] FieldPtr withNearBounds(const Box& box) const {
+    constexpr double kSmall = 0.25;
+    if (!(halfOf(box).length() < kSmall * options_.width)) return nullptr;
+    return makeNearField(*this, boundsNear(box));
+  }
   template <class T>
   [[nodiscard]] T at(const Triple<T>& point) const {
     T sum = point[0] * 0.0;

@@ -80,30 +80,34 @@ TEST(Fields, GradientsAreCentralDifferences) {
   }
 }
 
+void expectBoundsHold(const Field& field, const Box& box, int samples, Places& places,
+                      const std::string& name) {
+  const Interval bound = field.bound(box);
+  const double steepest = field.lipschitz(box);
+  const Box slopes = field.gradientBound(box);
+  ASSERT_LE(bound.least, bound.greatest) << name;
+  for (int k = 0; k < samples; ++k) {
+    const Vec3 p = places.pointIn(box);
+    const double value = field.value(p);
+    ASSERT_GE(value, bound.least) << name;
+    ASSERT_LE(value, bound.greatest) << name;
+    const Vec3 gradient = field.gradient(p);
+    ASSERT_LE(gradient.length(), steepest * (1 + 1e-9) + 1e-12) << name;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Interval side = implicit::sideOf(slopes, axis);
+      const double room = 1e-9 * (1 + gradient.length());
+      ASSERT_GE(gradient[axis], side.least - room) << name;
+      ASSERT_LE(gradient[axis], side.greatest + room) << name;
+    }
+  }
+}
+
 /// A million samples in all.
 TEST(Fields, BoundsHoldAllSamples) {
   for (const auto& [name, field] : allFields()) {
     Places places;
     for (int n = 0; n < 400; ++n) {
-      const Box box = places.box();
-      const Interval bound = field->bound(box);
-      const double steepest = field->lipschitz(box);
-      const Box slopes = field->gradientBound(box);
-      ASSERT_LE(bound.least, bound.greatest) << name;
-      for (int k = 0; k < 60; ++k) {
-        const Vec3 p = places.pointIn(box);
-        const double value = field->value(p);
-        ASSERT_GE(value, bound.least) << name;
-        ASSERT_LE(value, bound.greatest) << name;
-        const Vec3 gradient = field->gradient(p);
-        ASSERT_LE(gradient.length(), steepest * (1 + 1e-9) + 1e-12) << name;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const Interval side = implicit::sideOf(slopes, axis);
-          const double room = 1e-9 * (1 + gradient.length());
-          ASSERT_GE(gradient[axis], side.least - room) << name;
-          ASSERT_LE(gradient[axis], side.greatest + room) << name;
-        }
-      }
+      ASSERT_NO_FATAL_FAILURE(expectBoundsHold(*field, places.box(), 60, places, name));
     }
   }
 }
@@ -156,6 +160,22 @@ TEST(Fields, RestrictedOnesHaveTheSameValues) {
     }
   }
   EXPECT_GT(restrictedOnes, 100);
+}
+
+TEST(Fields, RestrictedOnesHaveBoundsThatHold) {
+  for (const auto& [name, field] : allFields()) {
+    Places places;
+    for (int n = 0; n < 100; ++n) {
+      const Box box = places.box();
+      const auto restricted = field->restricted(box);
+      if (!restricted) continue;
+      const Vec3 a = places.pointIn(box);
+      const Vec3 b = places.pointIn(box);
+      for (const Box& part : {box, Box{minVec3(a, b), maxVec3(a, b)}}) {
+        ASSERT_NO_FATAL_FAILURE(expectBoundsHold(*restricted, part, 30, places, name));
+      }
+    }
+  }
 }
 
 TEST(Fields, ClosedFormsSayWhichPartsOfLinesAreInside) {
