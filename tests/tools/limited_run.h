@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct RunLimits {
 struct LimitedOutcome {
   int exitCode = -1;  ///< -1 for a signal
   double cpuSeconds = 0;
+  std::uint64_t peakBytes = 0;  ///< the most memory that it held
   std::string err;
 };
 
@@ -60,7 +62,8 @@ inline LimitedOutcome runLimited(const std::vector<std::string>& words, const st
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-          seconds(usage.ru_utime) + seconds(usage.ru_stime), readBytes(errors)};
+          seconds(usage.ru_utime) + seconds(usage.ru_stime),
+          static_cast<std::uint64_t>(usage.ru_maxrss) << 10U, readBytes(errors)};
 }
 
 }  // namespace tufa::test

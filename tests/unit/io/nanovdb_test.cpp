@@ -222,6 +222,35 @@ TEST(NanoVdb, OfSharedNodesIsRefused) {
               [&] { static_cast<void>(readGrid(FileBytes{bytes})); });
 }
 
+/// Bytes of little entropy that claim gigabytes, and leaves of few bytes that OpenVDB makes more
+/// of.
+TEST(NanoVdb, ThatTakesMemoryOutOfProportionIsRefused) {
+  std::string claim = bytesOf(makeSphere(), Codec::ZIP);
+  claim.resize(std::size_t{1} << 20);
+  const std::uint64_t gridSize = 300ULL << 20;
+  const std::uint64_t fileSize = claim.size() / 2;
+  const std::size_t meta = sizeof(nanovdb::io::Header);
+  std::memcpy(claim.data() + meta + offsetof(nanovdb::io::MetaData, gridSize), &gridSize, 8);
+  std::memcpy(claim.data() + meta + offsetof(nanovdb::io::MetaData, fileSize), &fileSize, 8);
+  const auto refuse = [](const std::string& bytes) {
+    expectError(ErrorCode::UnreadableFile, "its grids would take more than",
+                [&] { static_cast<void>(readGrid(FileBytes{bytes})); });
+  };
+  refuse(claim);
+  const auto solid = FloatGrid::create(0);
+  constexpr int kSide = 49;
+  for (auto at = openvdb::CoordBBox({0, 0, 0}, openvdb::Coord(kSide - 1)).begin(); at; ++at) {
+    const openvdb::Coord& c = *at;
+    solid->tree().touchLeaf({8 * c[0], 8 * c[1], 8 * c[2]})->fill(1, true);
+  }
+  std::vector<Handle> handles;
+  handles.push_back(
+      nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, nanovdb::Fp4>(*solid));
+  const std::string bomb = bytesOf(std::move(handles), Codec::ZIP);
+  EXPECT_LT(200 * bomb.size(), std::size_t{256} << 20);
+  refuse(bomb);
+}
+
 TEST(NanoVdb, OfTheSamplesIsTheVolumeThatItWasMadeOf) {
   const std::filesystem::path nano = TUFA_TEST_DATA "/openvdb_fvdb_smoke-blosc.nvdb";
   if (!std::filesystem::exists(nano)) GTEST_SKIP() << nano << " is missing";

@@ -26,6 +26,28 @@ constexpr std::uint64_t kMostRatio = 1040;
 /// Bytes of a compressed part, once unpacked.
 constexpr std::uint64_t kPartBytes = 1ULL << 30;
 
+/// The memory that a file may take: its grids unpacked, and as OpenVDB's. Of leaves of few bytes
+/// OpenVDB makes twenty times as many, and of zeros deflate a thousandth.
+class Budget {
+ public:
+  Budget(std::uint64_t fileBytes, const Fail& fail)
+      : left_(std::max(kLeast, kFactor * fileBytes)), fail_(fail) {}
+
+  void take(std::uint64_t bytes) {
+    if (bytes > left_) {
+      fail_("its grids would take more than " + std::to_string(kFactor) +
+            " times its size, and more than " + std::to_string(kLeast >> 20U) + " MB of memory");
+    }
+    left_ -= bytes;
+  }
+
+ private:
+  static constexpr std::uint64_t kLeast = 256ULL << 20U;
+  static constexpr std::uint64_t kFactor = 200;
+  std::uint64_t left_;
+  const Fail& fail_;
+};
+
 /// The bytes of a file, taken from the front.
 class Taker {
  public:
@@ -106,7 +128,7 @@ void unpackBlosc(Taker& taker, const Buffer& buffer, const Fail& fail) {
   }
 }
 
-Buffer unpack(Taker& taker, const nanovdb::io::MetaData& meta, std::uint16_t codec,
+Buffer unpack(Taker& taker, const nanovdb::io::MetaData& meta, std::uint16_t codec, Budget& budget,
               const Fail& fail) {
   if (meta.gridSize < sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<3>) ||
       meta.gridSize / kMostRatio > meta.fileSize) {
@@ -114,6 +136,7 @@ Buffer unpack(Taker& taker, const nanovdb::io::MetaData& meta, std::uint16_t cod
   }
   // Before memory is taken for what it says.
   if (Taker rest = taker; meta.fileSize > 0) static_cast<void>(rest.take(meta.fileSize, "a grid"));
+  budget.take(meta.gridSize);
   Buffer buffer = makeBuffer(meta.gridSize);
   switch (static_cast<nanovdb::io::Codec>(codec)) {
     case nanovdb::io::Codec::NONE:
@@ -135,8 +158,8 @@ Buffer unpack(Taker& taker, const nanovdb::io::MetaData& meta, std::uint16_t cod
 template <class BuildT, class GridT>
 class Converter {
  public:
-  Converter(const Buffer& buffer, const Fail& fail)
-      : begin_(buffer.bytes.get()), size_(buffer.size), fail_(fail) {}
+  Converter(const Buffer& buffer, Budget& budget, const Fail& fail)
+      : begin_(buffer.bytes.get()), size_(buffer.size), budget_(budget), fail_(fail) {}
 
   GridBase::Ptr convert() {
     const auto& head = *at<nanovdb::GridData>(0);
@@ -168,7 +191,9 @@ class Converter {
   using Lower = typename NanoGrid::TreeType::Node1;
   using Leaf = typename NanoGrid::TreeType::Node0;
   using Value = typename GridT::ValueType;
-  using OpenLeaf = typename GridT::TreeType::LeafNodeType;
+  using OpenUpper = typename GridT::TreeType::RootNodeType::ChildNodeType;
+  using OpenLower = typename OpenUpper::ChildNodeType;
+  using OpenLeaf = typename OpenLower::ChildNodeType;
   static constexpr int kRootLevel = 3;
 
   template <class NanoValue>
@@ -250,7 +275,9 @@ class Converter {
   }
 
   void addUpper(std::int64_t place, const Coord& origin) {
+    budget_.take(sizeof(OpenUpper));
     forCells<Upper>(place, origin, 2, [&](std::int64_t lower, const Coord& corner) {
+      budget_.take(sizeof(OpenLower));
       forCells<Lower>(lower, corner, 1, [&](std::int64_t leaf, const Coord& leafCorner) {
         addLeaf(leaf, leafCorner);
       });
@@ -261,6 +288,7 @@ class Converter {
     const auto& data = *visit<Leaf>(place)->data();
     // Of those with bits of a width of their own, the values lie behind.
     requireInside(place, data.memUsage());
+    budget_.take(sizeof(OpenLeaf) + OpenLeaf::SIZE * sizeof(Value));
     auto leaf = std::make_unique<OpenLeaf>(origin, grid_->background());
     for (openvdb::Index n = 0; n < OpenLeaf::SIZE; ++n) {
       leaf->setValueOnly(n, valueOf(data.getValue(n)));
@@ -271,34 +299,36 @@ class Converter {
 
   const char* begin_;
   std::uint64_t size_;
+  Budget& budget_;
   const Fail& fail_;
   std::uint64_t visited_ = 0;
   typename GridT::Ptr grid_;
 };
 
-GridBase::Ptr convert(const Buffer& buffer, const std::string& name, const Fail& fail) {
+GridBase::Ptr convert(const Buffer& buffer, const std::string& name, Budget& budget,
+                      const Fail& fail) {
   using nanovdb::GridType;
   nanovdb::GridData head;
   std::memcpy(static_cast<void*>(&head), buffer.bytes.get(), sizeof head);
   switch (head.mGridType) {
     case GridType::Float:
-      return Converter<float, openvdb::FloatGrid>(buffer, fail).convert();
+      return Converter<float, openvdb::FloatGrid>(buffer, budget, fail).convert();
     case GridType::Double:
-      return Converter<double, openvdb::DoubleGrid>(buffer, fail).convert();
+      return Converter<double, openvdb::DoubleGrid>(buffer, budget, fail).convert();
     case GridType::Fp4:
-      return Converter<nanovdb::Fp4, openvdb::FloatGrid>(buffer, fail).convert();
+      return Converter<nanovdb::Fp4, openvdb::FloatGrid>(buffer, budget, fail).convert();
     case GridType::Fp8:
-      return Converter<nanovdb::Fp8, openvdb::FloatGrid>(buffer, fail).convert();
+      return Converter<nanovdb::Fp8, openvdb::FloatGrid>(buffer, budget, fail).convert();
     case GridType::Fp16:
-      return Converter<nanovdb::Fp16, openvdb::FloatGrid>(buffer, fail).convert();
+      return Converter<nanovdb::Fp16, openvdb::FloatGrid>(buffer, budget, fail).convert();
     case GridType::FpN:
-      return Converter<nanovdb::FpN, openvdb::FloatGrid>(buffer, fail).convert();
+      return Converter<nanovdb::FpN, openvdb::FloatGrid>(buffer, budget, fail).convert();
     case GridType::Vec3f:
-      return Converter<nanovdb::Vec3f, openvdb::Vec3SGrid>(buffer, fail).convert();
+      return Converter<nanovdb::Vec3f, openvdb::Vec3SGrid>(buffer, budget, fail).convert();
     case GridType::Int32:
-      return Converter<std::int32_t, openvdb::Int32Grid>(buffer, fail).convert();
+      return Converter<std::int32_t, openvdb::Int32Grid>(buffer, budget, fail).convert();
     case GridType::Int64:
-      return Converter<std::int64_t, openvdb::Int64Grid>(buffer, fail).convert();
+      return Converter<std::int64_t, openvdb::Int64Grid>(buffer, budget, fail).convert();
     default:
       break;
   }
@@ -309,7 +339,8 @@ GridBase::Ptr convert(const Buffer& buffer, const std::string& name, const Fail&
   return nullptr;
 }
 
-void readSegment(Taker& taker, std::vector<GridBase::Ptr>& grids, const Fail& fail) {
+void readSegment(Taker& taker, std::vector<GridBase::Ptr>& grids, Budget& budget,
+                 const Fail& fail) {
   const auto head = taker.record<SegmentHead>("the header");
   if (head.magic != NANOVDB_MAGIC_NUMBER) fail("a segment is damaged: it does not begin as one");
   const std::uint32_t major = head.version >> 21U;
@@ -325,8 +356,8 @@ void readSegment(Taker& taker, std::vector<GridBase::Ptr>& grids, const Fail& fa
     names.push_back(name.substr(0, name.find('\0')));
   }
   for (std::size_t n = 0; n < metas.size(); ++n) {
-    const Buffer buffer = unpack(taker, metas[n], head.codec, fail);
-    grids.push_back(convert(buffer, names[n], fail));
+    const Buffer buffer = unpack(taker, metas[n], head.codec, budget, fail);
+    grids.push_back(convert(buffer, names[n], budget, fail));
     grids.back()->setName(names[n]);
   }
 }
@@ -338,7 +369,8 @@ bool hasNanoVdb() { return true; }
 std::vector<GridBase::Ptr> readNanoVdb(std::string_view bytes, const Fail& fail) {
   std::vector<GridBase::Ptr> grids;
   Taker taker(bytes, fail);
-  while (!taker.empty()) readSegment(taker, grids, fail);
+  Budget budget(bytes.size(), fail);
+  while (!taker.empty()) readSegment(taker, grids, budget, fail);
   return grids;
 }
 

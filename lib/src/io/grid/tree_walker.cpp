@@ -36,6 +36,9 @@ bool addLayout(const openvdb::GridBase& grid, std::optional<TreeLayout>& layout,
   return true;
 }
 
+/// More than any deflate makes of values, be they noise.
+constexpr std::uint64_t mostDeflated(std::uint64_t bytes) { return bytes + bytes / 8 + 64; }
+
 }  // namespace
 
 std::optional<TreeLayout> layoutOf(const openvdb::GridBase& grid) {
@@ -247,6 +250,10 @@ void TreeWalker::walkChunk(std::uint64_t bytes, std::uint32_t compression) {
     if (chunkBytes < sizeof head) throw DamagedGrid("a chunk of Blosc is too short for its head");
     bytes_.look(head.data(), sizeof head);
     requireSoundBloscChunk(head, chunkBytes, bytes);
+  } else if (chunkBytes > mostDeflated(bytes)) {
+    // OpenVDB takes what it has room for, and leaves the rest.
+    throw DamagedGrid("a compressed buffer of " + std::to_string(chunkBytes) +
+                      " bytes holds more than its " + std::to_string(bytes) + " bytes of values");
   }
   bytes_.skip(chunkBytes);
 }

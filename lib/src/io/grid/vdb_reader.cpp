@@ -139,6 +139,22 @@ void VdbReader::readHead() {
       readSequentially(entries_.size() - 1);
     }
   }
+  if (inputHasGridOffsets()) requireApart();
+}
+
+/// Many that share their bytes would make the work of many files from one.
+void VdbReader::requireApart() const {
+  std::vector<std::pair<std::int64_t, std::int64_t>> stretches;
+  for (const Entry& entry : entries_) {
+    stretches.emplace_back(entry.descriptor.getGridPos(), entry.descriptor.getEndPos());
+  }
+  std::sort(stretches.begin(), stretches.end());
+  for (std::size_t n = 1; n < stretches.size(); ++n) {
+    const auto& [begin, end] = stretches[n - 1];
+    if (stretches[n].first < std::max(end, begin + 1)) {
+      fail("two of its grids lie at byte " + std::to_string(stretches[n].first) + ": damaged");
+    }
+  }
 }
 
 void VdbReader::readSequentially(std::size_t index) {

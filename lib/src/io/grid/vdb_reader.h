@@ -55,6 +55,7 @@ class VdbReader : private openvdb::io::Archive {
   void readHead();
   void readSequentially(std::size_t index);
   void requireInside(const openvdb::io::GridDescriptor& descriptor) const;
+  void requireApart() const;
 
   // OpenVDB makes room for whatever length or count a file claims, and reads over the end of room
   // that is too small. These look ahead, fail where what is claimed cannot be so, and leave the
