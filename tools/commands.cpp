@@ -57,12 +57,8 @@ void addHelpCommand(CLI::App& app, Command& chosen) {
   const auto name = std::make_shared<std::string>();
   CLI::App* const help = app.add_subcommand("help", "Print the options of a subcommand");
   help->add_option("SUBCOMMAND", *name, "which one; none: all of them in short");
-  help->callback([&app, &chosen, name] {
-    chosen = [&app, name] {
-      print(helpOf(app, *name));
-      return kDone;
-    };
-  });
+  help->callback(
+      [&app, &chosen, name] { chosen = [&app, name] { return printHelp(helpOf(app, *name)); }; });
 }
 
 CLI::Validator above0() {

@@ -41,7 +41,8 @@ void addThreadsOption(CLI::App& app, int& threads);
 
 /// Exit codes of the command.
 inline constexpr int kDone = 0;
-inline constexpr int kPromiseBroken = 1;  ///< the mesh is not what it should be
+inline constexpr int kPromiseBroken = 1;   ///< the mesh is not what it should be
+inline constexpr int kHelpNotPrinted = 1;  ///< standard output is full or closed
 inline constexpr int kWrongUsage = 2;
 inline constexpr int kUnusableFile =
     3;                                  ///< input that cannot be used or output that cannot be made

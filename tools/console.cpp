@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/printable.h"
+#include "commands.h"
 
 namespace tufa::tools {
 namespace {
@@ -45,6 +46,16 @@ void print(const std::string& text) {
   throw Error(ErrorCode::UnwritableFile, std::string("cannot write standard ") +
                                              (printsToStandardError ? "error: " : "output: ") +
                                              std::strerror(errno));
+}
+
+int printHelp(const std::string& text) {
+  try {
+    print(text);
+    return kDone;
+  } catch (const Error& error) {
+    printNote(error.what());
+    return kHelpNotPrinted;
+  }
 }
 
 void printToStandardError() { printsToStandardError = true; }

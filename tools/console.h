@@ -16,6 +16,10 @@ void installSignalHandlers();
 /// Writes to standard output. Throws Error(UnwritableFile) if it is full or closed.
 void print(const std::string& text);
 
+/// Prints a help text or the version. Returns the exit code: 1, after a note, if standard output is
+/// full or closed, as programs do whose only work is that text.
+[[nodiscard]] int printHelp(const std::string& text);
+
 /// From now on print() writes to standard error: standard output is for data.
 void printToStandardError();
 

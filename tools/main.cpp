@@ -69,9 +69,8 @@ int main(int argc, char** argv) {
     // Not by CLI11, which does not notice a full disk.
     const auto show = [&] {
       std::ostringstream text;
-      const int exitCode = app.exit(help, text, text);
-      print(text.str());
-      return exitCode;
+      (void)app.exit(help, text, text);
+      return printHelp(text.str());
     };
     return runGuarded(show, failures);
   } catch (const CLI::ParseError& error) {
