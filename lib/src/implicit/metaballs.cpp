@@ -14,14 +14,16 @@ namespace {
 
 /// A kernel as a function of q = s².
 struct Kernel {
+  static constexpr double kLeast = 1e-9;  ///< of Blinn's: all below it is 0
   BallKernel kind;
   double blobbiness;
 
   /// Where it ends: in radii.
   [[nodiscard]] double reach() const {
-    constexpr double kLeast = 1e-9;
     return kind == BallKernel::Blinn ? std::sqrt(-std::log(kLeast) / blobbiness) : 1;
   }
+  /// What it falls to 0 from, there.
+  [[nodiscard]] double last() const { return kind == BallKernel::Blinn ? kLeast * 1.000001 : 0; }
   [[nodiscard]] double density(double q) const {
     switch (kind) {
       case BallKernel::Blinn:
@@ -125,6 +127,7 @@ class Metaballs final : public Field {
   [[nodiscard]] Interval bound(const Box& box) const override {
     Interval sum{0, 0};
     double steepest = 0;
+    double steps = 0;
     forNear(box, [&](const Metaball& ball) {
       const Interval s = distancesTo(ball.centre, box) / ball.radius;
       if (s.least >= kernel_.reach()) return;
@@ -133,8 +136,11 @@ class Metaballs final : public Field {
       const double near = kernel_.density(square(std::max(s.least, 0.0))) * (1 + 1e-12);
       sum = sum + ball.weight * Interval{far, near};
       steepest += steepnessOf(ball, s);
+      // Blinn's kernel does not quite end at 0.
+      if (s.greatest >= kernel_.reach()) steps += std::abs(ball.weight) * kernel_.last();
     });
-    return both(threshold_ - sum, aroundCentre(value(centreOf(box)), steepest, box));
+    return both(threshold_ - sum,
+                aroundCentre(value(centreOf(box)), steepest, box) + Interval{-steps, steps});
   }
 
   [[nodiscard]] double lipschitz(const Box& box) const override {

@@ -102,11 +102,11 @@ void expectBoundsHold(const Field& field, const Box& box, int samples, Places& p
   }
 }
 
-/// A million samples in all.
+/// A million samples of each field.
 TEST(Fields, BoundsHoldAllSamples) {
   for (const auto& [name, field] : allFields()) {
     Places places;
-    for (int n = 0; n < 400; ++n) {
+    for (int n = 0; n < 17000; ++n) {
       ASSERT_NO_FATAL_FAILURE(expectBoundsHold(*field, places.box(), 60, places, name));
     }
   }

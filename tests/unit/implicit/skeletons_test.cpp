@@ -208,6 +208,19 @@ TEST(Metaballs, AreTheSumOfAllBalls) {
   }
 }
 
+TEST(Metaballs, BoundsHoldWhereBlinnsKernelEnds) {
+  const auto ball = makeMetaballs({{{0, 0, 0}, 1, -3}}, {BallKernel::Blinn, 0.4, 4});
+  const double end = std::sqrt(-std::log(1e-9) / 4);
+  const implicit::Box box{{end - 1e-6, 0, 0}, {end + 2e-6, 1e-9, 1e-9}};
+  const implicit::Interval bound = ball->bound(box);
+  for (const double x : {end - 1e-6, end - 1e-9, end + 1e-9}) {
+    const double value = ball->value({x, 0, 0});
+    EXPECT_GE(value, bound.least);
+    EXPECT_LE(value, bound.greatest);
+  }
+  EXPECT_LT(bound.greatest - bound.least, 2e-8);
+}
+
 TEST(Metaballs, HaveTheKernelsOfTheirAuthors) {
   for (const BallKernel kernel : {BallKernel::Blinn, BallKernel::Nishimura, BallKernel::Wyvill}) {
     const auto field = makeMetaballs({{{0, 0, 0}, 2, 1}}, {kernel, 0.5, 4});
