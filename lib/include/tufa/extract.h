@@ -57,7 +57,7 @@ struct ExtractOptions {
   /// Vertices that are off the surface are moved onto it first, but for those on creases, which
   /// stay with the edges at them: the trilinear surface rounds creases off. Gives triangles alone;
   /// ContourReport::refinement tells what was reached. A mesh of Method::Dual has no certificate
-  /// then, and triangles may intersect, though none is turned over.
+  /// then, and triangles may intersect, though moves that would fold the mesh are refused.
   double refine = 0;
 };
 

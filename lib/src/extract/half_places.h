@@ -31,31 +31,32 @@ struct PointsAround {
 };
 
 /// The mean of the samples around a half place of a cell, always summed in the same order.
-inline float valueAt(const grid::BlockSamples& samples, int cell, const PointsAround& around) {
-  const float share = 1 / static_cast<float>(around.count);
+template <PointsAround kAround>
+float valueAt(const grid::BlockSamples& samples, int cell) {
+  constexpr float kShare = 1 / static_cast<float>(kAround.count);
   float sum = 0;
-  for (int i = 0; i < around.count; ++i) sum += share * samples[cell + around.steps[i]];
+  for (int i = 0; i < kAround.count; ++i) sum += kShare * samples[cell + kAround.steps[i]];
   return sum;
 }
 
 /// The gradient at a half place: the mean of differences across it on the axes where it is between
 /// lattice points, of central differences on the others.
-inline uniform::Vector gradientAt(const grid::BlockSamples& samples, int cell,
-                                  const PointsAround& around) {
+template <PointsAround kAround>
+uniform::Vector gradientAt(const grid::BlockSamples& samples, int cell) {
   uniform::Vector gradient{};
   for (int axis = 0; axis < 3; ++axis) {
     const int stride = grid::BlockSamples::stride(axis);
-    const int upper = around.upperBit[axis];
+    const int upper = kAround.upperBit[axis];
     float sum = 0;
-    for (int i = 0; i < around.count; ++i) {
-      const int at = cell + around.steps[i];
+    for (int i = 0; i < kAround.count; ++i) {
+      const int at = cell + kAround.steps[i];
       if (upper == 0) {
         sum += samples[at + stride] - samples[at - stride];
       } else {
         sum += (i & upper) != 0 ? 2 * samples[at] : -2 * samples[at];
       }
     }
-    gradient[axis] = sum / static_cast<float>(2 * around.count);
+    gradient[axis] = sum / static_cast<float>(2 * kAround.count);
     if (upper != 0) gradient[axis] *= 2;
   }
   return gradient;
@@ -74,8 +75,8 @@ class EdgePlacer {
   void place(const Coord& origin, const std::array<int, 3>& cell, std::size_t vertex,
              Mesh& mesh) const {
     const int lowest = grid::BlockSamples::index(cell[0], cell[1], cell[2]);
-    const float a = valueAt(samples_, lowest, kFrom);
-    const float b = valueAt(samples_, lowest, kTo);
+    const float a = valueAt<kFrom>(samples_, lowest);
+    const float b = valueAt<kTo>(samples_, lowest);
     using Finder = uniform::CrossingFinder;
     const float along = Finder::keptOffEnds(Finder::linearRoot(a, b));
     std::array<double, 3> at;
@@ -85,8 +86,8 @@ class EdgePlacer {
     }
     mesh.positions[vertex] = volume_.affine.position(origin, at[0], at[1], at[2]);
     if (mesh.normals.empty()) return;
-    const uniform::Vector ga = gradientAt(samples_, lowest, kFrom);
-    const uniform::Vector gb = gradientAt(samples_, lowest, kTo);
+    const uniform::Vector ga = gradientAt<kFrom>(samples_, lowest);
+    const uniform::Vector gb = gradientAt<kTo>(samples_, lowest);
     uniform::Vector g;
     for (int i = 0; i < 3; ++i) g[i] = ga[i] + along * (gb[i] - ga[i]);
     mesh.normals[vertex] = volume_.affine.normal(g[0], g[1], g[2]);

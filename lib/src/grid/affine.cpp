@@ -33,16 +33,6 @@ Affine::Affine(const Transform& transform, const Coord& origin) : origin_(origin
   mirrored_ = linear.det() < 0;
 }
 
-Normal Affine::normal(float gx, float gy, float gz) const {
-  const float x = normals_[0][0] * gx + normals_[0][1] * gy + normals_[0][2] * gz;
-  const float y = normals_[1][0] * gx + normals_[1][1] * gy + normals_[1][2] * gz;
-  const float z = normals_[2][0] * gx + normals_[2][1] * gy + normals_[2][2] * gz;
-  const float squared = x * x + y * y + z * z;
-  if (squared == 0) return {0, 0, 0};
-  const float scale = 1 / std::sqrt(squared);
-  return {x * scale, y * scale, z * scale};
-}
-
 double Affine::leastHeight() const {
   const double volume = std::abs(axis(0).dot(axis(1).cross(axis(2))));
   double largestFace = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <cmath>
 #include <cstdint>
 
 #include "base/vec3.h"
@@ -53,7 +54,15 @@ class Affine {
   }
   [[nodiscard]] const Coord& origin() const { return origin_; }
   /// World unit normal of an index-space gradient: by the inverse transpose.
-  [[nodiscard]] Normal normal(float gx, float gy, float gz) const;
+  [[nodiscard]] Normal normal(float gx, float gy, float gz) const {
+    const float x = normals_[0][0] * gx + normals_[0][1] * gy + normals_[0][2] * gz;
+    const float y = normals_[1][0] * gx + normals_[1][1] * gy + normals_[1][2] * gz;
+    const float z = normals_[2][0] * gx + normals_[2][1] * gy + normals_[2][2] * gz;
+    const float squared = x * x + y * y + z * z;
+    if (squared == 0) return {0, 0, 0};
+    const float scale = 1 / std::sqrt(squared);
+    return {x * scale, y * scale, z * scale};
+  }
   /// World unit normal of a covector of index space, such as a sum of planeInLattice().
   [[nodiscard]] Normal normalOfPlane(const Vec3& g) const {
     return normal(static_cast<float>(g[0]), static_cast<float>(g[1]), static_cast<float>(g[2]));
