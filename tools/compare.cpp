@@ -146,8 +146,9 @@ void addCompareCommand(CLI::App& app, Command& chosen) {
                    "of dual and octree-mc, in voxels, or with the suffix w in world units")
       ->capture_default_str();
   compare
-      ->add_option("--sharp-angle", arguments->options.extract.sharpAngle,
-                   "of emc and cms: normals in a cell that differ by more, in degrees, mean a crease")
+      ->add_option(
+          "--sharp-angle", arguments->options.extract.sharpAngle,
+          "of emc and cms: normals in a cell that differ by more, in degrees, mean a crease")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   addContourOptions(*compare, arguments->options.extract.contour, arguments->isovalue);
