@@ -9,8 +9,10 @@
 #include <cstddef>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include "commands.h"
+#include "memory_reserve.h"
 
 namespace tufa::tools {
 namespace {
@@ -25,6 +27,11 @@ int standardError = STDERR_FILENO;
 alignas(16) std::array<char, std::size_t{64} << 10> handlerStack;
 
 void refuse(int /*signal*/) {
+  constexpr std::string_view kOutOfMemory = "tufa: out of memory\n";
+  // Blosc does not look whether it was given the memory that it asked for.
+  if (isMemoryAtItsEnd()) {
+    messageBytes = kOutOfMemory.copy(message.data(), message.size());
+  }
   // If that fails, nothing more can be done.
   [[maybe_unused]] const ssize_t written = ::write(standardError, message.data(), messageBytes);
   ::_exit(kUnusableFile);

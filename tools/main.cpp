@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "console.h"
 #include "failure.h"
+#include "memory_reserve.h"
 #include "usage.h"
 
 namespace {
@@ -37,6 +38,10 @@ struct Failures {
 
 /// Runs the subcommand; every error becomes one line and an exit code.
 int runGuarded(const Command& command, const Failures& failures) {
+  const auto tellOutOfMemory = [&] {
+    failures.tell("out_of_memory", "out of memory");
+    return kUnusableFile;
+  };
   try {
     return command();
   } catch (const tufa::Error& error) {
@@ -45,9 +50,10 @@ int runGuarded(const Command& command, const Failures& failures) {
     if (error.code() == tufa::ErrorCode::UnreadableFile) endAtOnce(exitCodeOf(error));
     return exitCodeOf(error);
   } catch (const std::bad_alloc&) {
-    failures.tell("out_of_memory", "out of memory");
-    return kUnusableFile;
+    return tellOutOfMemory();
   } catch (const std::exception& error) {
+    // TBB throws other errors where there is no room for a thread.
+    if (isMemoryAtItsEnd()) return tellOutOfMemory();
     failures.tell("internal_error", error.what());
     return kUnusableFile;
   }
@@ -57,6 +63,7 @@ int runGuarded(const Command& command, const Failures& failures) {
 
 int main(int argc, char** argv) {
   installSignalHandlers();
+  keepMemoryInReserve();
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   // Also where the command line cannot be read otherwise.
   const Failures failures{std::find(words.begin(), words.end(), "--json") != words.end()};

@@ -1,0 +1,14 @@
+#pragma once
+
+namespace tufa::tools {
+
+/// Where memory ends, an exception is to become one line and exit code 3. What it passes on its way
+/// takes memory too: OpenVDB and TBB free trees in parallel, in destructors that may not fail. So
+/// some megabytes are kept back until the first allocation fails. Should that not be enough, the
+/// program says that it is out of memory and ends, where it would be aborted.
+void keepMemoryInReserve();
+
+/// Whether there is no room for a thread's stack. Safe in a signal handler.
+[[nodiscard]] bool isMemoryAtItsEnd();
+
+}  // namespace tufa::tools
