@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "commands.h"
@@ -52,8 +53,10 @@ int runGuarded(const Command& command, const Failures& failures) {
   } catch (const std::bad_alloc&) {
     return tellOutOfMemory();
   } catch (const std::exception& error) {
-    // TBB throws other errors where there is no room for a thread.
-    if (isMemoryAtItsEnd()) return tellOutOfMemory();
+    // TBB's words where the system has no room for another thread.
+    if (std::string_view(error.what()).starts_with("pthread_create has failed")) {
+      return tellOutOfMemory();
+    }
     failures.tell("internal_error", error.what());
     return kUnusableFile;
   }

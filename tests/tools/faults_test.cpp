@@ -66,6 +66,24 @@ TEST_F(Faults, TellOfTooLittleMemory) {
   EXPECT_GE(failures, 3);
 }
 
+/// Where Blosc crashes, TBB cannot start a thread or OpenVDB cannot free a tree, the file is not to
+/// blame.
+TEST_F(Faults, BlameNoFileForTooLittleMemory) {
+  if (sanitized()) GTEST_SKIP() << "a sanitizer needs more addresses than any limit leaves";
+  ASSERT_EQ(run("make sphere --voxel 0.004 -o s.vdb").exitCode, 0);
+  int failures = 0;
+  for (int megabytes = 150; megabytes <= 270; megabytes += 8) {
+    const std::string limit = "ulimit -v " + std::to_string(megabytes * 1024) + "; ";
+    const Outcome outcome = run("mesh s.vdb --uniform --quiet -o m.ply --threads 2", "", limit);
+    if (outcome.exitCode == 0) break;
+    ++failures;
+    EXPECT_EQ(outcome.exitCode, 3) << limit << outcome.err;
+    EXPECT_EQ(outcome.err, "tufa: out of memory\n") << limit;
+    EXPECT_EQ(folder.fileCount(), 1) << limit;
+  }
+  EXPECT_GE(failures, 5);
+}
+
 TEST_F(Faults, TellOfFilesThatGrowTooLarge) {
   makeSphere();
   const Outcome outcome = run("mesh s.vdb --uniform --quiet -o m.ply", "", "ulimit -f 16; ");
