@@ -193,6 +193,8 @@ struct LevelSum {
   std::size_t pairsLeft = 0;
   double maxErrorVoxels = 0;
   double transitionErrorVoxels = 0;
+  double smallestAngle = 180;  ///< degrees
+  std::size_t trianglesUnderMinAngle = 0;
 };
 
 LevelSum sumOf(const ChunkIndex& index, std::size_t level) {
@@ -204,6 +206,8 @@ LevelSum sumOf(const ChunkIndex& index, std::size_t level) {
     sum.transition += entry.transitionTriangles;
     sum.pairsLeft += entry.intersectionsLeft;
     sum.maxErrorVoxels = std::max(sum.maxErrorVoxels, entry.maxErrorVoxels);
+    sum.smallestAngle = std::min(sum.smallestAngle, entry.smallestAngle);
+    sum.trianglesUnderMinAngle += entry.trianglesUnderMinAngle;
     sum.transitionErrorVoxels = std::max(sum.transitionErrorVoxels, entry.transitionErrorVoxels);
   }
   return sum;
@@ -235,6 +239,8 @@ Json runToJson(const ChunksRun& run, const ChunksArguments& arguments) {
           {{"interior", sum.interior}, {"regular", sum.regular}, {"transition", sum.transition}}},
          {"max_error_voxels", sum.maxErrorVoxels},
          {"transition_error_voxels", sum.transitionErrorVoxels},
+         {"smallest_angle_degrees", sum.smallestAngle},
+         {"triangles_under_min_angle", sum.trianglesUnderMinAngle},
          {"pairs_left", sum.pairsLeft}});
   }
   json["seconds"] = {{"read", run.readSeconds},
@@ -261,7 +267,12 @@ std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
     text += "level " + std::to_string(level) + ": " + formatCount(sum.interior + sum.regular) +
             " triangles, of which " + formatCount(sum.regular) + " in strips, and " +
             formatCount(sum.transition) + " in strips to coarser chunks; within " +
-            shortNumber(sum.maxErrorVoxels) + " voxels\n";
+            shortNumber(sum.maxErrorVoxels) + " voxels";
+    if (const double asked = arguments.chunks.contour.minAngle; asked > 0) {
+      text += "; " + describeAngles(sum.smallestAngle, sum.trianglesUnderMinAngle,
+                                    sum.interior + sum.regular, asked);
+    }
+    text += "\n";
   }
   std::size_t files = 1;  // chunks.json
   for (const ChunkEntry& chunk : run.index.chunks) {
@@ -296,10 +307,11 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
   }
   const std::vector<const char*> others =
       assembling
-          ? std::vector<const char*>{"--grid",     "--chunk",     "--levels",   "--tolerance",
-                                     "--factor",   "--format",    "--only",     "--iso",
-                                     "--crease",   "--up",        "--scale",    "--quantize",
-                                     "--compress", "--attribute", "--velocity", "--shutter"}
+          ? std::vector<const char*>{"--grid",      "--chunk",    "--levels",    "--tolerance",
+                                     "--min-angle", "--factor",   "--format",    "--only",
+                                     "--iso",       "--crease",   "--up",        "--scale",
+                                     "--quantize",  "--compress", "--attribute", "--velocity",
+                                     "--shutter"}
           : std::vector<const char*>{"--lods", "--pixel-error", "--check"};
   for (const char* option : others) {
     if (command.count(option) == 0) continue;

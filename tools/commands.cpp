@@ -129,6 +129,11 @@ void addContourOptions(CLI::App& app, ContourOptions& options,
   app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
   app.add_flag("--simplify,!--no-simplify", options.simplify,
                "collapse edges of an adaptive mesh as far as the tolerance allows (default)");
+  app.add_option("--min-angle", options.minAngle,
+                 "angle that triangles are to keep, in degrees up to 30, for more triangles; what "
+                 "is left below is told; 0: none asked for")
+      ->check(CLI::Range(0.0, 30.0))
+      ->capture_default_str();
   app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
   app.add_option("--tile-faces", options.tileFaces,
                  "most faces of voxels on the surface between tiles; more take gigabytes")

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <tufa/error.h>
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -89,6 +90,18 @@ std::string shortNumber(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
   return text.data();
+}
+
+std::string formatShare(std::size_t part, std::size_t whole) {
+  const double share =
+      static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
+  return shortNumber(100 * share) + "%";
+}
+
+std::string describeAngles(double smallest, std::size_t below, std::size_t triangles,
+                           double asked) {
+  return "smallest angle " + shortNumber(smallest) + " degrees; " + formatShare(below, triangles) +
+         " of the triangles are under " + shortNumber(asked);
 }
 
 std::uint64_t peakMemoryBytes() {

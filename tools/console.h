@@ -42,6 +42,13 @@ void printNote(const std::string& text);
 /// A number in at most three significant digits, for tables.
 [[nodiscard]] std::string shortNumber(double value);
 
+/// A share in percent; 0% for nothing of nothing.
+[[nodiscard]] std::string formatShare(std::size_t part, std::size_t whole);
+
+/// What came of --min-angle: "smallest angle 1.2 degrees; 0.4% of the triangles are under 20".
+[[nodiscard]] std::string describeAngles(double smallest, std::size_t below, std::size_t triangles,
+                                         double asked);
+
 /// The most memory that the process ever held, in bytes.
 [[nodiscard]] std::uint64_t peakMemoryBytes();
 

@@ -35,7 +35,8 @@ Json levelToJson(const LodRun& run, std::size_t level) {
   json["mean_error_voxels"] = lod.certificate.meanErrorVoxels;
   json["max_error_world"] = lod.certificate.maxErrorWorld;
   json["euler_characteristic"] = lod.certificate.eulerCharacteristic;
-  json["smallest_angle_degrees"] = run.smallestAngles[level];
+  json["smallest_angle_degrees"] = lod.certificate.smallestAngle;
+  json["triangles_under_min_angle"] = lod.certificate.trianglesUnderMinAngle;
   json["screen_coverage"] = lod.screenCoverage;
   json["pairs_left"] = lod.intersectionsLeft;
   if (run.dropping) json["dropped"] = droppedToJson(lod);
@@ -74,10 +75,11 @@ Json toJson(const LodRun& run, const LodArguments& arguments) {
   return json;
 }
 
-std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
+std::vector<std::vector<std::string>> tableOf(const LodRun& run, double minAngle) {
   std::vector<std::vector<std::string>> rows = {{"level", "triangles", "error (voxels)",
                                                  "error (world)", "smallest angle", "coverage",
                                                  "seconds"}};
+  if (minAngle > 0) rows[0].push_back("under " + shortNumber(minAngle) + " degrees");
   if (run.dropping) rows[0].push_back("dropped");
   if (!run.checks.empty()) rows[0].push_back("watertight");
   for (std::size_t level = 0; level < run.chain.levels.size(); ++level) {
@@ -85,8 +87,12 @@ std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
     rows.push_back({std::to_string(level), formatCount(lod.mesh.triangleCount()),
                     shortNumber(lod.certificate.maxErrorVoxels),
                     shortNumber(lod.certificate.maxErrorWorld),
-                    shortNumber(run.smallestAngles[level]), shortNumber(lod.screenCoverage),
+                    shortNumber(lod.certificate.smallestAngle), shortNumber(lod.screenCoverage),
                     shortNumber(lod.seconds)});
+    if (minAngle > 0) {
+      rows.back().push_back(
+          formatShare(lod.certificate.trianglesUnderMinAngle, lod.mesh.triangleCount()));
+    }
     if (run.dropping) rows.back().push_back(formatCount(lod.dropped.size()));
     if (!run.checks.empty()) rows.back().push_back(run.checks[level].watertight() ? "yes" : "no");
   }
@@ -96,7 +102,8 @@ std::vector<std::vector<std::string>> tableOf(const LodRun& run) {
 std::string describe(const LodRun& run, const LodArguments& arguments) {
   std::string text = shownGrid(run.gridName) + ": " + formatCount(run.contour.activeVoxels) +
                      " active voxels, isovalue " + formatNumber(run.contour.isovalue) + "\n" +
-                     tools::describe(run.filters) + layOut(tableOf(run));
+                     tools::describe(run.filters) +
+                     layOut(tableOf(run, arguments.lod.contour.minAngle));
   text += "read " + shortNumber(run.readSeconds) + " s, chain " + shortNumber(run.chainSeconds) +
           " s (of which all levels share " + shortNumber(run.chain.sharedSeconds) + " s)";
   if (!run.chain.levels.empty() && !run.chain.levels[0].mesh.attributes.empty()) {

@@ -2,11 +2,8 @@
 
 #include <tufa/error.h>
 #include <tufa/io.h>
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
-#include "base/vec3.h"
 #include "checker.h"
 #include "console.h"
 #include "lod_page.h"
@@ -17,22 +14,6 @@
 
 namespace tufa::tools {
 namespace {
-
-/// The smallest angle of all triangles, in degrees.
-double smallestAngle(const Mesh& mesh) {
-  constexpr double kDegrees = 180 / 3.14159265358979323846;
-  double smallest = 180;
-  for (const Triangle& t : triangulate(mesh)) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto point = [&](std::size_t k) {
-        return Vec3(mesh.positions[t.vertices[(i + k) % 3]]);
-      };
-      const Vec3 a = point(1) - point(0), b = point(2) - point(0);
-      smallest = std::min(smallest, kDegrees * std::atan2(a.cross(b).length(), a.dot(b)));
-    }
-  }
-  return smallest;
-}
 
 LodOptions chainOptions(const LodArguments& arguments, const ContourOptions& meshing,
                         const openvdb::GridBase& grid, ProgressBar& bar) {
@@ -85,7 +66,6 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
     });
   }
 
-  for (const Lod& lod : run.chain.levels) run.smallestAngles.push_back(smallestAngle(lod.mesh));
   if (arguments.check) {
     CheckOptions checkOptions;
     checkOptions.threads = options.contour.threads;
@@ -136,7 +116,7 @@ void writeReport(const LodRun& run, const LodArguments& arguments, ProgressBar& 
                  formatNumber(run.chain.voxelSize) +
                  " world units. Errors are distances to the uniform mesh of the grid.";
   if (!run.chain.stopped.empty()) page.summary += " Note: " + run.chain.stopped + ".";
-  page.rows = tableOf(run);
+  page.rows = tableOf(run, arguments.lod.contour.minAngle);
   page.headings = page.rows.front();
   page.rows.erase(page.rows.begin());
   page.yUp = arguments.writing.up == UpAxis::Y;

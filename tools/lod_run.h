@@ -43,8 +43,7 @@ struct LodRun {
   bool dropping = false;  ///< components may be left out
   ContourReport contour;
   LodWriteReport written;
-  std::vector<double> smallestAngles;  ///< degrees
-  std::vector<CheckReport> checks;     ///< empty, or one for each LOD
+  std::vector<CheckReport> checks;  ///< empty, or one for each LOD
   double readSeconds = 0;
   double chainSeconds = 0;
   double attributeSeconds = 0;
@@ -59,8 +58,9 @@ struct LodRun {
 /// What a run did, for programs.
 [[nodiscard]] nlohmann::ordered_json toJson(const LodRun& run, const LodArguments& arguments);
 
-/// The same for people: headings and one row for each LOD.
-[[nodiscard]] std::vector<std::vector<std::string>> tableOf(const LodRun& run);
+/// The same for people: headings and one row for each LOD. `minAngle`: the angle that was asked
+/// for, degrees.
+[[nodiscard]] std::vector<std::vector<std::string>> tableOf(const LodRun& run, double minAngle);
 
 /// The same as some lines of text, the last one about what was written.
 [[nodiscard]] std::string describe(const LodRun& run, const LodArguments& arguments);

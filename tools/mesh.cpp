@@ -42,7 +42,7 @@ int runMesh(const MeshArguments& arguments) {
   if (arguments.json) {
     print(toJson(run, arguments).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
-    print(describe(run));
+    print(describe(run, arguments.contour.minAngle));
   }
   return exitCode;
 }
@@ -121,7 +121,7 @@ void requireMeaning(const CLI::App& app, Method method) {
                 "--tolerance is for --method dual and octree-mc alone; leave it out");
   }
   for (const char* name : {"--max-angle", "--min-cell", "--max-cell", "--tolerance-grid",
-                           "--simplify", "--no-repair"}) {
+                           "--simplify", "--min-angle", "--no-repair"}) {
     if (app.get_option(name)->count() == 0) continue;
     throw Error(ErrorCode::InvalidArgument,
                 std::string(name) + " is for --method dual alone; leave it out");
@@ -192,6 +192,10 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
       }
       requireMeaning(*mesh, arguments->method);
       if (isSequence(*arguments, *sequence)) return runSequence(*arguments, *sequence);
+      if (arguments->contour.uniform && arguments->contour.minAngle > 0) {
+        throw Error(ErrorCode::InvalidArgument,
+                    "--min-angle means nothing to --uniform, which collapses no edges");
+      }
       requireSequence(*mesh, *arguments);
       return runMesh(*arguments);
     };

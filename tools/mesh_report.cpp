@@ -19,6 +19,8 @@ Json toJson(const Certificate& certificate) {
           {"mean_error_voxels", certificate.meanErrorVoxels},
           {"max_error_world", certificate.maxErrorWorld},
           {"euler_characteristic", certificate.eulerCharacteristic},
+          {"smallest_angle_degrees", certificate.smallestAngle},
+          {"triangles_under_min_angle", certificate.trianglesUnderMinAngle},
           {"leaf_levels", certificate.leafLevels},
           {"rounds", certificate.rounds}};
 }
@@ -110,7 +112,7 @@ std::string describeRefinement(const Refinement& refinement) {
   return text + "\n";
 }
 
-std::string describeGrid(const GridRun& run) {
+std::string describeGrid(const GridRun& run, double minAngle) {
   std::string text = shownGrid(run.grid) + ": " + formatCount(run.mesh.triangleCount()) +
                      " triangles (" + formatCount(run.mesh.quads.size()) + " quads), " +
                      formatCount(run.mesh.positions.size()) + " vertices from " +
@@ -122,7 +124,15 @@ std::string describeGrid(const GridRun& run) {
           (run.check ? ", check " + shortNumber(run.checkSeconds) + " s" : "") + "\n";
   if (!run.united.empty()) text += describeUnion(run);
   text += tools::describe(run.filters);
-  if (run.contour.certificate) text += describeCertificate(*run.contour.certificate);
+  if (run.contour.certificate) {
+    const Certificate& certificate = *run.contour.certificate;
+    text += describeCertificate(certificate);
+    if (minAngle > 0) {
+      text += describeAngles(certificate.smallestAngle, certificate.trianglesUnderMinAngle,
+                             run.mesh.triangleCount(), minAngle) +
+              "\n";
+    }
+  }
   if (run.contour.refinement) text += describeRefinement(*run.contour.refinement);
   if (!run.mesh.attributes.empty()) {
     text += "attributes: " + tools::describe(run.mesh.attributes) + ", sampled in " +
@@ -170,9 +180,9 @@ Json toJson(const MeshRun& run, const MeshArguments& arguments) {
   return json;
 }
 
-std::string describe(const MeshRun& run) {
+std::string describe(const MeshRun& run, double minAngle) {
   std::string text;
-  for (const GridRun& grid : run.grids) text += describeGrid(grid);
+  for (const GridRun& grid : run.grids) text += describeGrid(grid, minAngle);
   return text + describeWritten(filesOf(run), run.writeSeconds);
 }
 

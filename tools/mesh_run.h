@@ -83,7 +83,8 @@ void requireFeasible(const MeshArguments& arguments);
 /// What a run did, for programs: the keys of its grid, or a list of them if there are several.
 [[nodiscard]] nlohmann::ordered_json toJson(const MeshRun& run, const MeshArguments& arguments);
 
-/// The same for people: some lines of text, the last one about what was written.
-[[nodiscard]] std::string describe(const MeshRun& run);
+/// The same for people: some lines of text, the last one about what was written. `minAngle`: the
+/// angle that was asked for, degrees.
+[[nodiscard]] std::string describe(const MeshRun& run, double minAngle);
 
 }  // namespace tufa::tools

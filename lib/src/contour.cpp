@@ -53,7 +53,10 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
   }
   job.beginStage("finish", 1.0);
   const double moved = refine::finishMesh(model, options, extracted, report, job);
-  if (report.certificate) refine::widen(*report.certificate, moved, model.affine().voxelSize());
+  if (report.certificate) {
+    refine::widen(*report.certificate, moved, model.affine().voxelSize());
+    refine::setAngles(*report.certificate, extracted.mesh, options.minAngle);
+  }
   if (options.keepCells) {
     Mesh& mesh = extracted.mesh;
     mesh.cells = grid::cellsOf(mesh.positions, grid::transformOf(grid), job);

@@ -83,6 +83,43 @@ TEST_F(Command, LodGivesTheKeysOfItsReport) {
   }
 }
 
+/// The figures are those of the checker, and of the text.
+TEST_F(Command, TellsWhatCameOfAnAngle) {
+  ASSERT_EQ(run("make bracket --voxel 0.04 -o b.vdb").exitCode, 0);
+  const auto meshed = [&](const std::string& options) {
+    const Outcome outcome = run("mesh b.vdb -o b.ply --check --json" + options);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto any = meshed(""), kept = meshed(" --min-angle 10");
+  EXPECT_EQ(any["certificate"]["triangles_under_min_angle"], 0);
+  EXPECT_GT(any["check"]["share_under_10_degrees"], 0.02);
+  const double triangles = kept["triangles"],
+               under = kept["certificate"]["triangles_under_min_angle"];
+  EXPECT_NEAR(kept["check"]["share_under_10_degrees"].get<double>(), under / triangles, 1e-12);
+  EXPECT_LT(under / triangles, any["check"]["share_under_10_degrees"].get<double>() / 2);
+  EXPECT_EQ(kept["check"]["watertight"], true);
+  for (const auto& json : {any, kept}) {
+    EXPECT_NEAR(json["certificate"]["smallest_angle_degrees"].get<double>(),
+                json["check"]["smallest_angle_degrees"].get<double>(), 1e-9);
+    EXPECT_LE(json["certificate"]["max_error_voxels"], 0.1);
+  }
+  const Outcome told = run("mesh b.vdb -o b.ply --min-angle 20");
+  EXPECT_NE(told.out.find("of the triangles are under 20\n"), std::string::npos) << told.out;
+  const Outcome table = run("lod b.vdb -o b.glb --levels 2 --min-angle 20");
+  EXPECT_NE(table.out.find("under 20 degrees"), std::string::npos) << table.out;
+  const Outcome chunks = run("chunks b.vdb -o c --min-angle 20 --levels 2 --json");
+  ASSERT_EQ(chunks.exitCode, 0) << chunks.err;
+  for (const auto& level : nlohmann::json::parse(chunks.out)["levels"]) {
+    EXPECT_GT(level["triangles_under_min_angle"], 0);
+    EXPECT_GT(level["smallest_angle_degrees"], 0);
+  }
+  expectFailure("mesh b.vdb -o b.ply --min-angle 31", 2, "--min-angle");
+  expectFailure("mesh b.vdb -o b.ply --min-angle 20 --uniform", 2, "--uniform");
+  expectFailure("mesh b.vdb -o b.ply --min-angle 20 --max-cell 8", 2, "collapsing edges");
+  expectFailure("mesh b.vdb -o b.ply --min-angle 20 --method mc", 2, "--method dual alone");
+}
+
 TEST_F(Command, LodWritesOneFileOrMany) {
   makeSphere();
   const Outcome outcome = run("lod s.vdb -o s.glb --tolerances 0.1,0.05w --up z --scale 2");

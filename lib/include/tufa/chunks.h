@@ -89,6 +89,10 @@ struct ChunkLevelEntry {
   double maxErrorVoxels = 0;            ///< as ChunkLevel has it
   double transitionErrorVoxels = 0;     ///< as ChunkLevel has it
   std::size_t intersectionsLeft = 0;    ///< pairs of its triangles that intersect
+  /// Of the interior and regular strips, degrees, and the triangles with an angle below
+  /// ContourOptions::minAngle. Only buildChunks() knows them: chunks.json does not have them.
+  double smallestAngle = 0;
+  std::size_t trianglesUnderMinAngle = 0;
 };
 
 /// What is known of a chunk without its meshes.

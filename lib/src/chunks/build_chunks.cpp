@@ -12,6 +12,7 @@
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "base/run_call.h"
+#include "base/small_angles.h"
 #include "chunks/chain/chunk_chain.h"
 #include "chunks/chain/lattice.h"
 #include "chunks/chain/mixed_forms.h"
@@ -105,11 +106,16 @@ ChunkIndex describe(const grid::Volume& volume, const ChunkOptions& options) {
   return index;
 }
 
-ChunkLevelEntry entryOf(const ChunkLevel& level, std::size_t pairsLeft) {
+ChunkLevelEntry entryOf(const ChunkLevel& level, std::size_t pairsLeft, double minAngle) {
   ChunkLevelEntry out;
   out.vertices = level.positions.size();
   out.interiorTriangles = level.interior.size();
-  for (const auto& strip : level.regular) out.regularTriangles += strip.size();
+  base::SmallAngles angles;
+  angles.add(level.positions, level.interior, minAngle);
+  for (const auto& strip : level.regular) {
+    out.regularTriangles += strip.size();
+    angles.add(level.positions, strip, minAngle);
+  }
   for (const auto& strip : level.transition) out.transitionTriangles += strip.size();
   base::Box box = base::Box::empty();
   for (const Position& p : level.positions) box.add(p);
@@ -119,6 +125,8 @@ ChunkLevelEntry entryOf(const ChunkLevel& level, std::size_t pairsLeft) {
   out.maxErrorVoxels = level.maxErrorVoxels;
   out.transitionErrorVoxels = level.transitionErrorVoxels;
   out.intersectionsLeft = pairsLeft;
+  out.smallestAngle = angles.smallest;
+  out.trianglesUnderMinAngle = angles.below;
   return out;
 }
 
@@ -221,7 +229,7 @@ class ChunkBuilder {
       ChunkEntry entry;
       chunk.index = entry.index = cut.chunks[c];
       for (std::size_t i = 0; i < levels.size(); ++i) {
-        entry.levels.push_back(entryOf(levels[i][c], pairs[i][c]));
+        entry.levels.push_back(entryOf(levels[i][c], pairs[i][c], options_.contour.minAngle));
         report_.intersectionsLeft += pairs[i][c];
         chunk.levels.push_back(std::move(levels[i][c]));
       }

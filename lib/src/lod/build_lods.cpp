@@ -212,6 +212,7 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
     }
     const double moved = refine::finishMesh(model, contour, adaptive.extracted, report, job);
     refine::widen(lod.certificate, moved, chain.voxelSize);
+    refine::setAngles(lod.certificate, adaptive.extracted.mesh, contour.minAngle);
     lod.mesh = std::move(adaptive.extracted.mesh);
     if (contour.keepCells) {
       lod.mesh.cells = grid::cellsOf(lod.mesh.positions, grid::transformOf(grid), job);

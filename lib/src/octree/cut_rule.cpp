@@ -51,7 +51,14 @@ bool maySimplify(const ContourOptions& options) {
 CutRule readRule(const ContourOptions& options, const grid::Transform& transform) {
   requireTolerance(options.tolerance);
   requireRange(options.maxAngle, 0, 180, "the largest angle");
+  requireRange(options.minAngle, 0, kLargestMinAngle, "the least angle");
+  if (options.minAngle > 0 && !maySimplify(options)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "a least angle is kept by collapsing edges: not without simplifying, or with "
+                "bounds on angles or cells");
+  }
   CutRule rule;
+  rule.minAngle = options.minAngle;
   rule.tolerance = options.tolerance;
   rule.maxAngle =
       options.maxAngle >= 180 ? CutRule::kAnyAngle : options.maxAngle * std::numbers::pi / 180;

@@ -14,6 +14,7 @@ struct CutRule {
   double maxAngle = kAnyAngle;  ///< radians; bound on the angle between two normals of a cluster
   int minLevel = 0;             ///< cells up to this level need not keep the bounds above
   int maxLevel = 31;            ///< no cell above this level
+  double minAngle = 0;          ///< degrees; what triangles are to keep where edges are collapsed
   static constexpr double kAnyAngle = 4;
   /// Multiplies the tolerance at a lattice point; empty: 1 everywhere.
   std::function<double(const Vec3&)> scale;
@@ -26,6 +27,9 @@ struct CutRule {
 
 /// The largest tolerance that may be asked for, in voxels: beyond it, products overflow floats.
 inline constexpr double kLargestTolerance = 1e6;
+
+/// The largest ContourOptions::minAngle, degrees.
+inline constexpr double kLargestMinAngle = 30;
 
 /// Throws Error(InvalidArgument) unless the tolerance is from 0 to the largest.
 void requireTolerance(double tolerance);

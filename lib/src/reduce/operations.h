@@ -54,8 +54,9 @@ struct PhaseLimits {
   float errorShare = 1;      ///< edges whose rms plane distance is over this share are not tried
   float leastSine2 = 0.03f;  ///< squared sine of an angle under which a triangle is a sliver
   float sliverShare = 0;     ///< of a part's triangles that may become slivers nevertheless
-  float turnCosine = 0.5f;   ///< least cosine between a triangle's normal before and after
-  bool clusters = false;     ///< contracts clusters first
+  [[nodiscard]] bool keepsAngle() const { return sliverShare == 0; }
+  float turnCosine = 0.5f;  ///< least cosine between a triangle's normal before and after
+  bool clusters = false;    ///< contracts clusters first
   bool flips = true;
   int mostValence = 16;  ///< of a new star, unless it was higher
   LineMode lines = LineMode::Free;

@@ -40,7 +40,8 @@ Outcome Part::tryFlip(Index c) {
   if (hasLines_ && (isLineEdge(c) || !mayFlipAtLine(v))) return Outcome::Place;
   const Vec3f y = position_[v[0]], u = position_[v[1]], w = position_[v[2]], x = position_[v[3]];
   const float before = std::min(leastSine2(y, u, w), leastSine2(x, w, u));
-  if (before > kFlipSine2) return Outcome::Worthless;
+  const float aim = limits_.keepsAngle() ? std::max(kFlipSine2, limits_.leastSine2) : kFlipSine2;
+  if (before > aim) return Outcome::Worthless;
   const float after = std::min(leastSine2(y, u, x), leastSine2(x, w, y));
   if (!(after > kBetter * before + 1e-6f)) return Outcome::Worthless;
   const Vec3f n0 = cross(u - y, x - y), n1 = cross(w - x, y - x);

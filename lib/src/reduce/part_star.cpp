@@ -99,7 +99,8 @@ Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
     before = std::min(before, then);
     newSlivers_ -= then < limit;
   }
-  if (after >= std::min(limit, before) || !isOn(Outcome::Round)) return Outcome::Done;
+  if (after >= limit || !isOn(Outcome::Round)) return Outcome::Done;
+  if (after >= before && (newSlivers_ <= 0 || !limits_.keepsAngle())) return Outcome::Done;
   if (newSlivers_ < 0 && after >= kWorstSine2) return Outcome::Done;
   const bool isFew = static_cast<float>(sliverCount_ + newSlivers_) <=
                      limits_.sliverShare * static_cast<float>(alive_);

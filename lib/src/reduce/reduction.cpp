@@ -54,6 +54,14 @@ Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::
 
 }  // namespace
 
+Options optionsForAngle(double degrees) {
+  Options options;
+  if (!(degrees > 0)) return options;
+  options.leastAngle = static_cast<float>(degrees);
+  options.sliverShare = 0;
+  return options;
+}
+
 Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor,
                      std::vector<float> scales, Options options, base::Job& job)
     : options_(std::move(options)),

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/polygons.h"
+#include "base/small_angles.h"
 #include "refine/split_cells.h"
 #include "topology/misplaced.h"
 
@@ -144,6 +145,13 @@ Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLea
   if (keepLeaves) certificate.leaves = std::move(adaptive.leaves);
   certificate.rounds = adaptive.rounds;
   return certificate;
+}
+
+void setAngles(Certificate& certificate, const Mesh& mesh, double minAngle) {
+  base::SmallAngles angles;
+  angles.add(mesh.positions, triangulate(mesh), minAngle);
+  certificate.smallestAngle = angles.smallest;
+  certificate.trianglesUnderMinAngle = angles.below;
 }
 
 }  // namespace tufa::refine

@@ -39,6 +39,10 @@ struct AdaptiveMesh {
 /// they are to be kept.
 [[nodiscard]] Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves);
 
+/// Sets what a certificate tells of the angles of the finished mesh; `minAngle` as in
+/// ContourOptions.
+void setAngles(Certificate& certificate, const Mesh& mesh, double minAngle);
+
 /// Adds to a certificate what vertices have moved since, in voxels.
 void widen(Certificate& certificate, double moved, double voxelSize);
 

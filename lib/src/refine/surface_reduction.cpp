@@ -80,7 +80,7 @@ SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutR
     }
   });
   const reduce::MeshView view{positions, faces_};
-  reduce::Options options;
+  reduce::Options options = reduce::optionsForAngle(rule.minAngle);
   if (model.repairs()) {
     options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
   }

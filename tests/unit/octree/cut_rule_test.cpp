@@ -63,6 +63,18 @@ TEST(CutRule, RefusesOptionsOutOfTheirRangeByNameAndValue) {
   expectRefused("tolerance", [](ContourOptions& o) { o.tolerance = std::nan(""); });
   expectRefused("angle", [](ContourOptions& o) { o.maxAngle = 180.5; });
   expectRefused("angle", [](ContourOptions& o) { o.maxAngle = -1; });
+  expectRefused("least angle must be from 0 to 30, not 30.5",
+                [](ContourOptions& o) { o.minAngle = 30.5; });
+  expectRefused("least angle", [](ContourOptions& o) { o.minAngle = -1; });
+  expectRefused("least angle", [](ContourOptions& o) { o.minAngle = std::nan(""); });
+  for (const auto& excluded :
+       {+[](ContourOptions& o) { o.simplify = false; }, +[](ContourOptions& o) { o.maxAngle = 90; },
+        +[](ContourOptions& o) { o.maxCell = 8; }}) {
+    expectRefused("collapsing edges", [&](ContourOptions& o) {
+      excluded(o);
+      o.minAngle = 20;
+    });
+  }
   expectRefused("smallest cell size", [](ContourOptions& o) { o.minCell = 0; });
   expectRefused("not 6", [](ContourOptions& o) { o.minCell = 6; });
   expectRefused("largest cell size", [](ContourOptions& o) { o.maxCell = -8; });
@@ -76,6 +88,7 @@ TEST(CutRule, TakesTheEndsOfEachRange) {
   EXPECT_EQ(ruleOf([](ContourOptions& o) { o.tolerance = 0; }).tolerance, 0);
   EXPECT_EQ(ruleOf([](ContourOptions& o) { o.tolerance = 1e6; }).tolerance, 1e6);
   EXPECT_EQ(ruleOf([](ContourOptions& o) { o.maxAngle = 0; }).maxAngle, 0);
+  EXPECT_EQ(ruleOf([](ContourOptions& o) { o.minAngle = 30; }).minAngle, 30);
   EXPECT_EQ(ruleOf([](ContourOptions& o) { o.maxCell = 1; }).maxLevel, 0);
 }
 

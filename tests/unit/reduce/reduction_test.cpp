@@ -66,6 +66,39 @@ TEST_P(RandomMeshes, StaySound) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomMeshes, testing::Range(1U, 19U));
 
+// Shares of triangles under an angle, by an oracle of its own.
+double shareUnder(const ReducedMesh& mesh, double degrees) {
+  std::size_t under = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Mesh one = test::toMesh(mesh.positions, {t});
+    under += test::anglesOf(one).smallest < degrees ? 1 : 0;
+  }
+  return static_cast<double>(under) / static_cast<double>(mesh.triangles.size());
+}
+
+ReducedMesh reducedAtAngle(const test::FineMesh& mesh, double asked) {
+  constexpr float kTolerance = 0.2f;
+  base::Job job(1, {});
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, optionsForAngle(asked), job);
+  reduction.toTolerance(kTolerance);
+  EXPECT_LE(reduction.certificate().largest, kTolerance * 1.15f) << asked;
+  expectSound(mesh, reduction.mesh(), reduction.certificate());
+  return reduction.mesh();
+}
+
+// Four in five of the triangles under the angle that is asked for are gone, or more.
+TEST(Reduction, KeepsAnAngle) {
+  const test::FineMesh meshes[] = {test::bumpySphere(5, 10, 1.5f, 1), test::noiseSolid(12, 6, 2)};
+  for (const test::FineMesh& mesh : meshes) {
+    const ReducedMesh any = reducedAtAngle(mesh, 0);
+    for (const double asked : {20.0, 30.0}) {
+      const ReducedMesh kept = reducedAtAngle(mesh, asked);
+      EXPECT_LT(shareUnder(kept, asked), shareUnder(any, asked) / 5) << asked;
+      EXPECT_LT(kept.triangles.size(), 3 * any.triangles.size()) << asked;
+    }
+  }
+}
+
 TEST(Reduction, GivesTheSameBytesForAnyThreads) {
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const test::FineMesh mesh = test::noiseSolid(16, 6, seed);

@@ -47,7 +47,8 @@ ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
   std::vector<reduce::Index> same(reference.size());
   std::iota(same.begin(), same.end(), 0);
   reduction_.emplace(view, reference.empty() ? view : before, same,
-                     refine::scalesOf(cut.mesh, model.affine(), rule, job), reduce::Options(), job);
+                     refine::scalesOf(cut.mesh, model.affine(), rule, job),
+                     reduce::optionsForAngle(rule.minAngle), job);
   reduction_->setRegions(regionsOf());
   const reduce::Surface surface = reduction_->surface();
   kinds_.reserve(positions.size());
