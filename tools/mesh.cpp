@@ -76,12 +76,14 @@ void addSequenceOptions(CLI::App& app, SequenceArguments& sequence) {
       ->capture_default_str();
   app.add_flag("--resume", sequence.resume,
                "of a sequence: leave out frames whose mesh is newer than their volume");
+  app.add_option("--fps", sequence.fps, "of a sequence in one .usda: frames in a second")
+      ->check(above0());
   app.add_option("--report", sequence.report, "of a sequence: a .csv or .json about all frames");
 }
 
 /// Throws Error for options that mean nothing without a sequence.
 void requireSequence(const CLI::App& app, const MeshArguments& arguments) {
-  for (const char* name : {"--jobs", "--resume", "--report"}) {
+  for (const char* name : {"--jobs", "--resume", "--fps", "--report"}) {
     if (app.get_option(name)->count() == 0) continue;
     throw Error(ErrorCode::InvalidArgument, std::string(name) + " is for sequences, and " +
                                                 arguments.input +
@@ -140,8 +142,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
       ->required();
   mesh->add_option("-o,--output", arguments->output,
                    "the mesh to write: .ply (binary), .obj, .stl, .off, .glb, .usda or .3mf, or - "
-                   "for standard "
-                   "output")
+                   "for standard output; of a sequence a name with ####, or a .usda of all frames")
       ->required();
   addFormatOption(*mesh, arguments->format, "of the mesh in standard output");
   mesh->add_option("--grid", arguments->grids,
@@ -191,11 +192,11 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
         arguments->method = Method::SurfaceNets;
       }
       requireMeaning(*mesh, arguments->method);
-      if (isSequence(*arguments, *sequence)) return runSequence(*arguments, *sequence);
       if (arguments->contour.uniform && arguments->contour.minAngle > 0) {
         throw Error(ErrorCode::InvalidArgument,
                     "--min-angle means nothing to --uniform, which collapses no edges");
       }
+      if (isSequence(*arguments, *sequence)) return runSequence(*arguments, *sequence);
       requireSequence(*mesh, *arguments);
       return runMesh(*arguments);
     };

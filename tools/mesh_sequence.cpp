@@ -17,7 +17,9 @@
 #include "frames.h"
 #include "paths.h"
 #include "processes.h"
+#include "staged_folder.h"
 #include "standard_streams.h"
+#include "usda_sequence.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -32,6 +34,52 @@ struct Frame {
   int number = 0;
   MeshArguments arguments;
   FrameState state = FrameState::Done;
+  std::string joined;  ///< the file of all frames; empty if each has its own
+  [[nodiscard]] const std::string& output() const {
+    return joined.empty() ? arguments.output : joined;
+  }
+};
+
+/// Whether all frames go into one file: a .usda, whose meshes change with time.
+bool isOneFile(const MeshArguments& arguments) {
+  return !isStandard(arguments.output) && !namesFrames(arguments.output) &&
+         meshFormat(arguments.output, arguments.format) == MeshFormat::Usda;
+}
+
+/// The one file of all frames, while it is made: the frames' own files are in a folder beside it.
+class OneFile {
+ public:
+  explicit OneFile(std::filesystem::path output)
+      : output_(std::move(output)),
+        staged_(output_.has_parent_path() ? output_.parent_path() : std::filesystem::path(".")) {
+    std::filesystem::create_directory(folder());
+  }
+
+  [[nodiscard]] std::string frameFile(int frame) const {
+    return (folder() / (std::to_string(frame) + ".usda")).string();
+  }
+
+  /// Puts the frames together of which there are files; whether there are any.
+  bool join(const std::vector<Frame>& all, std::optional<double> fps) {
+    std::vector<UsdaFrame> frames;
+    for (const Frame& frame : all) {
+      const std::string& file = frame.arguments.output;
+      if (std::filesystem::exists(file)) frames.push_back({frame.number, file});
+    }
+    if (frames.empty()) return false;
+    joinUsdaFrames(frames, fps, staged_.path() / output_.filename());
+    std::filesystem::remove_all(folder());
+    staged_.commit(output_.filename().string());
+    return true;
+  }
+
+ private:
+  [[nodiscard]] std::filesystem::path folder() const {
+    return std::filesystem::path(staged_.path()) / "frames";
+  }
+
+  std::filesystem::path output_;
+  StagedFolder staged_;
 };
 
 bool isNewer(const std::string& output, const std::string& input) {
@@ -46,7 +94,11 @@ Frame makeFrame(int number, const MeshArguments& arguments, const SequenceArgume
   frame.number = number;
   frame.arguments = arguments;
   frame.arguments.input = frameFile(arguments.input, number);
-  frame.arguments.output = frameFile(arguments.output, number);
+  if (isOneFile(arguments)) {
+    frame.joined = arguments.output;
+  } else {
+    frame.arguments.output = frameFile(arguments.output, number);
+  }
   frame.arguments.allowEmpty = true;
   frame.arguments.quiet = true;
   if (arguments.contour.threads == 0) {
@@ -66,12 +118,24 @@ void requireSound(const MeshArguments& arguments, const SequenceArguments& seque
     refuse("--frames needs a name with #### in the place of the frame's number, which " +
            arguments.input + " does not have");
   }
-  if (!namesFrames(arguments.output)) {
+  const bool isOne = isOneFile(arguments);
+  if (!isOne && !namesFrames(arguments.output)) {
     refuse("all frames would be written to " + arguments.output +
-           "; write #### in the place of the frame's number");
+           ", as only a .usda can hold them; write #### in the place of the frame's number");
   }
-  if (sequence.resume && arguments.output.find("{}") != std::string::npos) {
-    refuse("--resume cannot tell which meshes of {} there are to be");
+  if (isOne) {
+    std::error_code error;
+    const auto status = std::filesystem::status(arguments.output, error);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+      refuse("a .usda of all frames is written to a file, which " + arguments.output + " is not");
+    }
+    if (sequence.resume) refuse("--resume is for a file a frame, not for a .usda of all frames");
+  } else if (sequence.fps) {
+    refuse("--fps is for a .usda of all frames, whose name has no ####");
+  }
+  if ((sequence.resume || isOne) && arguments.output.find("{}") != std::string::npos) {
+    refuse(isOne ? "a .usda of all frames holds all grids; leave {} out of its name"
+                 : "--resume cannot tell which meshes of {} there are to be");
   }
   if (!sequence.report) return;
   const std::string ending = endingOf(*sequence.report);
@@ -111,7 +175,11 @@ std::vector<Frame> framesOf(const MeshArguments& arguments, const SequenceArgume
 std::string meshFrame(const Frame& frame) {
   Json json;
   try {
-    json = toJson(meshFile(frame.arguments), frame.arguments);
+    MeshRun run = meshFile(frame.arguments);
+    if (!frame.joined.empty()) {
+      for (GridRun& grid : run.grids) grid.output = frame.joined;
+    }
+    json = toJson(run, frame.arguments);
   } catch (const Error& error) {
     json["error"] = errorToJson(nameOf(error.code()), error.what());
   } catch (const std::bad_alloc&) {
@@ -142,7 +210,12 @@ bool isSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
 
 int runSequence(const MeshArguments& arguments, const SequenceArguments& sequence) {
   requireSound(arguments, sequence);
-  const std::vector<Frame> frames = framesOf(arguments, sequence);
+  std::vector<Frame> frames = framesOf(arguments, sequence);
+  std::optional<OneFile> one;
+  if (isOneFile(arguments)) {
+    one.emplace(arguments.output);
+    for (Frame& frame : frames) frame.arguments.output = one->frameFile(frame.number);
+  }
   FrameTable table(frames.size());
   std::string wrongUsage;
   const auto work = [&](std::size_t index) {
@@ -150,8 +223,8 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
   };
   const auto tell = [&](std::size_t index, const ProcessResult& result) {
     const Frame& frame = frames[index];
-    const FrameRow& row = table.add({frame.number, frame.arguments.input, frame.arguments.output,
-                                     frame.state, readResult(result)});
+    const FrameRow& row = table.add(
+        {frame.number, frame.arguments.input, frame.output(), frame.state, readResult(result)});
     // What is wrong with the command line is wrong with every frame.
     if (row.code() == nameOf(ErrorCode::InvalidArgument)) wrongUsage = row.message();
     if (!wrongUsage.empty()) return false;
@@ -161,6 +234,8 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
   };
   const double seconds = timed([&] { runInProcesses(frames.size(), sequence.jobs, work, tell); });
   if (!wrongUsage.empty()) refuse(wrongUsage);
+  bool isJoined = false;
+  const double joinSeconds = timed([&] { isJoined = one && one->join(frames, sequence.fps); });
 
   if (sequence.report) {
     const bool csv = endingOf(*sequence.report) == ".csv";
@@ -170,6 +245,7 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
     print(table.toJson(seconds).dump(2) + "\n");
   } else if (!arguments.quiet) {
     print(table.describe(seconds));
+    if (isJoined) print(describeWritten({arguments.output}, joinSeconds));
   }
   return table.failed() ? kPromiseBroken : kDone;
 }

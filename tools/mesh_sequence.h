@@ -12,6 +12,7 @@ struct SequenceArguments {
   std::optional<std::string> frames;  ///< text for readFrames(); unset: all that there are
   int jobs = 1;                       ///< frames at a time
   bool resume = false;                ///< leave out frames whose mesh is newer than their volume
+  std::optional<double> fps;          ///< frames in a second, told in a .usda of all frames
   std::optional<std::string> report;  ///< a .csv or .json file about all frames
 };
 

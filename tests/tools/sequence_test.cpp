@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -142,6 +144,75 @@ TEST_F(Sequence, WhatIsWrongWithAllFramesIsToldOnce) {
   expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --report m.0001.csv --tolerance x", 2,
                 "--tolerance");
   expectFailure("mesh 'f.####.vdb' -o 'f.####.vdb'", 2, "overwritten");
+}
+
+/// The attributes of the first mesh of a .usda of one frame, as they are declared, and their
+/// values.
+std::map<std::string, std::string> attributesOf(const std::string& usda) {
+  std::map<std::string, std::string> values;
+  std::istringstream lines(usda.substr(usda.find("def Mesh")));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find(" = ");
+    if (equals == std::string::npos || line.find("uniform") != std::string::npos) continue;
+    std::string value = line.substr(equals + 3);
+    value.resize(std::min(value.rfind(']') + 1, value.size()));
+    values[line.substr(8, equals - 8)] = value;
+  }
+  return values;
+}
+
+/// What tests/usd says by other readers, and for what they do not look at.
+TEST_F(Sequence, OneUsdaHasTheValuesOfEveryFrame) {
+  ASSERT_EQ(run("make box --voxel 0.1 -o f.0002.vdb --quiet").exitCode, 0);
+  const Outcome outcome = run("mesh 'f.####.vdb' -o all.usda --frames 1-4 --jobs 2 --fps 24");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("[2/4] f.0002.vdb: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(": all.usda\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\nwrote all.usda, "), std::string::npos) << outcome.out;
+  EXPECT_EQ(folder.fileCount(), 5);
+  const std::string all = readBytes(folder / "all.usda");
+  for (const char* line : {"startTimeCode = 1", "endTimeCode = 4", "timeCodesPerSecond = 24"}) {
+    EXPECT_NE(all.find(std::string("\n    ") + line + "\n"), std::string::npos) << line;
+  }
+  for (const int frame : {1, 2, 4}) {
+    const std::string number = std::to_string(frame);
+    ASSERT_EQ(run("mesh f.000" + number + ".vdb -o one.usda --quiet").exitCode, 0);
+    const auto attributes = attributesOf(readBytes(folder / "one.usda"));
+    EXPECT_EQ(attributes.size(), 5u);
+    for (const auto& [declaration, value] : attributes) {
+      const std::size_t begin = all.find(declaration + ".timeSamples = {\n");
+      ASSERT_NE(begin, std::string::npos) << declaration;
+      const std::string samples = all.substr(begin, all.find("        }\n", begin) - begin);
+      EXPECT_EQ(std::count(samples.begin(), samples.end(), '\n'), 4);
+      EXPECT_NE(samples.find("\n            " + number + ": " + value + ",\n"), std::string::npos)
+          << declaration << " of frame " << frame;
+    }
+  }
+}
+
+TEST_F(Sequence, OneUsdaHasFramesWithoutASurface) {
+  const Outcome outcome =
+      run("mesh 'f.####.vdb' -o all.usda --frames 1-2 --iso 2.5 --inside below");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  const std::string all = readBytes(folder / "all.usda");
+  EXPECT_NE(all.find("point3f[] points.timeSamples = {\n            1: [],\n            2: [],\n"),
+            std::string::npos);
+}
+
+TEST_F(Sequence, OneUsdaIsWrittenWholeOrNotAtAll) {
+  const std::string bytes = readBytes(folder / "s.vdb");
+  writeBytes(folder / "f.0002.vdb", bytes.substr(0, bytes.size() / 2));
+  EXPECT_EQ(run("mesh 'f.####.vdb' -o all.usda --frames 2").exitCode, 1);
+  EXPECT_EQ(folder.fileCount(), 4);
+  // Others are done.
+  EXPECT_EQ(run("mesh 'f.####.vdb' -o all.usda --quiet").exitCode, 1);
+  EXPECT_EQ(folder.fileCount(), 5);
+  EXPECT_NE(readBytes(folder / "all.usda").find("            4: [("), std::string::npos);
+  expectFailure("mesh 'f.####.vdb' -o all.usda --resume", 2, "--resume");
+  expectFailure("mesh 'f.####.vdb' -o 'all_{}.usda'", 2, "{}");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.usda' --fps 24", 2, "--fps");
+  expectFailure("mesh s.vdb -o m.usda --fps 24", 2, "--fps");
+  expectFailure("mesh 'f.####.vdb' -o none/all.usda", 3, "none/all.usda");
 }
 
 /// As Command.StopsWhenAsked: waits until the command hears signals.

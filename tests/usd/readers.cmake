@@ -42,9 +42,23 @@ compare(quads y 1 --uniform --crease 180)
 compare(turned z 0.01)
 tufa(lod box.vdb -o lods.usda --levels 2)
 
+# Frames of other shapes, one of which is missing.
+foreach(frame 1 2 4)
+  tufa(make noise --seed ${frame} --voxel 0.2 -o f.${frame}.vdb)
+endforeach()
+tufa(mesh f.#.vdb -o all.usda --fps 25 --crease 40)
+set(pairs ${pairs} all.usda f.1.off y 1)
+set(frames "")
+foreach(frame 1 2 4)
+  tufa(mesh f.${frame}.vdb -o f.${frame}.off)
+  list(APPEND frames ${frame} f.${frame}.off)
+endforeach()
+
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/three.mjs ${CMAKE_CURRENT_LIST_DIR}/variants.mjs
-  DESTINATION ${FOLDER})
+  ${CMAKE_CURRENT_LIST_DIR}/times.mjs DESTINATION ${FOLDER})
 execute_process(COMMAND ${NODE} three.mjs ${pairs} WORKING_DIRECTORY ${FOLDER}
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${NODE} variants.mjs lods.usda faces.usda WORKING_DIRECTORY ${FOLDER}
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${NODE} times.mjs all.usda 25 ${frames} WORKING_DIRECTORY ${FOLDER}
   COMMAND_ERROR_IS_FATAL ANY)
