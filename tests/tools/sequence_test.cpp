@@ -163,7 +163,7 @@ std::map<std::string, std::string> attributesOf(const std::string& usda) {
 
 /// What tests/usd says by other readers, and for what they do not look at.
 TEST_F(Sequence, OneUsdaHasTheValuesOfEveryFrame) {
-  ASSERT_EQ(run("make box --voxel 0.1 -o f.0002.vdb --quiet").exitCode, 0);
+  ASSERT_EQ(run("make sphere --voxel 0.15 -o f.0002.vdb --quiet").exitCode, 0);
   const Outcome outcome = run("mesh 'f.####.vdb' -o all.usda --frames 1-4 --jobs 2 --fps 24");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("[2/4] f.0002.vdb: "), std::string::npos) << outcome.out;
