@@ -1,7 +1,7 @@
 #!/bin/sh
 # Tries Tufa in a Debian that holds nothing else: a root made by debootstrap, thrown away at the end.
 #
-#   tools/clean-root.sh bookworm package FILE.deb   installs the package, makes and checks a mesh
+#   tools/clean-root.sh bookworm package FILE.deb...   installs the packages, makes and checks a mesh
 #   tools/clean-root.sh trixie test [ARGUMENT...]   builds the last commit there and runs tools/test.sh
 #
 # Needs root and debootstrap. KEEP_ROOT=FOLDER keeps the root in FOLDER and takes it up again.
@@ -35,9 +35,10 @@ inside() { chroot "$folder" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$
 case "$task" in
   package)
     [ -f "${1:-}" ] || usage
-    cp "$1" "$folder/tmp/tufa.deb"
+    mkdir -p "$folder/tmp/packages"
+    cp "$@" "$folder/tmp/packages"
     inside apt-get update -q
-    inside apt-get install -y -q --no-install-recommends /tmp/tufa.deb
+    inside sh -c 'exec apt-get install -y -q --no-install-recommends /tmp/packages/*.deb'
     inside tufa make bracket --voxel 0.05 -o /tmp/bracket.vdb
     inside tufa mesh /tmp/bracket.vdb -o /tmp/bracket.glb --check
     inside tufa check /tmp/bracket.glb

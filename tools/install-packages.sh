@@ -1,9 +1,9 @@
 #!/bin/sh
 # Installs the Debian packages (12 and 13) that the build and the tests need, and only those that are
-# missing. With the argument "gate" also what .ci/run needs, with "package" what the command can do
-# without, but packages have: ITK, by which `tufa import` reads images, NanoVDB, whose files it reads,
-# Ceres Solver, by which `tufa fit` fits blobs, and on Debian 12 lib3mf, by which it writes .3mf. Asks
-# for root through sudo if need be.
+# missing. With the argument "gate" also what .ci/run needs, with "package" what packages are made and
+# looked at with, and what the command can do without, but packages have: ITK, by which `tufa import`
+# reads images, NanoVDB, whose files it reads, Ceres Solver, by which `tufa fit` fits blobs, and on
+# Debian 12 lib3mf, by which it writes .3mf. Asks for root through sudo if need be.
 set -eu
 
 packages="ca-certificates cmake g++ git ninja-build
@@ -14,7 +14,7 @@ case "${1:-}" in
   "") ;;
   gate) packages="$packages clang clang-format doxygen libclang-rt-dev libceres-dev" ;;
   package)
-    packages="$packages libinsighttoolkit5-dev libnanovdb-dev libblosc-dev zlib1g-dev libceres-dev"
+    packages="$packages dpkg-dev lintian libinsighttoolkit5-dev libnanovdb-dev libblosc-dev zlib1g-dev libceres-dev"
     # Later ones have lib3mf 2, whose interface is another one.
     if grep -qs '^12' /etc/debian_version; then packages="$packages lib3mf-dev"; fi
     ;;
