@@ -5,6 +5,7 @@
 #include "usda_sequence.h"
 
 #include <tufa/error.h>
+#include <tufa/io.h>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -38,8 +39,8 @@ struct SampledMesh {
   std::vector<SampledAttribute> attributes;
 };
 
-[[noreturn]] void fail(ErrorCode code, const char* what, const std::filesystem::path& file) {
-  throw Error(code, std::string("cannot ") + what + " " + file.string());
+[[noreturn]] void failToRead(const std::filesystem::path& file) {
+  throw Error(ErrorCode::UnreadableFile, "cannot read " + file.string());
 }
 
 std::string_view withoutIndent(std::string_view line) {
@@ -73,7 +74,7 @@ class Frames {
         addValue(*mesh, text, begin + (line.size() - text.size()), frame);
       }
     }
-    if (!stream.eof()) fail(ErrorCode::UnreadableFile, "read", frames_[frame].file);
+    if (!stream.eof()) failToRead(frames_[frame].file);
   }
 
   SampledMesh& meshOf(std::string_view head) {
@@ -127,8 +128,8 @@ class Frames {
 
 class Writer {
  public:
-  Writer(const std::vector<UsdaFrame>& frames, const std::filesystem::path& output)
-      : frames_(frames), output_(output), stream_(output, std::ios::binary) {
+  Writer(const std::vector<UsdaFrame>& frames, std::ostream& stream)
+      : frames_(frames), stream_(stream) {
     for (const UsdaFrame& frame : frames) {
       firstCode_ = std::min(firstCode_, frame.number);
       lastCode_ = std::max(lastCode_, frame.number);
@@ -150,11 +151,7 @@ class Writer {
     stream_ << "    }\n";
   }
 
-  void finish() {
-    stream_ << "}\n";
-    stream_.close();
-    if (!stream_) fail(ErrorCode::UnwritableFile, "write", output_);
-  }
+  void finish() { stream_ << "}\n"; }
 
  private:
   static constexpr const char* kIndent = "        ";
@@ -199,18 +196,15 @@ class Writer {
       if (interrupted()) throw Error(ErrorCode::Cancelled, "cancelled");
       const auto size = std::min<std::uint64_t>(left, bytes.size());
       if (!from.read(bytes.data(), static_cast<std::streamsize>(size))) {
-        fail(ErrorCode::UnreadableFile, "read", file);
+        failToRead(file);
       }
-      if (!stream_.write(bytes.data(), static_cast<std::streamsize>(size))) {
-        fail(ErrorCode::UnwritableFile, "write", output_);
-      }
+      stream_.write(bytes.data(), static_cast<std::streamsize>(size));
       left -= size;
     }
   }
 
   const std::vector<UsdaFrame>& frames_;
-  const std::filesystem::path& output_;
-  std::ofstream stream_;
+  std::ostream& stream_;
   int firstCode_ = frames_.front().number;
   int lastCode_ = firstCode_;
 };
@@ -220,10 +214,13 @@ class Writer {
 void joinUsdaFrames(const std::vector<UsdaFrame>& frames, std::optional<double> framesPerSecond,
                     const std::filesystem::path& output) {
   const Frames found(frames);
-  Writer writer(frames, output);
-  writer.head(found.head(), framesPerSecond);
-  for (const SampledMesh& mesh : found.meshes()) writer.mesh(mesh);
-  writer.finish();
+  const auto writeTo = [&](std::ostream& stream) {
+    Writer writer(frames, stream);
+    writer.head(found.head(), framesPerSecond);
+    for (const SampledMesh& mesh : found.meshes()) writer.mesh(mesh);
+    writer.finish();
+  };
+  writeFile(writeTo, output);
 }
 
 }  // namespace tufa::tools

@@ -6,6 +6,8 @@
 #include <tufa/progress.h>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <span>
@@ -168,5 +170,10 @@ TUFA_API void writeGrids(const std::vector<std::shared_ptr<const openvdb::GridBa
 /// Writes bytes, such as a report beside a mesh, as write() writes meshes: whole or not at all, and
 /// directly to a pipe or a device. Throws Error(UnwritableFile).
 TUFA_API void writeFile(std::string_view bytes, const std::filesystem::path& path);
+
+/// The same, of what `writeTo` puts into a stream. What it throws passes through, and leaves no
+/// file; the stream throws Error itself, so that its state need not be asked.
+TUFA_API void writeFile(const std::function<void(std::ostream&)>& writeTo,
+                        const std::filesystem::path& path);
 
 }  // namespace tufa

@@ -216,4 +216,14 @@ void writeFile(std::string_view bytes, const std::filesystem::path& path) {
   file.commit();
 }
 
+void writeFile(const std::function<void(std::ostream&)>& writeTo,
+               const std::filesystem::path& path) {
+  io::OutputFile file(path);
+  io::OutputFileBuffer buffer(file);
+  std::ostream stream(&buffer);
+  stream.exceptions(std::ios::badbit);
+  writeTo(stream);
+  file.commit();
+}
+
 }  // namespace tufa

@@ -50,6 +50,25 @@ double volumeOf(const Mesh& mesh) {
   return sixfold / 6;
 }
 
+TEST(WriteFile, TakesWhatIsPutIntoAStream) {
+  const ScratchFolder folder;
+  const std::string text(100000, 'x');
+  writeFile([&](std::ostream& stream) { stream << text << 7; }, folder / "t.txt");
+  EXPECT_EQ(readBytes(folder / "t.txt"), text + "7");
+}
+
+TEST(WriteFile, LeavesTheFileThatWasThereWhereTheWriterThrows) {
+  const ScratchFolder folder;
+  writeFile("before", folder / "t.txt");
+  const auto fail = [](std::ostream& stream) {
+    stream << std::string(1 << 20, 'x');
+    throw Error(ErrorCode::Cancelled, "cancelled");
+  };
+  expectError(ErrorCode::Cancelled, "cancelled", [&] { writeFile(fail, folder / "t.txt"); });
+  EXPECT_EQ(readBytes(folder / "t.txt"), "before");
+  EXPECT_EQ(folder.fileCount(), 1);
+}
+
 class EveryFormat : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat,
                          ::testing::Values(".ply", ".obj", ".stl", ".off", ".glb", ".PLY", ".Stl"),
