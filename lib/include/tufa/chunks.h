@@ -89,9 +89,10 @@ struct ChunkLevelEntry {
   double maxErrorVoxels = 0;            ///< as ChunkLevel has it
   double transitionErrorVoxels = 0;     ///< as ChunkLevel has it
   std::size_t intersectionsLeft = 0;    ///< pairs of its triangles that intersect
-  /// Of the interior and regular strips, degrees, and the triangles with an angle below
-  /// ContourOptions::minAngle. Only buildChunks() knows them: chunks.json does not have them.
+  /// Of the interior and regular strips, degrees. Only buildChunks() knows it: chunks.json does not
+  /// have it, nor the next one.
   double smallestAngle = 0;
+  /// Of the interior and regular strips: triangles with an angle below ContourOptions::minAngle.
   std::size_t trianglesUnderMinAngle = 0;
 };
 
