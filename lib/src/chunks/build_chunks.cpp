@@ -64,17 +64,8 @@ void requireOptions(const ChunkOptions& options) {
 
 // Whether all positions of the grid may be rounded to floats.
 bool fitsSinglePrecision(const grid::Blocks& blocks, const grid::Transform& transform) {
-  double largest = 0;
-  for (std::size_t i = 0; i < blocks.count(); ++i) {
-    const Vec3 corner(blocks.origin(static_cast<grid::BlockRef>(i)));
-    for (int c = 0; c < 8; ++c) {
-      const Vec3 step((c & 4) * 2.0, (c & 2) * 4.0, (c & 1) * 8.0);
-      const Vec3 world = transform.indexToWorld(corner + step);
-      largest = std::max({largest, std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
-    }
-  }
-  const double rounding = 0.5 * std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * largest;
-  return rounding <= refine::kMostRounding * grid::Affine(transform).leastHeight();
+  return refine::largestRounding(blocks, transform) <=
+         refine::kMostRounding * grid::Affine(transform).leastHeight();
 }
 
 // The middle of all blocks, in world space and in whole floats, if positions need one.

@@ -1,8 +1,25 @@
 #include "refine/rounding.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "base/single_precision.h"
 
 namespace tufa::refine {
+
+double largestRounding(const grid::Blocks& blocks, const grid::Transform& transform) {
+  double largest = 0;
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    const Vec3 corner(blocks.origin(static_cast<grid::BlockRef>(i)));
+    for (int c = 0; c < 8; ++c) {
+      const Vec3 step((c & 4) * 2.0, (c & 2) * 4.0, (c & 1) * 8.0);
+      const Vec3 world = transform.indexToWorld(corner + step);
+      largest = std::max({largest, std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
+    }
+  }
+  return 0.5 * std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * largest;
+}
 
 bool takeToWorld(Mesh& mesh, const grid::Affine& affine, base::Job& job) {
   constexpr std::size_t kGrain = 4096;

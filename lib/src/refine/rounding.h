@@ -3,12 +3,16 @@
 #include <tufa/mesh.h>
 
 #include "base/job.h"
-#include "grid/affine.h"
+#include "grid/volume.h"
 
 namespace tufa::refine {
 
 /// The farthest that the rounding of world positions to single precision may move them, in voxels.
 inline constexpr double kMostRounding = 5e-4;
+
+/// The farthest that rounding to single precision can move a point near the surface of a volume, in
+/// world units: by its largest coordinate.
+double largestRounding(const grid::Blocks& blocks, const grid::Transform& transform);
 
 /// Takes a mesh to world space as it will be written: in single precision if that moves nothing
 /// farther than kMostRounding. Whether it does.

@@ -23,8 +23,11 @@ class UniformRepair {
 
   std::vector<std::uint32_t> run() {
     report_.movedVertices = unfoldLoneComponents(mesh_, sourceOf(surface_, job_), job_);
-    // Rounding may move both polygons of a pair.
-    const double margin = 2 * kMostRounding * surface_.affine().leastHeight();
+    // Rounding may move both polygons of a pair. Flat faces on lattice planes lie a thousandth of a
+    // voxel off their samples: a larger margin than is needed makes all their quads candidates.
+    const double margin =
+        2 * std::min(kMostRounding * surface_.affine().leastHeight(),
+                     largestRounding(surface_.volume.blocks, surface_.volume.transform));
     Withdrawal withdrawn = withdrawPlacements(surface_, margin, job_);
     candidates_ = std::move(withdrawn.candidates);
     report_.intersectionsFound = withdrawn.pairsFound;
@@ -90,9 +93,9 @@ class UniformRepair {
 Source sourceOf(const uniform::UniformSurface& surface, base::Job& job) {
   Source source;
   source.massPoints = [&surface, &job](const std::vector<VertexIndex>& vertices) {
-    return uniform::fallbackPoints(uniform::Fallback::MassPoint, surface.volume.blocks,
-                                   surface.volume.scale, surface.topology, surface.affine(),
-                                   vertices, job);
+    return uniform::fallbackPoints(surface.volume.blocks, surface.volume.scale, surface.topology,
+                                   surface.affine(), vertices, job)
+        .mass;
   };
   source.crossings = [&surface, &job](const std::vector<intersect::PolygonIndex>& polygons) {
     return uniform::quadCrossings(surface.view(), polygons, job);

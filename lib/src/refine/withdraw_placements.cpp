@@ -17,8 +17,6 @@
 namespace tufa::refine {
 namespace {
 
-using uniform::Fallback;
-
 // A vertex moves twice at most, so rounds end by themselves; this many are a sign of a fault.
 constexpr int kMostRounds = 64;
 // Faces whose normals have a smaller cosine (140 degrees) make a fold.
@@ -288,8 +286,9 @@ class PlacementGuard {
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const std::vector<Position> plain = fallbacks(Fallback::Plain, vertices);
-    const std::vector<Position> mass = fallbacks(Fallback::MassPoint, vertices);
+    const auto [plain, mass] =
+        uniform::fallbackPoints(surface_.volume.blocks, surface_.volume.scale, surface_.topology,
+                                surface_.affine(), vertices, job_);
     std::vector<Move> chosen;
     for (const Conflict& conflict : conflicts) {
       std::vector<Move> moves;
@@ -379,12 +378,6 @@ class PlacementGuard {
       if (move.step >= kAtPlain) surface_.sheets.withdraw(move.vertex);
       moved_[move.vertex] = 1;
     }
-  }
-
-  std::vector<Position> fallbacks(Fallback which, const std::vector<VertexIndex>& vertices) {
-    if (vertices.empty()) return {};
-    return uniform::fallbackPoints(which, surface_.volume.blocks, surface_.volume.scale,
-                                   surface_.topology, surface_.affine(), vertices, job_);
   }
 
   void findTouched() {

@@ -21,6 +21,9 @@ constexpr float kOneSide = 0.966F;
 
 using Kind = VertexSheets::Kind;
 
+// What is known of a vertex before it is placed: the sheets beside a sharp kink are unknown.
+Kind kindAt(Kink kink) { return kink == Kink::Sharp ? Kind::Unknown : Kind::Near; }
+
 // Whether the planes of a QEF seem to belong to one smooth sheet.
 Kind kindOf(const Qef& qef) {
   const float squared = dot(qef.normals, qef.normals);
@@ -142,14 +145,14 @@ void BlockVertices::addEdges(const CornerWords& corners) {
           Qef(point, {batch.normals[0][lane], batch.normals[1][lane], batch.normals[2][lane]});
     }
     for (int lane = 0; lane < count; ++lane) {
-      addCrossing<axis>(slots[lane], planes_[lane], ((batch.creases >> lane) & 1) != 0);
+      addCrossing<axis>(slots[lane], planes_[lane], batch.kinks[lane]);
     }
   }
 }
 
 // Adds a crossing's plane to the vertices that own it in the four cells around its edge.
 template <int axis>
-void BlockVertices::addCrossing(int slot, const Qef& plane, bool crease) {
+void BlockVertices::addCrossing(int slot, const Qef& plane, Kink kink) {
   constexpr auto kOther = otherAxes(axis);
   constexpr std::array<int, 2> kBack = {BlockSamples::stride(kOther[0]),
                                         BlockSamples::stride(kOther[1])};
@@ -164,7 +167,9 @@ void BlockVertices::addCrossing(int slot, const Qef& plane, bool crease) {
       vertex += componentsOf_[cell].of(edge);
     }
     qefs_[vertex] += plane;
-    if (crease && vertex != kNobody) kinds_[vertex - 1] = Kind::Near;
+    if (kink != Kink::None && vertex != kNobody) {
+      kinds_[vertex - 1] = std::max(kinds_[vertex - 1], kindAt(kink));
+    }
   }
 }
 
@@ -176,6 +181,9 @@ void BlockVertices::solveVertices() {
   bool fresh = true;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (kinds_[i] == Kind::Smooth) continue;
+    // Facets of a scan. Their planes are as good as any that could be found, and sheets of less
+    // than 30 degrees lie within the vertex's reach.
+    if (kinds_[i] == Kind::Near && kindOf(qefs_[i + 1]) == Kind::Near) continue;
     if (fresh) creaseCell_.reset();
     fresh = false;
     placeAtCrease(i);
@@ -198,7 +206,10 @@ void BlockVertices::placeAtCrease(std::size_t vertex) {
   points_[vertex] = placement.point;
   normals_[vertex] = placement.normal;
   if (placement.outOfCell) outOfCell_.push_back(static_cast<std::uint32_t>(vertex));
-  if (placement.planes == 1) return;
+  if (placement.planes == 1) {
+    kinds_[vertex] = Kind::Near;
+    return;
+  }
   kinds_[vertex] = Kind::Meeting;
   meetings_.push_back({static_cast<std::uint32_t>(vertex), placement.planes, placement.sheets});
 }

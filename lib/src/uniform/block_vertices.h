@@ -69,7 +69,7 @@ class BlockVertices {
   template <int axis>
   void collectEdges(const grid::CornerWords& corners);
   template <int axis>
-  void addCrossing(int slot, const Qef& plane, bool crease);
+  void addCrossing(int slot, const Qef& plane, Kink kink);
   void solveVertices();
   void placeAtCrease(std::size_t vertex);
 

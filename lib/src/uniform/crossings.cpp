@@ -6,10 +6,10 @@ namespace tufa::uniform {
 
 using grid::BlockSamples;
 
-Crossing CrossingFinder::atKink(int lower, int axis) const {
+Crossing CrossingFinder::atKink(int lower, int axis, Kink kink) const {
   const int stride = BlockSamples::stride(axis);
   Crossing crossing;
-  crossing.crease = true;
+  crossing.kink = kink;
   crossing.along = keptOffEnds(subcellRoot(lower, axis));
   const Vector g = oneSidedGradient(crossing.along < 0.5F ? lower : lower + stride);
   const float rise = samples_[lower + stride] - samples_[lower];

@@ -11,11 +11,18 @@
 
 namespace tufa::uniform {
 
+/// Whether the field has a kink at a crossing.
+enum class Kink : std::uint8_t {
+  None,    ///< it is smooth
+  Gentle,  ///< a little one, as between the facets of a scan: a crease may be near
+  Sharp,   ///< as between sheets more than 45 degrees apart
+};
+
 /// Where the surface crosses a lattice edge.
 struct Crossing {
-  float along = 0;      ///< place on the edge, from 0 at its lower end to 1
-  Vector normal{};      ///< outward unit normal in index space
-  bool crease = false;  ///< the field has a kink here: a crease may be near
+  float along = 0;  ///< place on the edge, from 0 at its lower end to 1
+  Vector normal{};  ///< outward unit normal in index space
+  Kink kink = Kink::None;
 };
 
 /// Crossings of some edges along one axis, one array for each number.
@@ -24,11 +31,12 @@ struct CrossingBatch {
   std::array<std::uint16_t, kSize> lower;  ///< in: where each edge starts, a BlockSamples index
   std::array<float, kSize> along;
   std::array<std::array<float, kSize>, 3> normals;
-  unsigned creases = 0;  ///< a bit for each crossing at a kink
+  std::array<Kink, kSize> kinks;
 
   void set(int lane, const Crossing& crossing) {
     along[lane] = crossing.along;
     for (int i = 0; i < 3; ++i) normals[i][lane] = crossing.normal[i];
+    kinks[lane] = crossing.kink;
   }
 };
 
@@ -54,9 +62,9 @@ class CrossingFinder {
                        centralDifference(lower + kStride),
                        squaredBend(lower) + squaredBend(lower + kStride)};
     const Smooth smooth = smoothCrossing<axis>(ends, limits_);
-    if (smooth.kinked != 0) return atKink(lower, axis);
+    if (smooth.kinked != 0) return atKink(lower, axis, kinkOf(ends.squaredBend));
     const float rise = ends.b - ends.a;
-    return {smooth.along, direction({smooth.x, smooth.y, smooth.z}, axis, rise), false};
+    return {smooth.along, direction({smooth.x, smooth.y, smooth.z}, axis, rise), Kink::None};
   }
 
   /// The crossings of all edges of a batch, as at() finds them, but several at a time.
@@ -82,14 +90,14 @@ class CrossingFinder {
     for (auto& numbers : batch.normals) {
       for (int lane = 0; lane < CrossingBatch::kSize; ++lane) numbers[lane] *= scales[lane];
     }
-    batch.creases = 0;
+    batch.kinks.fill(Kink::None);
     for (int lane = 0; lane < CrossingBatch::kSize; ++lane) {
-      batch.creases |= static_cast<unsigned>(kinked[lane]) << lane;
       if (kinked[lane] != 0) {
-        batch.set(lane, atKink(batch.lower[lane], axis));
+        const Kink kink = kinkOf(arrays.squaredBend(0, lane) + arrays.squaredBend(1, lane));
+        batch.set(lane, atKink(batch.lower[lane], axis, kink));
       } else if (scales[lane] == 0) {
         const float rise = arrays.at[1][lane] - arrays.at[0][lane];
-        batch.set(lane, {batch.along[lane], alongEdge(axis, rise), false});
+        batch.set(lane, {batch.along[lane], alongEdge(axis, rise), Kink::None});
       }
     }
   }
@@ -125,6 +133,9 @@ class CrossingFinder {
   // A kink changes the slope along the edge by more than this from one sample to the next; a
   // curvature radius of five voxels changes it by 0.1.
   static constexpr float kSlopeTolerance = 0.1F;
+  // A kink whose second differences are longer than this is sharp. Sheets whose normals differ by
+  // 45 degrees give 0.77 at an end on the kink.
+  static constexpr float kSharpBend = 0.8F;
   // Crossings keep this far from the ends of their edge, so that a sample on the isovalue does not
   // pull the vertices of all cells around it to one point.
   static constexpr float kEndMargin = 1e-3F;
@@ -252,7 +263,10 @@ class CrossingFinder {
     return {keptOffEnds(root), g[0], g[1], g[2], dot(g, g), kinked & limits.distance};
   }
 
-  [[nodiscard]] Crossing atKink(int lower, int axis) const;
+  static Kink kinkOf(float squaredBend) {
+    return squaredBend > kSharpBend * kSharpBend ? Kink::Sharp : Kink::Gentle;
+  }
+  [[nodiscard]] Crossing atKink(int lower, int axis, Kink kink) const;
   [[nodiscard]] Vector oneSidedGradient(int at) const;
   [[nodiscard]] float subcellRoot(int lower, int axis) const;
 

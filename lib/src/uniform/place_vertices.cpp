@@ -66,11 +66,12 @@ VertexSheets placeVertices(const grid::Blocks& blocks, const grid::FieldScale& s
   return sheets;
 }
 
-std::vector<Position> fallbackPoints(Fallback which, const grid::Blocks& blocks,
-                                     const grid::FieldScale& scale, const CellTopology& topology,
-                                     const grid::Affine& affine,
-                                     const std::vector<VertexIndex>& vertices, base::Job& job) {
-  std::vector<Position> points(vertices.size());
+FallbackPoints fallbackPoints(const grid::Blocks& blocks, const grid::FieldScale& scale,
+                              const CellTopology& topology, const grid::Affine& affine,
+                              const std::vector<VertexIndex>& vertices, base::Job& job) {
+  FallbackPoints points{std::vector<Position>(vertices.size()),
+                        std::vector<Position>(vertices.size())};
+  if (vertices.empty()) return points;
   job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
     const auto accessor = blocks.accessor();
     BlockVertices work(scale);
@@ -83,15 +84,13 @@ std::vector<Position> fallbackPoints(Fallback which, const grid::Blocks& blocks,
       work.gather(blocks, topology, block, *accessor);
       for (; next != vertices.end() && *next < last; ++next) {
         const std::size_t vertex = *next - block.firstVertex;
-        Position& at = points[static_cast<std::size_t>(next - vertices.begin())];
+        const auto slot = static_cast<std::size_t>(next - vertices.begin());
         const Coord& origin = blocks.origin(block.block);
-        if (which == Fallback::Plain) {
-          at = inCell(affine, origin, work.cells()[vertex], work.plainPoint(vertex));
-        } else {
-          const Vector point = work.massPoint(vertex);
-          at = affine.position(origin, static_cast<double>(point[0]), static_cast<double>(point[1]),
-                               static_cast<double>(point[2]));
-        }
+        points.plain[slot] = inCell(affine, origin, work.cells()[vertex], work.plainPoint(vertex));
+        const Vector point = work.massPoint(vertex);
+        points.mass[slot] =
+            affine.position(origin, static_cast<double>(point[0]), static_cast<double>(point[1]),
+                            static_cast<double>(point[2]));
       }
     }
   });

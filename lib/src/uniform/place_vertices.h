@@ -19,20 +19,17 @@ namespace tufa::uniform {
                                          const CellTopology& topology, const grid::Affine& affine,
                                          bool normals, Mesh& mesh, base::Job& job);
 
-/// Where a vertex may go if its place is not accepted. Both points lie in its cell.
-enum class Fallback {
-  Plain,      ///< the point of its QEF alone, without regard to creases
-  MassPoint,  ///< the mean of its crossings
+/// Where vertices may go if their places are not accepted: points in their cells, counted from
+/// affine.origin() like the positions of the mesh.
+struct FallbackPoints {
+  std::vector<Position> plain;  ///< the point of a vertex's QEF alone, without regard to creases
+  std::vector<Position> mass;   ///< the mean of its crossings
 };
 
-/// The fallback of each of some vertices, given in rising order. Counted from affine.origin(), like
-/// the positions of the mesh.
-[[nodiscard]] std::vector<Position> fallbackPoints(Fallback which, const grid::Blocks& blocks,
-                                                   const grid::FieldScale& scale,
-                                                   const CellTopology& topology,
-                                                   const grid::Affine& affine,
-                                                   const std::vector<VertexIndex>& vertices,
-                                                   base::Job& job);
+/// The fallbacks of some vertices, given in rising order. Cost: the crossings of their blocks.
+[[nodiscard]] FallbackPoints fallbackPoints(
+    const grid::Blocks& blocks, const grid::FieldScale& scale, const CellTopology& topology,
+    const grid::Affine& affine, const std::vector<VertexIndex>& vertices, base::Job& job);
 
 /// Gives each vertex the mean of the normals of its faces, weighted by their angles at the vertex.
 void setFaceNormals(Mesh& mesh, base::Job& job);

@@ -80,7 +80,7 @@ TEST(Crossings, OfAPlaneAreExact) {
     for (const Found& f : found) {
       EXPECT_NEAR(plane(f.point()), 0, 1e-5);
       EXPECT_LT((f.normal() - plane.normal).length(), 1e-5);
-      EXPECT_FALSE(f.crossing.crease);
+      EXPECT_EQ(f.crossing.kink, Kink::None);
     }
   }
 }
@@ -110,13 +110,44 @@ TEST(Crossings, BesideCreasesComeFromOneSide) {
     worst = std::max(worst, error);
     sum += error;
     linearSum += std::abs(f.linear - truth);
-    creases += f.crossing.crease ? 1 : 0;
+    creases += f.crossing.kink != Kink::None ? 1 : 0;
     offSide += box.cosineToAxis(f.normal()) < 0.99 ? 1 : 0;
   }
   EXPECT_GT(creases, 20);
   EXPECT_LT(worst, 0.2);
   EXPECT_LT(sum, 0.35 * linearSum);
   EXPECT_LT(offSide, static_cast<int>(found.size()) / 10);
+}
+
+/// The kinks at the crossings of a convex roof whose two sides are so many degrees apart.
+std::vector<Kink> kinksOfRoof(double degrees) {
+  const double half = degrees / 2 * 3.14159265358979 / 180;
+  const Vec3 up = Vec3(1, 2, 3).unitOrX(), along = up.cross(Vec3(1, 0, 0)).unitOrX();
+  const Vec3 across = along.cross(up);
+  const Vec3 left = up * std::cos(half) + across * std::sin(half);
+  const Vec3 right = up * std::cos(half) - across * std::sin(half);
+  const Vec3 ridge(4.2, 3.7, 3.9);
+  const auto field = distanceAroundBlock([&](const Vec3& p) {
+    const double a = left.dot(p - ridge), b = right.dot(p - ridge);
+    // Beyond both sides, seen from the ridge, the ridge is nearest.
+    const Vec3 foot = ridge + along * along.dot(p - ridge);
+    const bool beyond = across.dot(p - foot) * std::cos(half) < std::sin(half) * up.dot(p - foot) &&
+                        across.dot(p - foot) * std::cos(half) > -std::sin(half) * up.dot(p - foot);
+    return beyond ? (p - foot).length() : std::max(a, b);
+  });
+  std::vector<Kink> kinks;
+  for (const Found& f : crossingsOf(field)) kinks.push_back(f.crossing.kink);
+  return kinks;
+}
+
+TEST(Crossings, TellSharpKinksFromGentleOnes) {
+  const auto count = [](const std::vector<Kink>& kinks, Kink kink) {
+    return std::count(kinks.begin(), kinks.end(), kink);
+  };
+  const std::vector<Kink> gentle = kinksOfRoof(25), sharp = kinksOfRoof(90);
+  EXPECT_GT(count(gentle, Kink::Gentle), 5);
+  EXPECT_EQ(count(gentle, Kink::Sharp), 0);
+  EXPECT_GT(count(sharp, Kink::Sharp), 5);
 }
 
 template <int axis>
@@ -137,7 +168,7 @@ void expectBatchesAgree(const BlockField& field) {
       const Crossing& one = found[first + lane].crossing;
       ASSERT_EQ(batch.along[lane], one.along);
       for (int i = 0; i < 3; ++i) ASSERT_EQ(batch.normals[i][lane], one.normal[i]);
-      ASSERT_EQ(((batch.creases >> lane) & 1) != 0, one.crease);
+      ASSERT_EQ(batch.kinks[lane], one.kink);
     }
   }
 }
@@ -160,7 +191,7 @@ TEST(Crossings, OfADensityAreNeverCreases) {
   const auto found = crossingsOf(field);
   ASSERT_GT(found.size(), 64U);
   for (const Found& f : found) {
-    EXPECT_FALSE(f.crossing.crease);
+    EXPECT_EQ(f.crossing.kink, Kink::None);
     EXPECT_NEAR(static_cast<double>(f.crossing.along), std::clamp(f.linear, 1e-3, 1 - 1e-3), 1e-5);
     // Outward is where the density falls.
     EXPECT_GT(f.normal().dot(f.point() - box.center), 0);
