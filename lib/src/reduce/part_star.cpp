@@ -138,7 +138,7 @@ float Part::sharpestAfter() const {
 }
 
 // A sharper turn than kFoldCosine passes only where the old star had one as sharp, which it has on
-// a wedge of the solid.
+// a wedge of the solid. Tiny faces count on neither side: a fold of theirs must not grow.
 bool Part::foldGuard(Index a, Index b) const {
   constexpr float kSlack = 0.01f;
   const float sharpest = sharpestAfter();
@@ -153,9 +153,14 @@ float Part::sharpestBefore(Index a, Index b) const {
     do {
       const Index t = 3 * (c / 3);
       const Vec3f p = position_[vertex_[t]];
-      const Vec3f n = unit(cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p));
-      for (const Index edge : {c, nextCorner(c)}) {
-        sharpest = std::min(sharpest, dot(n, unit(outerNormal(edge))));
+      const Vec3f own = cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p);
+      if (squaredLength(own) > kTinyFace2) {
+        for (const Index edge : {c, nextCorner(c)}) {
+          const Vec3f outer = outerNormal(edge);
+          if (squaredLength(outer) > kTinyFace2) {
+            sharpest = std::min(sharpest, dot(unit(own), unit(outer)));
+          }
+        }
       }
       c = around(c);
     } while (c != corner_[v]);

@@ -35,6 +35,8 @@ constexpr double kParts[] = {0.05, 0.1, 0.2, 0.4};
 // from there to its mass point.
 constexpr std::uint8_t kMostParts = 6;
 constexpr std::uint8_t kAtPlain = kMostParts + 1, kAtMassPoint = 2 * kAtPlain;
+// Sheets of a smaller cosine (140 degrees apart) may have faces that are a fold.
+constexpr double kSharpSheets = -0.766;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
 
@@ -68,6 +70,7 @@ class PlacementGuard {
   Withdrawal run() {
     steps_.assign(mesh_.positions.size(), 0);
     moved_.assign(mesh_.positions.size(), 0);
+    beside_.assign(mesh_.positions.size(), 0);
     if (withdrawFrom(findCoincident())) {
       splitAgain();
       findTouched();
@@ -171,10 +174,11 @@ class PlacementGuard {
     return conflicts;
   }
 
-  // Edges between a triangle that is off and any other one.
+  // Edges between a triangle that is off and any other one. After the first time only those of
+  // quads that were touched can be new; the triangle that is off may be the one beside such a quad.
   void findFolds(bool first, std::vector<Conflict>& conflicts) {
     const std::vector<std::uint32_t> off = collect(2 * mesh_.quads.size(), [&](std::uint32_t face) {
-      return (first || touches(face / 2, moved_)) && isOff(face);
+      return (first || touches(face / 2, beside_)) && isOff(face);
     });
     if (off.empty()) return;
     std::vector<std::uint8_t> marks(mesh_.positions.size());
@@ -234,7 +238,8 @@ class PlacementGuard {
       return best;
     };
     const int first = sheetOf(na), second = sheetOf(nb);
-    return first >= 0 && second >= 0 && first != second;
+    return first >= 0 && second >= 0 && first != second &&
+           Vec3(sheets.normals[first]).dot(Vec3(sheets.normals[second])) < kSharpSheets;
   }
 
   void findPairs(bool first, std::vector<Conflict>& conflicts) {
@@ -383,7 +388,11 @@ class PlacementGuard {
   void findTouched() {
     touched_ =
         collect(mesh_.quads.size(), [&](std::uint32_t quad) { return touches(quad, moved_); });
-    for (const std::uint32_t quad : touched_) polygons_.update(quad);
+    std::fill(beside_.begin(), beside_.end(), 0);
+    for (const std::uint32_t quad : touched_) {
+      polygons_.update(quad);
+      for (const VertexIndex vertex : mesh_.quads[quad].vertices) beside_[vertex] = 1;
+    }
   }
 
   uniform::UniformSurface& surface_;
@@ -394,6 +403,7 @@ class PlacementGuard {
   std::vector<std::uint8_t> steps_;     // places that each vertex has left
   std::vector<std::uint8_t> moved_;     // vertices moved in the last round
   std::vector<std::uint32_t> touched_;  // quads of these
+  std::vector<std::uint8_t> beside_;    // vertices of those
   Withdrawal result_;
 };
 
