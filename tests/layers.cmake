@@ -32,6 +32,7 @@ set(sees_rays base grid implicit rays)
 set(sees_filter base grid filter)
 set(sees_attributes base attributes)
 set(sees_shading base shading)
+set(sees_polygons base polygons)
 set(sees_io base shading io)
 set(sees_check base grid check)
 

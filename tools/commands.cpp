@@ -127,8 +127,10 @@ void addContourOptions(CLI::App& app, ContourOptions& options,
                        {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
                        "what to do with NaN and infinite values (default refuse)");
   app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
-  app.add_flag("--simplify,!--no-simplify", options.simplify,
-               "collapse edges of an adaptive mesh as far as the tolerance allows (default)");
+  app.add_flag(
+      "--simplify,!--no-simplify,!--fast", options.simplify,
+      "collapse edges of an adaptive mesh as far as the tolerance allows (default); --fast, "
+      "the same as --no-simplify: merge cells alone, in about half the time");
   app.add_option("--min-angle", options.minAngle,
                  "angle that triangles are to keep, in degrees up to 30, for more triangles; what "
                  "is left below is told; 0: none asked for")

@@ -64,6 +64,14 @@ void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
   app.add_option("--tolerance-grid", arguments.toleranceGrid,
                  "float grid of the file that multiplies the tolerance in space");
   app.add_flag("--uniform", options.uniform, "do not merge cells");
+  app.add_option_function<std::string>(
+         "--target",
+         [&arguments](const std::string& word) {
+           arguments.target = word == "quads" ? Target::Quads : Target::Any;
+         },
+         "faces of the mesh: any (default), or quads where the surface is flat or bent one way "
+         "only")
+      ->check(CLI::IsMember({"any", "quads"}));
 }
 
 void addSequenceOptions(CLI::App& app, SequenceArguments& sequence) {
@@ -123,7 +131,7 @@ void requireMeaning(const CLI::App& app, Method method) {
                 "--tolerance is for --method dual and octree-mc alone; leave it out");
   }
   for (const char* name : {"--max-angle", "--min-cell", "--max-cell", "--tolerance-grid",
-                           "--simplify", "--min-angle", "--no-repair"}) {
+                           "--simplify", "--min-angle", "--target", "--no-repair"}) {
     if (app.get_option(name)->count() == 0) continue;
     throw Error(ErrorCode::InvalidArgument,
                 std::string(name) + " is for --method dual alone; leave it out");

@@ -2,6 +2,7 @@
 
 #include <tufa/error.h>
 #include <tufa/labels.h>
+#include <tufa/quads.h>
 #include <tufa/unite.h>
 #include <algorithm>
 #include <filesystem>
@@ -64,6 +65,9 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
     const double refine = readTolerance("--refine", arguments.refine, *grid);
     run.mesh =
         extract(*grid, arguments.method, {options, arguments.sharpAngle, refine}, &run.contour);
+    if (arguments.target == Target::Quads) {
+      pairTriangles(run.mesh, options.tolerance * voxelSizeOf(*grid));
+    }
   });
   if (!arguments.quiet) noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
   if (!arguments.allowEmpty) {

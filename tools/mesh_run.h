@@ -22,6 +22,12 @@ enum class Join {
   Union,     ///< one mesh, of the union of level sets
 };
 
+/// What faces a mesh is to have.
+enum class Target {
+  Any,    ///< as they are made
+  Quads,  ///< triangles are joined in pairs, see tufa::pairTriangles()
+};
+
 /// What `tufa mesh` was asked for.
 struct MeshArguments {
   std::string input;
@@ -40,6 +46,7 @@ struct MeshArguments {
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
   std::optional<std::string> toleranceGrid;
+  Target target = Target::Any;
   std::optional<double> creaseAngle;  ///< degrees; unset: 40 where the field is a distance field
   UpAxis up = UpAxis::Y;
   double scale = 1;  ///< metres in a world unit

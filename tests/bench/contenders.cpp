@@ -12,12 +12,20 @@
 namespace tufa::bench {
 namespace {
 
-// The tolerance of the adaptive mesh in voxels; 0: uniform.
-Outcome runTufa(const openvdb::FloatGrid& grid, double tolerance, int threads) {
+ContourOptions uniform() {
   ContourOptions options;
+  options.uniform = true;
+  return options;
+}
+
+ContourOptions cut() {
+  ContourOptions options;
+  options.simplify = false;
+  return options;
+}
+
+Outcome runTufa(const openvdb::FloatGrid& grid, ContourOptions options, int threads) {
   options.threads = threads;
-  options.uniform = tolerance == 0;
-  if (tolerance > 0) options.tolerance = tolerance;
   ContourReport report;
   const auto mesh = std::make_shared<Mesh>(contour(grid, options, &report));
   return {mesh->positions.size(), mesh->triangleCount(), report.stages, mesh};
@@ -112,14 +120,16 @@ std::vector<Contender> methodsFor(const openvdb::FloatGrid& grid) {
 
 std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid) {
   constexpr std::size_t kUniformPeer = 1, kAdaptivePeer = 3;
-  std::vector<Contender> all = {
-      {"tufa, uniform", kUniformPeer, [&](int threads) { return runTufa(grid, 0, threads); }},
-      {"volumeToMesh, adaptivity 0", kUniformPeer,
-       [&](int threads) { return runVolumeToMesh(grid, 0, threads); }},
-      {"tufa, tolerance 0.1", kAdaptivePeer,
-       [&](int threads) { return runTufa(grid, 0.1, threads); }},
-      {"volumeToMesh, adaptivity 0.25", kAdaptivePeer,
-       [&](int threads) { return runVolumeToMesh(grid, 0.25, threads); }}};
+  std::vector<Contender> all = {{"tufa, uniform", kUniformPeer,
+                                 [&](int threads) { return runTufa(grid, uniform(), threads); }},
+                                {"volumeToMesh, adaptivity 0", kUniformPeer,
+                                 [&](int threads) { return runVolumeToMesh(grid, 0, threads); }},
+                                {"tufa, tolerance 0.1", kAdaptivePeer,
+                                 [&](int threads) { return runTufa(grid, {}, threads); }},
+                                {"volumeToMesh, adaptivity 0.25", kAdaptivePeer,
+                                 [&](int threads) { return runVolumeToMesh(grid, 0.25, threads); }},
+                                {"tufa, tolerance 0.1, --fast", kAdaptivePeer,
+                                 [&](int threads) { return runTufa(grid, cut(), threads); }}};
   addFlyingEdges(grid, kUniformPeer, all);
   all.push_back(readOfAllLeaves(grid, kUniformPeer));
   return all;

@@ -69,7 +69,8 @@ void run(const Arguments& arguments) {
     }
   }
   std::cout << timeTable(all);
-  std::vector<std::string> names = {"tufa, uniform", "tufa, tolerance 0.1"};
+  std::vector<std::string> names = {"tufa, uniform", "tufa, tolerance 0.1",
+                                    "tufa, tolerance 0.1, --fast"};
   if (arguments.methods) {
     names.clear();
     for (const std::string_view name : tufa::methodNames()) {

@@ -83,6 +83,35 @@ TEST_F(Command, LodGivesTheKeysOfItsReport) {
   }
 }
 
+/// The triangles are the same, two for each quad.
+TEST_F(Command, JoinsTrianglesToQuads) {
+  ASSERT_EQ(run("make bracket --voxel 0.04 -o b.vdb").exitCode, 0);
+  const auto meshed = [&](const std::string& options) {
+    const Outcome outcome = run("mesh b.vdb -o b.obj --check --json" + options);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto any = meshed(" --target any"), quads = meshed(" --target quads");
+  EXPECT_EQ(any["quads"], 0);
+  EXPECT_GT(quads["quads"], 50);
+  EXPECT_EQ(quads["triangles"], any["triangles"]);
+  EXPECT_EQ(quads["certificate"], any["certificate"]);
+  EXPECT_EQ(quads["check"]["watertight"], true);
+  EXPECT_EQ(quads["check"]["area"], any["check"]["area"]);
+  const Outcome refused = run("mesh b.vdb -o b.obj --method mc --target quads");
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_NE(refused.err.find("--target is for --method dual alone"), std::string::npos);
+}
+
+TEST_F(Command, CutsWithoutCollapseIfItIsToBeFast) {
+  ASSERT_EQ(run("make torus --voxel 0.04 -o t.vdb").exitCode, 0);
+  const Outcome fast = run("mesh t.vdb -o fast.ply --fast --json");
+  ASSERT_EQ(fast.exitCode, 0) << fast.err;
+  ASSERT_EQ(run("mesh t.vdb -o cut.ply --no-simplify").exitCode, 0);
+  EXPECT_EQ(test::readBytes(folder / "fast.ply"), test::readBytes(folder / "cut.ply"));
+  EXPECT_LE(nlohmann::json::parse(fast.out)["certificate"]["max_error_voxels"], 0.1);
+}
+
 /// The figures are those of the checker, and of the text.
 TEST_F(Command, TellsWhatCameOfAnAngle) {
   ASSERT_EQ(run("make bracket --voxel 0.04 -o b.vdb").exitCode, 0);

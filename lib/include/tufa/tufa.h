@@ -20,6 +20,7 @@
 #include <tufa/octree.h>
 #include <tufa/picture.h>
 #include <tufa/progress.h>
+#include <tufa/quads.h>
 #include <tufa/rays.h>
 #include <tufa/shapes.h>
 #include <tufa/unite.h>
