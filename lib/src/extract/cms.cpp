@@ -1,23 +1,15 @@
 #include "extract/cms.h"
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
-#include "base/huge_pages.h"
-#include "extract/cell_walk.h"
-#include "extract/cube_mesher.h"
 #include "extract/face_arcs.h"
-#include "extract/loop_crossings.h"
+#include "extract/fan_mesher.h"
 #include "extract/marching_cubes.h"
 #include "extract/place_crossings.h"
-#include "extract/sharp_loops.h"
-#include "uniform/uniform_surface.h"
 
 namespace tufa::extraction {
-
-using uniform::SurfaceBlock;
 
 namespace {
 
@@ -57,45 +49,33 @@ std::optional<FacePoint> creaseAt(const uniform::CreasePlacement& crease, int ax
 class SquaresMesher {
  public:
   SquaresMesher(const grid::Volume& volume, CubeCells& cells, double sharpAngle, base::Job& job)
-      : volume_(volume),
-        cells_(cells),
-        topology_(cells.topology),
-        leastCosine_(std::cos(sharpAngle * std::numbers::pi / 180)),
-        job_(job) {}
+      : volume_(volume), cells_(cells), leastCosine_(cosineOf(sharpAngle)), job_(job) {}
 
-  Mesh run() {
+  Mesh run(ContourReport& report) {
     job_.beginStage("vertices", kVerticesEnd);
-    base::resizeLarge(mesh_.positions, cells_.edgeCount, job_);
-    base::resizeLarge(mesh_.normals, cells_.edgeCount, job_);
-    placeCrossings(volume_, topology_, cells_.edges, mesh_, job_);
+    mesh_ = meshOfCrossings(volume_, cells_, job_);
     job_.beginStage("faces", kFacesEnd);
     joinFaces();
     job_.beginStage("features", kFeaturesEnd);
     loops_ = findSharpLoops(volume_, cells_, mesh_, leastCosine_, job_);
     placePoints();
-    countTriangles();
-    number();
-    job_.beginStage("triangles", kTrianglesEnd);
-    base::resizeLarge(mesh_.triangles, triangleCount_, job_);
-    emit();
-    if (topology_.openEdges > 0) dropUnused(mesh_, job_);
+    FanMesher fans(volume_, cells_, loops_, mesh_, job_);
+    const auto steps = [&](const WalkedCell& cell, int edge) {
+      return pointAfter(cell, edge) ? 2 : 1;
+    };
+    fans.run(arcs_, kTrianglesEnd, steps, [&](const WalkedCell& cell, int edge, const auto& body) {
+      if (const auto point = pointAfter(cell, edge)) body(*point);
+      body(cell.vertexAt(cell.cubeCase().next[edge]));
+    });
+    report.creaseCells = fans.featureCount();
+    if (cells_.topology.openEdges > 0) dropUnused(mesh_, job_);
     return std::move(mesh_);
   }
 
-  [[nodiscard]] std::size_t featureCount() const { return featureCount_; }
-
  private:
-  struct BlockPoints {
-    std::vector<Feature> points;  ///< of arcs
-    std::uint64_t firstTriangle = 0;
-    std::uint64_t firstVertex = 0;  ///< points, then those of loops, then the means of other loops
-    std::uint32_t triangles = 0;
-    std::uint32_t centres = 0;
-  };
-
   // The crossing of an edge, seen in a face across an axis. The same numbers for both cells there.
   [[nodiscard]] FaceCrossing crossingAt(const WalkedCell& cell, int edge, int axis) const {
-    const VertexIndex vertex = cell.table[cell.tablePlace() + kEdgeOffsets[edge]];
+    const VertexIndex vertex = cell.vertexAt(edge);
     const Vec3 at =
         volume_.affine.latticePoint(mesh_.positions[vertex], cell.corner(volume_.blocks));
     const Vec3 plane = volume_.affine.planeInLattice(mesh_.normals[vertex]);
@@ -124,11 +104,11 @@ class SquaresMesher {
 
   // Finds the sharp points of the faces at the lower ends of cells.
   void placePoints() {
-    blocks_.resize(topology_.blocks.size());
-    base::resizeLarge(arcs_, topology_.cellCount, job_);
+    arcs_.blocks.resize(cells_.topology.blocks.size());
+    base::resizeLarge(arcs_.cells, cells_.topology.cellCount, job_);
     walkCells(cells_, job_, [&](const WalkedCell& cell) {
-      std::vector<Feature>& points = blocks_[cell.place.block].points;
-      CellFeatures& arcs = arcs_[cell.place.cell];
+      std::vector<Feature>& points = arcs_.blocks[cell.place.block];
+      CellFeatures& arcs = arcs_.cells[cell.place.cell];
       arcs.first = static_cast<VertexIndex>(points.size());
       if (loops_.cells[cell.place.cell].parts == 0) return;
       const FaceBits joined = joinedFacesOf(cell.code);
@@ -213,137 +193,28 @@ class SquaresMesher {
     return isInFace(mean) ? std::optional(mean) : std::nullopt;
   }
 
-  // The sharp point of the arc from a crossing to the next, if it has one.
-  struct ArcPoint {
-    CubeCells::Place place;
-    int part = 0;
-  };
-  [[nodiscard]] std::optional<ArcPoint> pointAfter(const WalkedCell& cell, int edge) const {
+  // The sharp point of the arc from a crossing to the next, if it has one: its number in its block,
+  // or, once all are numbered, its vertex.
+  [[nodiscard]] std::optional<VertexIndex> pointAfter(const WalkedCell& cell, int edge) const {
     const int next = cell.cubeCase().next[edge], face = kFaceOf[edge][next], axis = face / 2;
-    const ArcPoint own{cell.place, arcPart(axis, arcWith(cell.mask(), face, edge, next))};
-    if ((face & 1) == 0) return has(own) ? std::optional(own) : std::nullopt;
-    std::array<int, 3> at = cell.at;
-    ++at[axis];
-    const auto beyond = cells_.find(cell.block, at);
-    if (!beyond) return std::nullopt;
-    const ArcPoint others{*beyond, own.part};
-    return has(others) ? std::optional(others) : std::nullopt;
-  }
-  [[nodiscard]] bool has(const ArcPoint& point) const {
-    return arcs_[point.place.cell].has(point.part);
-  }
-  // Its number in its block, or, once all are numbered, its vertex.
-  [[nodiscard]] VertexIndex indexOf(const ArcPoint& point) const {
-    return arcs_[point.place.cell].of(point.part);
-  }
-
-  void countTriangles() {
-    walkCells(cells_, job_, [&](const WalkedCell& cell) {
-      BlockPoints& own = blocks_[cell.place.block];
-      const CellFeatures& loops = loops_.cells[cell.place.cell];
-      const CubeCase& chosen = cell.cubeCase();
-      for (int i = 0; i < chosen.count; ++i) own.triangles += isKept(chosen, i, loops) ? 1 : 0;
-      own.centres += hasCentre(chosen, loops) ? 1 : 0;
-      for (int loop = 0; loop < chosen.loopCount; ++loop) {
-        if (!loops.has(loop)) continue;
-        forLoop(chosen, loop, [&](int edge) { own.triangles += pointAfter(cell, edge) ? 2 : 1; });
-      }
-    });
-  }
-
-  void number() {
-    std::uint64_t vertices = cells_.edgeCount;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      job_.pollCancelled(i);
-      BlockPoints& own = blocks_[i];
-      own.firstVertex = vertices;
-      own.firstTriangle = triangleCount_;
-      vertices += own.points.size() + loops_.blocks[i].size() + own.centres;
-      triangleCount_ += own.triangles;
-      featureCount_ += loops_.blocks[i].size();
+    const int part = arcPart(axis, arcWith(cell.mask(), face, edge, next));
+    std::optional<CubeCells::Place> owner = cell.place;
+    if ((face & 1) != 0) {
+      std::array<int, 3> at = cell.at;
+      ++at[axis];
+      owner = cells_.find(cell.block, at);
     }
-    uniform::requireIndexable(vertices);
-    base::resizeLarge(mesh_.positions, vertices, job_);
-    base::resizeLarge(mesh_.normals, vertices, job_);
-    job_.forRanges(blocks_.size(), 32, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const SurfaceBlock& block = topology_.blocks[i];
-        const BlockPoints& own = blocks_[i];
-        const auto first = static_cast<VertexIndex>(own.firstVertex);
-        const auto firstLoop = first + static_cast<VertexIndex>(own.points.size());
-        for (std::uint32_t cell = 0; cell < block.cellCount; ++cell) {
-          arcs_[block.firstVertex + cell].first += first;
-          loops_.cells[block.firstVertex + cell].first += firstLoop;
-        }
-        for (std::size_t k = 0; k < own.points.size(); ++k) write(own.points[k], first + k);
-        for (std::size_t k = 0; k < loops_.blocks[i].size(); ++k)
-          write(loops_.blocks[i][k].vertex, firstLoop + k);
-      }
-    });
-  }
-
-  void write(const Feature& feature, std::size_t vertex) {
-    mesh_.positions[vertex] = feature.position;
-    mesh_.normals[vertex] = feature.normal;
-  }
-
-  void emit() {
-    // Of each block, where its next triangle and its next mean go. A block is done by one thread.
-    std::vector<std::pair<Triangle*, VertexIndex>> next(blocks_.size());
-    for (std::size_t i = 0; i < next.size(); ++i) {
-      const BlockPoints& own = blocks_[i];
-      next[i] = {
-          mesh_.triangles.data() + own.firstTriangle,
-          static_cast<VertexIndex>(own.firstVertex + own.points.size() + loops_.blocks[i].size())};
-    }
-    walkCells(cells_, job_, [&](const WalkedCell& cell) {
-      auto& [triangle, centre] = next[cell.place.block];
-      emitCell(cell, triangle, centre);
-    });
-  }
-
-  void emitCell(const WalkedCell& cell, Triangle*& triangle, VertexIndex& centre) {
-    const CubeCase& chosen = cell.cubeCase();
-    const CellFeatures& loops = loops_.cells[cell.place.cell];
-    const bool mirrored = volume_.affine.mirrored();
-    const auto add = [&](VertexIndex a, VertexIndex b, VertexIndex c) {
-      *triangle++ = mirrored ? Triangle(a, c, b) : Triangle(a, b, c);
-    };
-    const auto at = [&](int edge) {
-      return edge < kEdges ? cell.table[cell.tablePlace() + kEdgeOffsets[edge]] : centre;
-    };
-    for (int t = 0; t < chosen.count; ++t) {
-      const auto& [a, b, c] = chosen.triangles[t];
-      if (isKept(chosen, t, loops)) add(at(a), at(b), at(c));
-    }
-    for (int loop = 0; loop < chosen.loopCount; ++loop) {
-      if (!loops.has(loop)) continue;
-      const VertexIndex middle = loops.of(loop);
-      forLoop(chosen, loop, [&](int edge) {
-        VertexIndex from = at(edge);
-        if (const auto point = pointAfter(cell, edge)) {
-          add(from, indexOf(*point), middle);
-          from = indexOf(*point);
-        }
-        add(from, at(chosen.next[edge]), middle);
-      });
-    }
-    if (hasCentre(chosen, loops)) {
-      placeCentre(chosen.aroundCentre[0], cell.tablePlace(), cell.table, centre++, mesh_);
-    }
+    if (!owner || !arcs_.cells[owner->cell].has(part)) return std::nullopt;
+    return arcs_.cells[owner->cell].of(part);
   }
 
   const grid::Volume& volume_;
   CubeCells& cells_;
-  const uniform::CellTopology& topology_;
   double leastCosine_;
   base::Job& job_;
   Mesh mesh_;
-  std::vector<BlockPoints> blocks_;
-  std::vector<CellFeatures> arcs_;  ///< of each surface cell: arcs of its lower faces
-  SharpLoops loops_;                ///< numbers in the mesh, once they are given
-  std::uint64_t triangleCount_ = 0;
-  std::size_t featureCount_ = 0;
+  ArcPoints arcs_;
+  SharpLoops loops_;
 };
 
 }  // namespace
@@ -352,10 +223,7 @@ Mesh meshSquares(const grid::Volume& volume, double sharpAngle, const ContourOpt
                  ContourReport& report, base::Job& job) {
   CubeCells cells = chooseCases(volume, marchingCubesRule(Ambiguity::Asymptotic), options.cap, job);
   report = uniform::reportOf(volume, cells.topology);
-  SquaresMesher mesher(volume, cells, sharpAngle, job);
-  Mesh mesh = mesher.run();
-  report.creaseCells = mesher.featureCount();
-  return mesh;
+  return SquaresMesher(volume, cells, sharpAngle, job).run(report);
 }
 
 }  // namespace tufa::extraction

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/huge_pages.h"
 #include "grid/samples.h"
 #include "uniform/crossings.h"
 
@@ -85,6 +86,14 @@ void placeCrossings(const grid::Volume& volume, const uniform::CellTopology& top
     CrossingPlacer placer(volume, mesh);
     for (std::size_t i = begin; i < end; ++i) placer.place(topology.blocks[i], edges[i], *accessor);
   });
+}
+
+Mesh meshOfCrossings(const grid::Volume& volume, const CubeCells& cells, base::Job& job) {
+  Mesh mesh;
+  base::resizeLarge(mesh.positions, cells.edgeCount, job);
+  base::resizeLarge(mesh.normals, cells.edgeCount, job);
+  placeCrossings(volume, cells.topology, cells.edges, mesh, job);
+  return mesh;
 }
 
 void dropUnused(Mesh& mesh, base::Job& job) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/job.h"
-#include "extract/block_edges.h"
+#include "extract/cube_cells.h"
 #include "grid/volume.h"
 
 namespace tufa::extraction {
@@ -15,6 +15,10 @@ namespace tufa::extraction {
 /// counted from the volume's affine.origin().
 void placeCrossings(const grid::Volume& volume, const uniform::CellTopology& topology,
                     const std::vector<BlockEdges<3>>& edges, Mesh& mesh, base::Job& job);
+
+/// A mesh of the crossings of all edges, with normals.
+[[nodiscard]] Mesh meshOfCrossings(const grid::Volume& volume, const CubeCells& cells,
+                                   base::Job& job);
 
 /// Takes away the vertices that no triangle has, and keeps the order of the others.
 void dropUnused(Mesh& mesh, base::Job& job);

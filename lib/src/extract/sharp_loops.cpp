@@ -61,11 +61,11 @@ class LoopSharpener {
     sharpCells_.resize(count);
     base::resizeLarge(found_.cells, cells_.topology.cellCount, job_);
     job_.forRanges(count, 32, [&](std::size_t begin, std::size_t end) {
-      CubeTable table;
+      BlockTable tables(cells_);
       SheetsOfCell sheets(volume_);
       for (std::size_t i = begin; i < end; ++i) {
         sheets.moveTo(cells_.topology.blocks[i]);
-        walkBlock(cells_, i, table, [&](const WalkedCell& cell) { findSharp(cell, sheets); });
+        walkBlock(cells_, i, tables, [&](const WalkedCell& cell) { findSharp(cell, sheets); });
       }
     });
   }
@@ -86,7 +86,7 @@ class LoopSharpener {
   }
 
   [[nodiscard]] LoopCrossings crossingsOf(const WalkedCell& cell, int loop) const {
-    return {cell.cubeCase(), loop, cell.tablePlace(), cell.table, mesh_};
+    return {cell.cubeCase(), loop, cell.tablePlace(), cell.table(), mesh_};
   }
   [[nodiscard]] uniform::Qef planesOf(const WalkedCell& cell,
                                       const LoopCrossings& crossings) const {
@@ -118,13 +118,13 @@ class LoopSharpener {
     all.blocks.resize(found_.blocks.size());
     base::resizeLarge(all.cells, found_.cells.size(), job_);
     job_.forRanges(all.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-      CubeTable table;
+      BlockTable tables(cells_);
       SheetsOfCell sheets(volume_);
       for (std::size_t i = begin; i < end; ++i) {
         const grid::BlockBits near = cellsNearSharp(cells_.topology.blocks[i]);
         if (!near.any()) continue;
         sheets.moveTo(cells_.topology.blocks[i]);
-        walkBlock(cells_, i, table, [&](const WalkedCell& cell) {
+        walkBlock(cells_, i, tables, [&](const WalkedCell& cell) {
           if (!near.get(grid::cellIndex(cell.at[0], cell.at[1], cell.at[2]))) return;
           addClipped(cell, sheets, all);
         });

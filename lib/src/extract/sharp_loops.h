@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "base/job.h"
@@ -28,6 +30,11 @@ struct SharpLoops {
     return cell.has(loop) ? &blocks[place.block][cell.of(loop)] : nullptr;
   }
 };
+
+/// The cosine of an angle in degrees.
+[[nodiscard]] inline double cosineOf(double degrees) {
+  return std::cos(degrees * std::numbers::pi / 180);
+}
 
 /// Finds the loops whose normals differ by more than this cosine tells, and the best point for the
 /// tangent planes of each: in distance fields where the sheets around the cell meet, see
