@@ -74,9 +74,13 @@ inline constexpr Tetrahedron tetrahedron(std::array<int, 4> points, Where where)
   return {points, where};
 }
 
+// A split names its tetrahedra; kGroupSize of them, which the same cells have, share their points
+// and are looked up together.
+
 /// Five: a middle one and four at corners, mirrored from cell to cell, so that the diagonals of a
 /// face are the same on both sides: they join lattice points of even sums.
 struct SplitInFive {
+  static constexpr int kGroupSize = 5;
   static constexpr auto kTetrahedra = [] {
     std::array<Tetrahedron, 10> all{};
     for (int odd = 0; odd < 2; ++odd) {
@@ -98,6 +102,7 @@ struct SplitInFive {
 
 /// Six around the diagonal from the lowest corner to the highest: one for each order of the axes.
 struct SplitInSix {
+  static constexpr int kGroupSize = 6;
   static constexpr auto kTetrahedra = [] {
     std::array<Tetrahedron, 6> all{};
     for (int i = 0; i < 6; ++i) {
@@ -111,6 +116,7 @@ struct SplitInSix {
 
 /// Twenty-four of one shape: the cell's centre, a face's centre and an edge of that face.
 struct SplitInTwentyFour {
+  static constexpr int kGroupSize = 4;
   static constexpr auto kTetrahedra = [] {
     std::array<Tetrahedron, 24> all{};
     for (int i = 0; i < 24; ++i) {
@@ -125,6 +131,7 @@ struct SplitInTwentyFour {
 /// The body-centred cubic lattice: two neighbouring centres and an edge of the face between them. A
 /// cell has those across its upper faces, and those across a lower one if the cell there has none.
 struct BodyCentred {
+  static constexpr int kGroupSize = 4;
   static constexpr auto kTetrahedra = [] {
     constexpr std::array<Where, 3> none = {Where::NoCellBelow0, Where::NoCellBelow1,
                                            Where::NoCellBelow2};

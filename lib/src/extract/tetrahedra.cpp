@@ -1,15 +1,18 @@
 #include "extract/tetrahedra.h"
 
+#include <memory>
 #include <utility>
 
 #include "base/huge_pages.h"
-#include "extract/block_edges.h"
-#include "extract/half_places.h"
 #include "extract/place_crossings.h"
+#include "extract/point_table.h"
+#include "extract/tetrahedra_lattice.h"
+#include "uniform/crossings.h"
 #include "uniform/uniform_surface.h"
 
 namespace tufa::extraction {
 
+using grid::BlockBits;
 using grid::BlockSamples;
 using grid::kBlockSize;
 using uniform::SurfaceBlock;
@@ -19,62 +22,10 @@ namespace {
 // Shares of the time that stages took on the sample volumes.
 constexpr double kCellsEnd = 0.2, kCasesEnd = 0.4, kVerticesEnd = 0.75, kTrianglesEnd = 0.95;
 
-// What is known of a cell: a bit for each point that is inside, and some more.
-using CellBits = std::uint32_t;
-constexpr int kFirstNoCellBelow = kPoints;  // three bits
-constexpr int kFirstDropped = kPoints + 3;  // three bits: no tetrahedra across that upper face
-constexpr CellBits kDropped = CellBits{1} << (kFirstDropped + 3);  // no tetrahedra at all
-
-template <class Split>
-struct Lattice {
-  static constexpr auto kTetrahedra = Split::kTetrahedra;
-  static constexpr auto kEdges = edgesOf(kTetrahedra);
-  static constexpr int kKinds = kEdges.count;
-  static constexpr auto kReach = [] {
-    std::array<int, kKinds> reach{};
-    for (int kind = 0; kind < kKinds; ++kind) reach[kind] = kEdges.kinds[kind].reach;
-    return reach;
-  }();
-  using Table = EdgeTable<Lattice>;
-  // For each tetrahedron, what to add to the place of a cell for its edges.
-  static constexpr auto kOffsets = [] {
-    std::array<std::array<int, 6>, kTetrahedra.size()> offsets{};
-    for (std::size_t t = 0; t < kTetrahedra.size(); ++t) {
-      for (int e = 0; e < 6; ++e) {
-        const EdgeOfCell& edge = kEdges.edges[t][e];
-        offsets[t][e] = Table::offsetOf(edge.kind, edge.steps[0], edge.steps[1], edge.steps[2]);
-      }
-    }
-    return offsets;
-  }();
-  // Whether a point at this place is one of the cell's, and which.
-  static constexpr int pointAt(const HalfPlace& place) {
-    for (int point = 0; point < kPoints; ++point) {
-      if (kPlaces[point] == place) return point;
-    }
-    return -1;
-  }
-  static constexpr auto kEnds = [] {
-    std::array<std::array<int, 2>, kKinds> ends{};
-    for (int kind = 0; kind < kKinds; ++kind) {
-      ends[kind] = {pointAt(kEdges.kinds[kind].from), pointAt(kEdges.kinds[kind].to)};
-    }
-    return ends;
-  }();
-  static constexpr unsigned kUsedPoints = [] {
-    unsigned used = 0;
-    for (const Tetrahedron& tetrahedron : kTetrahedra) {
-      for (const int point : tetrahedron.points) used |= 1u << point;
-    }
-    return used;
-  }();
-  static constexpr bool kCentresBeyond = kUsedPoints >> kCentreBeyond != 0;
-  static constexpr bool kCentres = kUsedPoints >> kFaceCentre != 0;
-};
-
 template <class Split>
 class TetrahedraMesher {
-  using L = Lattice<Split>;
+  using L = TetrahedraLattice<Split>;
+  using Points = PointTable<L>;
   using Edges = BlockEdges<L::kKinds>;
   using Table = typename L::Table;
 
@@ -130,7 +81,7 @@ class TetrahedraMesher {
         if constexpr (L::kCentres && !L::kCentresBeyond) {
           samples.gather(volume_.blocks, volume_.scale, block.block, block.neighbours, *accessor);
         }
-        findEdges(block, samples, edges_[i], firstTriangle_[i]);
+        findEdges(block, i, samples);
       }
     });
   }
@@ -139,109 +90,188 @@ class TetrahedraMesher {
   void findCentres() {
     insideCentres_.resize(topology_.blocks.size());
     job_.forRanges(insideCentres_.size(), 32, [&](std::size_t begin, std::size_t end) {
-      constexpr PointsAround kAround{kPlaces[kCellCentre]};
       const auto accessor = volume_.blocks.accessor();
       BlockSamples samples;
       for (std::size_t i = begin; i < end; ++i) {
         const SurfaceBlock& block = topology_.blocks[i];
         samples.gather(volume_.blocks, volume_.scale, block.block, block.neighbours, *accessor);
-        forCells(block, [&](int x, int bit) {
-          const int lowest = BlockSamples::index(x, bit >> 3, bit & 7);
-          if (valueAt<kAround>(samples, lowest) < 0) insideCentres_[i].set(x * 64 + bit);
-        });
+        insideCentres_[i] = centresInside(block, samples);
       }
     });
   }
 
-  // Of the centre of a cell up to one step beyond a block, which must be a surface cell.
-  bool isCentreInside(const SurfaceBlock& block, const std::array<int, 3>& at) const {
-    const auto index = topology_.neighbour(block, at[0] >> 3, at[1] >> 3, at[2] >> 3);
-    return insideCentres_[index].get(grid::cellIndex(at[0] & 7, at[1] & 7, at[2] & 7));
-  }
+  // For each point of the cells of a block a bit a cell.
+  struct Sides {
+    std::array<BlockBits, kPoints> inside;
+    std::array<BlockBits, 3> noCellBelow;  ///< no surface cell
+  };
 
-  void findEdges(const SurfaceBlock& block, const BlockSamples& samples, Edges& edges,
-                 std::uint64_t& triangles) {
+  void findEdges(const SurfaceBlock& block, std::size_t index, const BlockSamples& samples) {
     const grid::CornerWords corners = volume_.blocks.cornerWords(block.neighbours);
+    Sides sides;
+    findSides(block, corners, index, samples, sides);
+    [&]<int... kKind>(std::integer_sequence<int, kKind...>) {
+      (findEdges<kKind>(sides, block.cells, edges_[index]), ...);
+    }
+    (std::make_integer_sequence<int, L::kKinds>());
+    edges_[index].countEdges();
     CellBits* cellBits = bits_.data() + block.firstVertex;
     forCells(block, [&](int x, int bit) {
-      const int cell = x * 64 + bit;
-      const uniform::CornerMask mask = uniform::cornerMask(corners, cell);
-      const CellBits bits = bitsOf(block, samples, cell, mask);
+      const CellBits bits = bitsOf(sides, x, bit, uniform::cornerMask(corners, x * 64 + bit)) |
+                            droppedBits(block, {x, bit >> 3, bit & 7});
       *cellBits++ = bits;
-      const int parity = parityOf(x, bit);
-      [&]<int... kKind>(std::integer_sequence<int, kKind...>) {
-        ((edges.crossed[kKind].slabs[x] |= isCrossed<kKind>(bits, parity) << bit), ...);
-      }
-      (std::make_integer_sequence<int, L::kKinds>());
-      forTetrahedra(bits, parity,
-                    [&](std::size_t, int inside) { triangles += kTetrahedronCases[inside].count; });
+      L::forGroups(bits, parityOf(x, bit),
+                   [&](const typename L::Case& found) { firstTriangle_[index] += found.count; });
     });
-    edges.countEdges();
   }
 
-  // Whether an edge of a cell is crossed and belongs to it: 0 or 1. One to the centre below belongs
-  // to the cell there, if that is a surface cell.
+  // Finds the crossed edges of a kind. One to the centre below belongs to the cell there, if that
+  // is a surface cell.
   template <int kKind>
-  static std::uint64_t isCrossed(CellBits bits, int parity) {
+  static void findEdges(const Sides& sides, const BlockBits& cells, Edges& edges) {
     constexpr EdgeKind kEdge = L::kEdges.kinds[kKind];
     constexpr int from = L::kEnds[kKind][0], to = L::kEnds[kKind][1];
-    std::uint64_t crossed = ((bits >> from) ^ (bits >> to)) & 1;
-    if constexpr (kEdge.parities[0] != kEdge.parities[1]) {
-      crossed &= (parity != 0) == kEdge.parities[1] ? 1 : 0;
+    for (int x = 0; x < kBlockSize; ++x) {
+      std::uint64_t crossed =
+          (sides.inside[from].slabs[x] ^ sides.inside[to].slabs[x]) & cells.slabs[x];
+      if constexpr (kEdge.parities[0] != kEdge.parities[1]) {
+        constexpr std::uint64_t kOdd = 0x55aa55aa55aa55aau;  // of even x
+        crossed &= ((x & 1) != 0) == kEdge.parities[1] ? ~kOdd : kOdd;
+      }
+      for (int axis = 0; L::kCentresBeyond && axis < 3; ++axis) {
+        const int below = kCentreBeyond + axis * 2;
+        if (from == below || to == below) crossed &= sides.noCellBelow[axis].slabs[x];
+      }
+      edges.crossed[kKind].slabs[x] = crossed;
     }
-    for (int axis = 0; L::kCentresBeyond && axis < 3; ++axis) {
-      const int below = kCentreBeyond + axis * 2;
-      if (from == below || to == below) crossed &= bits >> (kFirstNoCellBelow + axis);
-    }
-    return crossed;
   }
 
-  CellBits bitsOf(const SurfaceBlock& block, const BlockSamples& samples, int cell,
-                  uniform::CornerMask mask) const {
+  static CellBits bitsOf(const Sides& sides, int x, int bit, uniform::CornerMask mask) {
     CellBits bits = mask;
-    const std::array<int, 3> at = {cell >> 6, (cell >> 3) & 7, cell & 7};
-    if constexpr (L::kCentres) {
-      const int lowest = BlockSamples::index(at[0], at[1], at[2]);
-      [&]<int... kCentre>(std::integer_sequence<int, kCentre...>) {
-        ((bits |= bitOf<kFaceCentre + kCentre>(block, samples, lowest, at, mask)), ...);
-      }
-      (std::make_integer_sequence<int, kPoints - kFaceCentre>());
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      ((bits |= bitOf<kFaceCentre + i>(sides, x, bit)), ...);
     }
-    if constexpr (L::kCentresBeyond) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!isSurfaceCell(block, stepped(at, axis * 2))) {
-          bits |= CellBits{1} << (kFirstNoCellBelow + axis);
-        }
-      }
+    (std::make_integer_sequence<int, kPoints - kFaceCentre>());
+    for (int axis = 0; L::kCentresBeyond && axis < 3; ++axis) {
+      const std::uint64_t none = sides.noCellBelow[axis].slabs[x] >> bit & 1;
+      bits |= static_cast<CellBits>(none << (kFirstNoCellBelow + axis));
     }
-    if (topology_.openEdges > 0) bits |= droppedBits(block, at);
     return bits;
   }
-
-  // Of a centre. Where all samples around it are on one side it is on that, whatever their mean is
-  // rounded to.
   template <int kPoint>
-  CellBits bitOf(const SurfaceBlock& block, const BlockSamples& samples, int lowest,
-                 const std::array<int, 3>& at, uniform::CornerMask mask) const {
-    if constexpr (((L::kUsedPoints >> kPoint) & 1) == 0) return 0;
-    constexpr PointsAround kAround{kPlaces[kPoint]};
-    constexpr CellBits bit = CellBits{1} << kPoint;
-    if constexpr (kPoint != kCellCentre) {
-      constexpr int face = (kPoint - kFaceCentre) % (kCentreBeyond - kFaceCentre);
-      constexpr auto corners = uniform::kFaceCorners[face];
-      constexpr unsigned all =
-          1u << corners[0] | 1u << corners[1] | 1u << corners[2] | 1u << corners[3];
-      const unsigned inside = mask & all;
-      const bool oneSide = kPoint < kCellCentre ? inside == 0 || inside == all
-                                                : !isSurfaceCell(block, stepped(at, face));
-      if (oneSide) return inside != 0 ? bit : 0;
-      if constexpr (kPoint > kCellCentre) {
-        return isCentreInside(block, stepped(at, face)) ? bit : 0;
+  static CellBits bitOf(const Sides& sides, int x, int bit) {
+    if constexpr ((L::kUsedPoints >> kPoint & 1) == 0) return 0;
+    return static_cast<CellBits>((sides.inside[kPoint].slabs[x] >> bit & 1) << kPoint);
+  }
+
+  // Of all points. Where all samples around one are on one side it is on that, whatever their mean
+  // is rounded to.
+  void findSides(const SurfaceBlock& block, const grid::CornerWords& corners, std::size_t index,
+                 const BlockSamples& samples, Sides& sides) const {
+    for (int corner = 0; corner < uniform::kCorners; ++corner) {
+      for (int x = 0; x < kBlockSize; ++x) {
+        sides.inside[corner].slabs[x] = corners.words[x + (corner >> 2)][corner & 3];
       }
-    } else if constexpr (L::kCentresBeyond) {
-      return isCentreInside(block, at) ? bit : 0;
     }
-    return valueAt<kAround>(samples, lowest) < 0 ? bit : 0;
+    if constexpr (L::kFaceCentres) {
+      findFaceSides<0>(samples, sides);
+      findFaceSides<1>(samples, sides);
+      findFaceSides<2>(samples, sides);
+    }
+    if constexpr (L::kCentresBeyond) {
+      sides.inside[kCellCentre] = insideCentres_[index];
+      for (int face = 0; face < uniform::kFaces; ++face) {
+        findSidesBeyond(block, face, insideCentres_[index], sides);
+      }
+    } else if constexpr (L::kCentres) {
+      sides.inside[kCellCentre] = centresInside(block, samples);
+    }
+  }
+
+  // Of the centres of the faces across an axis.
+  template <int kAxis>
+  static void findFaceSides(const BlockSamples& samples, Sides& sides) {
+    constexpr std::uint64_t kAll = ~std::uint64_t{0}, kLastY = std::uint64_t{0xff} << 56,
+                            kLastZ = 0x8080808080808080u;
+    BlockBits& lower = sides.inside[kFaceCentre + 2 * kAxis];
+    BlockBits& upper = sides.inside[kFaceCentre + 2 * kAxis + 1];
+    for (int x = 0; x < kBlockSize; ++x) {
+      lower.slabs[x] = faceSides<2 * kAxis>(samples, sides, x, kAll);
+    }
+    constexpr int kUpper = 2 * kAxis + 1;
+    for (int x = 0; x < kBlockSize; ++x) {
+      std::uint64_t& slab = upper.slabs[x];
+      if constexpr (kAxis == 0) {
+        slab = x + 1 < kBlockSize ? lower.slabs[x + 1] : faceSides<kUpper>(samples, sides, x, kAll);
+      } else if constexpr (kAxis == 1) {
+        slab = grid::stepY(lower.slabs[x], 0) | faceSides<kUpper>(samples, sides, x, kLastY);
+      } else {
+        slab = grid::stepZ(lower.slabs[x], 0) | faceSides<kUpper>(samples, sides, x, kLastZ);
+      }
+    }
+  }
+  template <int kFace>
+  static std::uint64_t faceSides(const BlockSamples& samples, const Sides& sides, int x,
+                                 std::uint64_t among) {
+    constexpr PointsAround kAround{kPlaces[kFaceCentre + kFace]};
+    std::uint64_t all = among, any = 0;
+    for (const int corner : uniform::kFaceCorners[kFace]) {
+      all &= sides.inside[corner].slabs[x];
+      any |= sides.inside[corner].slabs[x];
+    }
+    base::forEachBit(any & ~all & among, [&](int bit) {
+      const int lowest = BlockSamples::index(x, bit >> 3, bit & 7);
+      if (valueAt<kAround>(samples, lowest) < 0) all |= std::uint64_t{1} << bit;
+    });
+    return all;
+  }
+
+  // Of the centres of surface cells.
+  static BlockBits centresInside(const SurfaceBlock& block, const BlockSamples& samples) {
+    constexpr PointsAround kAround{kPlaces[kCellCentre]};
+    BlockBits inside;
+    forCells(block, [&](int x, int bit) {
+      const int lowest = BlockSamples::index(x, bit >> 3, bit & 7);
+      if (valueAt<kAround>(samples, lowest) < 0) inside.set(x * 64 + bit);
+    });
+    return inside;
+  }
+
+  // Of the centres of the cells beyond a face. One of no surface cell is on the side of its
+  // corners.
+  void findSidesBeyond(const SurfaceBlock& block, int face, const BlockBits& own,
+                       Sides& sides) const {
+    const std::array<int, 3> step = stepped({0, 0, 0}, face);
+    const auto index = topology_.neighbour(block, step[0], step[1], step[2]);
+    const bool none = index == uniform::kNoSurfaceBlock;
+    const BlockBits nextCells = none ? BlockBits{} : topology_.blocks[index].cells;
+    const BlockBits nextCentres = none ? BlockBits{} : insideCentres_[index];
+    for (int x = 0; x < kBlockSize; ++x) {
+      const std::uint64_t isCell = beyond(block.cells, nextCells, face, x);
+      const std::uint64_t corner = sides.inside[uniform::kFaceCorners[face][0]].slabs[x];
+      sides.inside[kCentreBeyond + face].slabs[x] =
+          (isCell & beyond(own, nextCentres, face, x)) | (~isCell & corner);
+      if ((face & 1) == 0) sides.noCellBelow[face / 2].slabs[x] = ~isCell;
+    }
+  }
+  // The bits of the cells beyond a face of those of a slab, of a block and the next one there.
+  static std::uint64_t beyond(const BlockBits& own, const BlockBits& next, int face, int x) {
+    constexpr std::uint64_t kFirstZ = 0x0101010101010101u;
+    const std::uint64_t here = own.slabs[x], there = next.slabs[x];
+    switch (face) {
+      case 0:
+        return x > 0 ? own.slabs[x - 1] : next.slabs[kBlockSize - 1];
+      case 1:
+        return x + 1 < kBlockSize ? own.slabs[x + 1] : next.slabs[0];
+      case 2:
+        return here << 8 | there >> 56;
+      case 3:
+        return grid::stepY(here, there);
+      case 4:
+        return (here << 1 & ~kFirstZ) | (there >> 7 & kFirstZ);
+      default:
+        return grid::stepZ(here, there);
+    }
   }
 
   static std::array<int, 3> stepped(std::array<int, 3> at, int face) {
@@ -249,30 +279,15 @@ class TetrahedraMesher {
     return at;
   }
 
-  // The surface block that holds a cell up to one step beyond `block`, and its index there.
-  const SurfaceBlock* blockOf(const SurfaceBlock& block, const std::array<int, 3>& at,
-                              int& cell) const {
-    cell = grid::cellIndex(at[0] & 7, at[1] & 7, at[2] & 7);
-    const uniform::SurfaceBlockIndex index =
-        topology_.neighbour(block, at[0] >> 3, at[1] >> 3, at[2] >> 3);
-    return index == uniform::kNoSurfaceBlock ? nullptr : &topology_.blocks[index];
-  }
-
-  bool isSurfaceCell(const SurfaceBlock& block, const std::array<int, 3>& at) const {
-    if (((at[0] | at[1] | at[2]) & ~7) == 0) {
-      return block.cells.get(grid::cellIndex(at[0], at[1], at[2]));
-    }
-    int cell = 0;
-    const SurfaceBlock* owner = blockOf(block, at, cell);
-    return owner != nullptr && owner->cells.get(cell);
-  }
-
   // Cells with open edges have no surface, nor is there one between them and others.
   CellBits droppedBits(const SurfaceBlock& block, const std::array<int, 3>& at) const {
+    if (topology_.openEdges == 0) return 0;
     const auto isOpen = [&](const std::array<int, 3>& place) {
-      int cell = 0;
-      const SurfaceBlock* owner = blockOf(block, place, cell);
-      return owner != nullptr && owner->cells.get(cell) && topology_.openEdgesOf(*owner, cell) != 0;
+      const auto index = topology_.neighbour(block, place[0] >> 3, place[1] >> 3, place[2] >> 3);
+      if (index == uniform::kNoSurfaceBlock) return false;
+      const SurfaceBlock& owner = topology_.blocks[index];
+      const int cell = grid::cellIndex(place[0] & 7, place[1] & 7, place[2] & 7);
+      return owner.cells.get(cell) && topology_.openEdgesOf(owner, cell) != 0;
     };
     if (isOpen(at)) return kDropped;
     CellBits bits = 0;
@@ -282,67 +297,60 @@ class TetrahedraMesher {
     return bits;
   }
 
-  // Calls body(t, inside) for the tetrahedra of a cell that the surface passes. Written out for
-  // each, which takes half of the time of a loop.
-  template <class Body>
-  static void forTetrahedra(CellBits bits, int parity, const Body& body) {
-    if ((bits & kDropped) != 0) return;
-    [&]<std::size_t... t>(std::index_sequence<t...>) {
-      (visitTetrahedron<t>(bits, parity, body), ...);
-    }
-    (std::make_index_sequence<L::kTetrahedra.size()>());
-  }
-
-  template <std::size_t t, class Body>
-  static void visitTetrahedron(CellBits bits, int parity, const Body& body) {
-    constexpr Tetrahedron tetrahedron = L::kTetrahedra[t];
-    constexpr auto p = tetrahedron.points;
-    constexpr Where where = tetrahedron.where;
-    const unsigned inside = ((bits >> p[0]) & 1) | ((bits >> p[1]) & 1) << 1 |
-                            ((bits >> p[2]) & 1) << 2 | ((bits >> p[3]) & 1) << 3;
-    if (inside == 0 || inside == 15) return;
-    if (where == Where::EvenCells && parity != 0) return;
-    if (where == Where::OddCells && parity == 0) return;
-    if constexpr (where >= Where::NoCellBelow0) {
-      constexpr int axis = static_cast<int>(where) - static_cast<int>(Where::NoCellBelow0);
-      if (((bits >> (kFirstNoCellBelow + axis)) & 1) == 0) return;
-    } else if constexpr (L::kCentresBeyond) {
-      constexpr int axis = (p[1] - kCentreBeyond) / 2;
-      if (((bits >> (kFirstDropped + axis)) & 1) != 0) return;
-    }
-    body(t, static_cast<int>(inside));
-  }
-
   void place(Mesh& mesh) const {
     job_.forRanges(topology_.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
       const auto accessor = volume_.blocks.accessor();
       BlockSamples samples;
+      const auto points = std::make_unique<Points>();
       for (std::size_t i = begin; i < end; ++i) {
         const SurfaceBlock& block = topology_.blocks[i];
         samples.gather(volume_.blocks, volume_.scale, block.block, block.neighbours, *accessor);
+        points->fill(samples, block.cells);
         auto vertex = static_cast<std::size_t>(edges_[i].first);
         const Coord& origin = volume_.blocks.origin(block.block);
         [&]<int... kKind>(std::integer_sequence<int, kKind...>) {
-          (placeKind<kKind>(edges_[i], samples, origin, vertex, mesh), ...);
+          (placeKind<kKind>(edges_[i].crossed[kKind], *points, origin, vertex, mesh), ...);
         }
         (std::make_integer_sequence<int, L::kKinds>());
       }
     });
   }
 
+  // Places the crossings of edges of a kind by linear interpolation, their normals by that of the
+  // gradients at both ends.
   template <int kKind>
-  void placeKind(const Edges& edges, const BlockSamples& samples, const Coord& origin,
+  void placeKind(const BlockBits& crossed, const Points& points, const Coord& origin,
                  std::size_t& vertex, Mesh& mesh) const {
-    const EdgePlacer<L, kKind> placer(volume_, samples);
+    constexpr EdgeKind kEdge = L::kEdges.kinds[kKind];
+    constexpr int from = Points::offsetOf(kEdge.from), to = Points::offsetOf(kEdge.to);
+    using Finder = uniform::CrossingFinder;
     for (int x = 0; x < kBlockSize; ++x) {
-      base::forEachBit(edges.crossed[kKind].slabs[x], [&](int bit) {
-        placer.place(origin, {x, bit >> 3, bit & 7}, vertex++, mesh);
+      base::forEachBit(crossed.slabs[x], [&](int bit) {
+        const std::array<int, 3> cell = {x, bit >> 3, bit & 7};
+        const int lowest = BlockSamples::index(cell[0], cell[1], cell[2]);
+        const float along = Finder::keptOffEnds(
+            Finder::linearRoot(points.value(lowest + from), points.value(lowest + to)));
+        std::array<double, 3> at;
+        for (int axis = 0; axis < 3; ++axis) {
+          const int step = kEdge.to[axis] - kEdge.from[axis];
+          at[axis] = cell[axis] + 0.5 * (kEdge.from[axis] + step * static_cast<double>(along));
+        }
+        mesh.positions[vertex] = volume_.affine.position(origin, at[0], at[1], at[2]);
+        if (!mesh.normals.empty()) {
+          uniform::Vector g;
+          for (int i = 0; i < 3; ++i) {
+            const float first = points.gradient(i, lowest + from);
+            g[i] = first + along * (points.gradient(i, lowest + to) - first);
+          }
+          mesh.normals[vertex] = volume_.affine.normal(g[0], g[1], g[2]);
+        }
+        ++vertex;
       });
     }
   }
 
   void emit(Mesh& mesh) const {
-    const bool mirrored = volume_.affine.mirrored();
+    const int second = volume_.affine.mirrored() ? 2 : 1;
     job_.forRanges(topology_.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
       Table table;
       for (std::size_t i = begin; i < end; ++i) {
@@ -352,14 +360,10 @@ class TetrahedraMesher {
         Triangle* triangle = mesh.triangles.data() + firstTriangle_[i];
         forCells(block, [&](int x, int bit) {
           const int at = Table::placeOf(x, bit >> 3, bit & 7);
-          forTetrahedra(*bits++, parityOf(x, bit), [&](std::size_t t, int inside) {
-            const TetrahedronCase& found = kTetrahedronCases[inside];
+          L::forGroups(*bits++, parityOf(x, bit), [&](const typename L::Case& found) {
             for (int k = 0; k < found.count; ++k) {
-              const auto& [a, b, c] = found.triangles[k];
-              *triangle = {table[at + L::kOffsets[t][a]], table[at + L::kOffsets[t][b]],
-                           table[at + L::kOffsets[t][c]]};
-              if (mirrored) std::swap(triangle->vertices[1], triangle->vertices[2]);
-              ++triangle;
+              const auto& t = found.triangles[k];
+              *triangle++ = {table[at + t[0]], table[at + t[second]], table[at + t[3 - second]]};
             }
           });
         });
@@ -372,8 +376,8 @@ class TetrahedraMesher {
   base::Job& job_;
   uniform::CellTopology topology_;
   std::vector<Edges> edges_;
-  std::vector<CellBits> bits_;                  ///< of each surface cell
-  std::vector<grid::BlockBits> insideCentres_;  ///< of each surface block, if L::kCentresBeyond
+  std::vector<CellBits> bits_;            ///< of each surface cell
+  std::vector<BlockBits> insideCentres_;  ///< of each surface block, if L::kCentresBeyond
   std::vector<std::uint64_t> firstTriangle_;
 };
 
