@@ -21,7 +21,8 @@ Json toJson(const TruthReport& truth) {
 }
 
 Json toJson(const MethodResult& result) {
-  Json json = {{"method", result.name}, {"seconds", result.seconds}};
+  Json json = {
+      {"method", result.name}, {"seconds", result.seconds}, {"cpu_seconds", result.cpuSeconds}};
   json["extra_memory_bytes"] = result.extraBytes ? Json(*result.extraBytes) : Json(nullptr);
   json["check"] = tools::toJson(result.check);
   // Components are of the shape more than of the method.

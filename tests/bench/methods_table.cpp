@@ -44,7 +44,7 @@ void printTable(const std::string& name, const std::string& what, const openvdb:
             << " active voxels. The trilinear isosurface has the Euler characteristic "
             << all.trilinearEuler << ".\n\n"
             << "| method | triangles | faults | pairs | Euler | to surface | from surface | "
-            << (truth ? "to truth | creases | " : "") << "under 10° | ms | MB |\n"
+            << (truth ? "to truth | creases | " : "") << "under 10° | CPU ms | MB |\n"
             << "| --- | ---: | --- | ---: | ---: | ---: | ---: | "
             << (truth ? "---: | ---: | " : "") << "---: | ---: | ---: |\n";
   for (const MethodResult& one : all.methods) {
@@ -58,7 +58,7 @@ void printTable(const std::string& name, const std::string& what, const openvdb:
       std::cout << distances(one.truth->meshToTruth) << " | "
                 << (creases ? short3(one.truth->pointsShare99) : "-") << " | ";
     }
-    std::cout << short3(100 * check.shareUnder10Degrees) << "% | " << short3(1000 * one.seconds)
+    std::cout << short3(100 * check.shareUnder10Degrees) << "% | " << short3(1000 * one.cpuSeconds)
               << " | "
               << (one.extraBytes ? short3(static_cast<double>(*one.extraBytes) / 1e6) : "-") << " |"
               << std::endl;

@@ -44,8 +44,9 @@ struct TruthReport {
 
 /// What one way to mesh made.
 struct MethodResult {
-  std::string name;                         ///< of comparedNames()
-  double seconds = 0;                       ///< wall clock of the quickest run
+  std::string name;       ///< of comparedNames()
+  double seconds = 0;     ///< wall clock of the quickest run
+  double cpuSeconds = 0;  ///< least processor time of a run, of all threads of the process
   std::optional<std::uint64_t> extraBytes;  ///< most memory beyond that before, the mesh included
   CheckReport check;                        ///< counts, topology, faults, angles
   DistanceReport distance;                  ///< to the trilinear isosurface and back

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -166,10 +167,13 @@ class Comparer {
       result.mesh = meshBy(name);
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (memory) result.extraBytes = memory->extraBytes();
+      const std::clock_t processorStart = std::clock();
       if (run == 0 || seconds < result.seconds) result.seconds = seconds;
+      const double processor = static_cast<double>(std::clock() - processorStart) / CLOCKS_PER_SEC;
     }
     const auto at = [&](double share) { return begin_ + share_ * share; };
     result.check = checked(result.mesh, at(kMeshEnd), at(kCheckEnd), true);
+      if (run == 0 || processor < result.cpuSeconds) result.cpuSeconds = processor;
     measureDistance(result, at(kCheckEnd), at(kDistanceEnd));
     if (options_.truth) measureTruth(result, at(kDistanceEnd), at(1));
     if (!options_.keepMeshes) result.mesh = {};

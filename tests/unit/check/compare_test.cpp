@@ -55,6 +55,7 @@ TEST(Compare, MeasuresEveryMethodOnASphere) {
     EXPECT_LT(one.truth->meshToTruth.largest, reach) << one.name;
     EXPECT_EQ(one.truth->pointsToMesh.samples, 0u);
     EXPECT_GT(one.seconds, 0);
+    EXPECT_GT(one.cpuSeconds, 0);
     EXPECT_FALSE(one.extraBytes.has_value());
     EXPECT_TRUE(one.mesh.positions.empty()) << one.name;
   }
