@@ -142,8 +142,9 @@ void addCompareCommand(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   compare
-      ->add_option("--tolerance", arguments->tolerance,
-                   "of dual and octree-mc, in voxels, or with the suffix w in world units")
+      ->add_option(
+          "--tolerance", arguments->tolerance,
+          "of dual, octree-mc and cms-adaptive, in voxels, or with the suffix w in world units")
       ->capture_default_str();
   compare
       ->add_option(

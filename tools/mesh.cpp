@@ -52,7 +52,8 @@ void addAdaptiveOptions(CLI::App& app, MeshArguments& arguments) {
   app.add_option(
          "--tolerance", arguments.tolerance,
          "dual: largest distance to the uniform mesh, in voxels, or with the suffix w in world "
-         "units; octree-mc: about the largest to the surface")
+         "units; octree-mc: about the largest to the surface; cms: of the planes between which the "
+         "surface of merged cells lies, which without it are the finest")
       ->capture_default_str();
   app.add_option("--max-angle", options.maxAngle,
                  "largest angle between the normals in one cell, in degrees")
@@ -105,7 +106,7 @@ void addMethodOption(CLI::App& app, MeshArguments& arguments) {
          "--method",
          [&arguments](const std::string& name) { arguments.method = *methodByName(name); },
          "how the surface is extracted (default dual); all others make a triangle mesh or, "
-         "surface-nets, quads, of the finest cells, but octree-mc: they are not adaptive")
+         "surface-nets, quads, of the finest cells, but octree-mc, and cms with --tolerance")
       ->check(CLI::IsMember(names));
   app.add_option(
          "--sharp-angle", arguments.sharpAngle,
@@ -126,9 +127,10 @@ void requireMeaning(const CLI::App& app, Method method) {
     throw Error(ErrorCode::InvalidArgument, "--sharp-angle is for --method emc and cms alone");
   }
   if (method == Method::Dual) return;
-  if (method != Method::OctreeCubes && app.get_option("--tolerance")->count() > 0) {
+  const bool adaptive = method == Method::OctreeCubes || method == Method::CubicalMarchingSquares;
+  if (!adaptive && app.get_option("--tolerance")->count() > 0) {
     throw Error(ErrorCode::InvalidArgument,
-                "--tolerance is for --method dual and octree-mc alone; leave it out");
+                "--tolerance is for --method dual, octree-mc and cms alone; leave it out");
   }
   for (const char* name : {"--max-angle", "--min-cell", "--max-cell", "--tolerance-grid",
                            "--simplify", "--min-angle", "--target", "--no-repair"}) {
@@ -200,6 +202,8 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
         arguments->method = Method::SurfaceNets;
       }
       requireMeaning(*mesh, arguments->method);
+      arguments->mergeCells = arguments->method == Method::CubicalMarchingSquares &&
+                              mesh->get_option("--tolerance")->count() > 0;
       if (arguments->contour.uniform && arguments->contour.minAngle > 0) {
         throw Error(ErrorCode::InvalidArgument,
                     "--min-angle means nothing to --uniform, which collapses no edges");

@@ -63,8 +63,9 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
   options.keepCells = arguments.shareInterfaces;
   run.contourSeconds = timed([&] {
     const double refine = readTolerance("--refine", arguments.refine, *grid);
-    run.mesh =
-        extract(*grid, arguments.method, {options, arguments.sharpAngle, refine}, &run.contour);
+    const double merge = arguments.mergeCells ? options.tolerance : 0;
+    run.mesh = extract(*grid, arguments.method, {options, arguments.sharpAngle, refine, merge},
+                       &run.contour);
     if (arguments.target == Target::Quads) {
       pairTriangles(run.mesh, options.tolerance * voxelSizeOf(*grid));
     }

@@ -39,6 +39,7 @@ struct MeshArguments {
   bool shareInterfaces = false;       ///< of labels
   Method method = Method::Dual;
   double sharpAngle = ExtractOptions().sharpAngle;  ///< degrees; for emc and cms
+  bool mergeCells = false;                          ///< of cms, by the tolerance
   std::string refine = "0";                         ///< a length; not for dual
   FilterWords filters;
   AttributeWords attributes;

@@ -6,6 +6,7 @@
 #include <tufa/check.h>
 #include <tufa/contour.h>
 #include <tufa/error.h>
+#include <tufa/extract.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/voxelize.h>
@@ -116,6 +117,27 @@ TEST_P(SampleMesh, ComesBackFromItsVolumeAsAManifold) {
     if (!truth.oriented) continue;
     // The surface is off by less than half a voxel, so the volume by less than that times the area.
     EXPECT_NEAR(found.volume, truth.volume, 0.5 * options.voxelSize * truth.area) << voxels;
+  }
+}
+
+TEST_P(SampleMesh, IsAManifoldByCubicalMarchingSquaresWithMergedCells) {
+  const Mesh input = readMesh(path());
+  VoxelizeOptions voxels;
+  voxels.voxelSize = extentOf(input) / 120;
+  const auto grid = voxelize(input, voxels);
+  ContourReport report;
+  const auto meshAt = [&](double tolerance) {
+    ExtractOptions options;
+    options.mergeTolerance = tolerance;
+    return extract(*grid, Method::CubicalMarchingSquares, options, &report);
+  };
+  const std::size_t finest = meshAt(0).triangleCount();
+  for (const double tolerance : {0.1, 0.5}) {
+    const Mesh mesh = meshAt(tolerance);
+    const CheckReport found = checkTopology(mesh);
+    EXPECT_TRUE(found.manifold && found.oriented) << tolerance;
+    EXPECT_EQ(found.closed, report.openEdges == 0) << tolerance;
+    EXPECT_LE(mesh.triangleCount(), finest) << tolerance;
   }
 }
 

@@ -252,6 +252,13 @@ TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
   }
   expectFailure("mesh s.vdb -o m.ply --method cubes", 2, "cubes");
   expectFailure("mesh s.vdb -o m.ply --method mc --tolerance 1", 2, "--tolerance");
+  const auto trianglesOf = [&](const std::string& method) {
+    const Outcome outcome = run("mesh s.vdb -o m.ply --check --json --method " + method);
+    EXPECT_EQ(outcome.exitCode, 0) << method << outcome.err;
+    std::filesystem::remove(folder / "m.ply");
+    return Json::parse(outcome.out)["triangles"].get<int>();
+  };
+  EXPECT_LT(2 * trianglesOf("cms --tolerance 0.5"), trianglesOf("cms"));
   expectFailure("mesh s.vdb -o m.ply --method mc --sharp-angle 20", 2, "--sharp-angle");
   expectFailure("mesh s.vdb -o m.ply --method mc --refine -1", 2, "refine");
   expectFailure("mesh s.vdb -o m.ply --method mc --refine x", 2, "--refine");

@@ -71,7 +71,8 @@ struct Comparison {
 };
 
 /// Names of what compareMethods() can run: "dual" as contour() is by default, "dual-uniform", the
-/// other methods of methodNames(), "mc-original" (marching cubes with Ambiguity::Original), and
+/// other methods of methodNames(), "mc-original" (marching cubes with Ambiguity::Original),
+/// "cms-adaptive" (cubical marching squares whose cells are merged by the tolerance of dual), and
 /// OpenVDB's own mesher as a peer: "volume-to-mesh-0" and "volume-to-mesh-0.25", by its adaptivity.
 [[nodiscard]] TUFA_API const std::vector<std::string_view>& comparedNames();
 

@@ -32,7 +32,8 @@ enum class Method {
   /// of up to 8 samples along an edge where the field is affine to half of the tolerance.
   OctreeCubes,
   /// Cubical marching squares (Ho et al. 2005): contours of the cells' faces first, with sharp
-  /// points, then the loops that they form, with vertices on creases and corners.
+  /// points, then the loops that they form, with vertices on creases and corners; adaptive with
+  /// ExtractOptions::mergeTolerance.
   CubicalMarchingSquares,
 };
 
@@ -59,6 +60,10 @@ struct ExtractOptions {
   /// ContourReport::refinement tells what was reached. A mesh of Method::Dual has no certificate
   /// then, and triangles may intersect, though moves that would fold the mesh are refused.
   double refine = 0;
+  /// Cubical marching squares: cells without a crease are merged into leaves of up to 8 cells along
+  /// an edge where the surface in them lies between two planes that are so far apart, in voxels; 0:
+  /// all cells are the finest.
+  double mergeTolerance = 0;
 };
 
 /// Meshes the surface of `grid` at the isovalue by the method asked for. Grids, transforms, what is
@@ -67,10 +72,10 @@ struct ExtractOptions {
 ///
 /// Surface nets gives quads, the others triangles. All meshes are closed, consistently
 /// oriented 2-manifolds wherever the surface does not reach the end of the data, but for
-/// Ambiguity::Original. OctreeCubes alone are adaptive; their collapsed cells could touch in an
-/// edge of four triangles. None is searched for self-intersections. A cell whose sign changes are
-/// partly the end of the data gives no triangles. Of the report, what concerns neither certificates
-/// nor repair is filled.
+/// Ambiguity::Original. OctreeCubes, and CubicalMarchingSquares with a `mergeTolerance`, are
+/// adaptive; the collapsed cells of the former could touch in an edge of four triangles. None is
+/// searched for self-intersections. A cell whose sign changes are partly the end of the data gives
+/// no triangles. Of the report, what concerns neither certificates nor repair is filled.
 ///
 /// Throws Error as contour() does; InvalidArgument also for Ambiguity::Original with a method other
 /// than marching cubes.

@@ -7,6 +7,7 @@
 #include "extract/face_arcs.h"
 #include "extract/fan_mesher.h"
 #include "extract/marching_cubes.h"
+#include "extract/merged_cells.h"
 #include "extract/place_crossings.h"
 
 namespace tufa::extraction {
@@ -48,8 +49,13 @@ std::optional<FacePoint> creaseAt(const uniform::CreasePlacement& crease, int ax
 
 class SquaresMesher {
  public:
-  SquaresMesher(const grid::Volume& volume, CubeCells& cells, double sharpAngle, base::Job& job)
-      : volume_(volume), cells_(cells), leastCosine_(cosineOf(sharpAngle)), job_(job) {}
+  SquaresMesher(const grid::Volume& volume, CubeCells& cells, double sharpAngle, double tolerance,
+                base::Job& job)
+      : volume_(volume),
+        cells_(cells),
+        leastCosine_(cosineOf(sharpAngle)),
+        tolerance_(tolerance),
+        job_(job) {}
 
   Mesh run(ContourReport& report) {
     job_.beginStage("vertices", kVerticesEnd);
@@ -59,6 +65,10 @@ class SquaresMesher {
     job_.beginStage("features", kFeaturesEnd);
     loops_ = findSharpLoops(volume_, cells_, mesh_, leastCosine_, job_);
     placePoints();
+    std::vector<BlockTriangles> leaves;
+    if (tolerance_ > 0) {
+      leaves = mergeCells(volume_, cells_, loops_.cells, mesh_, {tolerance_, leastCosine_}, job_);
+    }
     FanMesher fans(volume_, cells_, loops_, mesh_, job_);
     const auto steps = [&](const WalkedCell& cell, int edge) {
       return pointAfter(cell, edge) ? 2 : 1;
@@ -68,7 +78,8 @@ class SquaresMesher {
       body(cell.vertexAt(cell.cubeCase().next[edge]));
     });
     report.creaseCells = fans.featureCount();
-    if (cells_.topology.openEdges > 0) dropUnused(mesh_, job_);
+    appendBlocks(leaves, cells_.edgeCount, mesh_);
+    if (cells_.topology.openEdges > 0 || tolerance_ > 0) dropUnused(mesh_, job_);
     return std::move(mesh_);
   }
 
@@ -211,6 +222,7 @@ class SquaresMesher {
   const grid::Volume& volume_;
   CubeCells& cells_;
   double leastCosine_;
+  double tolerance_;
   base::Job& job_;
   Mesh mesh_;
   ArcPoints arcs_;
@@ -219,11 +231,11 @@ class SquaresMesher {
 
 }  // namespace
 
-Mesh meshSquares(const grid::Volume& volume, double sharpAngle, const ContourOptions& options,
-                 ContourReport& report, base::Job& job) {
+Mesh meshSquares(const grid::Volume& volume, double sharpAngle, double tolerance,
+                 const ContourOptions& options, ContourReport& report, base::Job& job) {
   CubeCells cells = chooseCases(volume, marchingCubesRule(Ambiguity::Asymptotic), options.cap, job);
   report = uniform::reportOf(volume, cells.topology);
-  return SquaresMesher(volume, cells, sharpAngle, job).run(report);
+  return SquaresMesher(volume, cells, sharpAngle, tolerance, job).run(report);
 }
 
 }  // namespace tufa::extraction

@@ -19,11 +19,15 @@ namespace tufa::extraction {
 /// an arc with a sharp point is of fans alone, so that no edge but the arcs' is in a face: the mesh
 /// is a 2-manifold.
 ///
-/// Departures: the octree is left out, cells are the finest; each loop is a disk, where the paper
+/// With a `tolerance`, in voxels, cells without a crease are merged into leaves of an octree, see
+/// mergeCells(); 0: all cells are the finest.
+///
+/// Departures: leaves take the contours of their faces from the finest cells, not only where their
+/// neighbours are finer, and have no creases in them; each loop is a disk, where the paper
 /// may join two in a tunnel; and in distance fields vertices are those of findSharpLoops(), and an
 /// arc's point is where their crease passes the face, or, if it passes beside the face, half way
 /// between the vertices of the two loops.
-[[nodiscard]] Mesh meshSquares(const grid::Volume& volume, double sharpAngle,
+[[nodiscard]] Mesh meshSquares(const grid::Volume& volume, double sharpAngle, double tolerance,
                                const ContourOptions& options, ContourReport& report,
                                base::Job& job);
 

@@ -42,7 +42,8 @@ Mesh meshOf(const grid::Volume& volume, Method method, const ExtractOptions& all
     case Method::ExtendedMarchingCubes:
       return extraction::meshSharp(volume, all.sharpAngle, options, report, job);
     case Method::CubicalMarchingSquares:
-      return extraction::meshSquares(volume, all.sharpAngle, options, report, job);
+      return extraction::meshSquares(volume, all.sharpAngle, all.mergeTolerance, options, report,
+                                     job);
     case Method::SurfaceNets:
       return extraction::meshSurfaceNets(volume, options, report, job);
     case Method::OctreeCubes:
@@ -144,6 +145,7 @@ Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions&
   base::requireKnown(method, Method::CubicalMarchingSquares, "the method");
   requireAngle(options.sharpAngle);
   requireTolerance("the distance to refine to", options.refine);
+  requireTolerance("the tolerance of merging cells", options.mergeTolerance);
   if (method == Method::Dual) {
     if (options.refine > 0) return refinedDual(grid, options, report);
     return contour(grid, options.contour, report);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/huge_pages.h"
+#include "extract/block_triangles.h"
 #include "extract/cube_cells.h"
 #include "extract/cube_mesher.h"
 #include "extract/marching_cubes.h"
@@ -227,16 +228,8 @@ class OctreeMesher {
     return rule_.decide(mask, values);
   }
 
-  /// The triangles of one block. Vertices inside cells are numbered from 0.
-  struct BlockTriangles {
-    std::vector<Triangle> triangles;
-    std::vector<Position> centres;
-    std::vector<Normal> centreNormals;
-  };
-
   void emit(Mesh& mesh) {
     std::vector<BlockTriangles> parts(topology_.blocks.size());
-    const std::size_t edgeVertices = mesh.positions.size();
     forBlocks([&] {
       return [&, accessor = std::shared_ptr<grid::Accessor>(volume_.blocks.accessor()),
               samples = BlockSamples(),
@@ -246,25 +239,7 @@ class OctreeMesher {
         emit(block, samples, table, mesh, parts[i]);
       };
     });
-    std::size_t triangles = 0, centres = edgeVertices;
-    for (const BlockTriangles& part : parts) {
-      triangles += part.triangles.size();
-      centres += part.centres.size();
-    }
-    uniform::requireIndexable(centres);
-    mesh.triangles.reserve(triangles);
-    for (const BlockTriangles& part : parts) {
-      const auto first = static_cast<VertexIndex>(mesh.positions.size());
-      for (Triangle triangle : part.triangles) {
-        for (VertexIndex& vertex : triangle.vertices) {
-          if (vertex >= edgeVertices)
-            vertex = vertex - static_cast<VertexIndex>(edgeVertices) + first;
-        }
-        mesh.triangles.push_back(triangle);
-      }
-      mesh.positions.insert(mesh.positions.end(), part.centres.begin(), part.centres.end());
-      mesh.normals.insert(mesh.normals.end(), part.centreNormals.begin(), part.centreNormals.end());
-    }
+    appendBlocks(parts, mesh.positions.size(), mesh);
   }
 
   void emit(const SurfaceBlock& block, const BlockSamples& samples, const CubeTable& table,
@@ -276,7 +251,8 @@ class OctreeMesher {
       if (code == 0) continue;
       const CubeCase& chosen = caseOf(code);
       const std::array<VertexIndex, kEdges> vertices = verticesOf(block, cell, chosen, table);
-      const auto firstCentre = static_cast<VertexIndex>(mesh.positions.size() + out.centres.size());
+      const auto firstCentre =
+          static_cast<VertexIndex>(mesh.positions.size() + out.positions.size());
       const auto vertexOf = [&](std::uint8_t corner) {
         return corner < kEdges ? vertices[corner] : firstCentre + (corner - kCentre);
       };
@@ -318,8 +294,8 @@ class OctreeMesher {
       ++count;
     });
     if (!normal.normalize()) normal = Vec3(0);
-    out.centres.push_back(sum / count);
-    out.centreNormals.push_back(Normal(normal));
+    out.positions.push_back(sum / count);
+    out.normals.push_back(Normal(normal));
   }
 
   const grid::Volume& volume_;
