@@ -1,6 +1,6 @@
 #!/bin/sh
-# Writes the tables of docs/which-method.md: every method on four volumes, which takes minutes. Times
-# are those of this machine.
+# Writes the tables of docs/which-method.md: every method on four volumes, which takes minutes. Processor
+# times are those of this machine.
 #
 #   tools/methods_tables.sh PROGRAM DATA     PROGRAM: tufa_methods_table of the preset "bench"
 #                                            DATA: the folder of sample files
