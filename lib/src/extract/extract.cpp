@@ -85,8 +85,10 @@ double stayBeyond(Method method, const ExtractOptions& options) {
     case Method::MarchingCubes:
     case Method::MarchingCubes33:
     case Method::ExtendedMarchingCubes:
-    case Method::CubicalMarchingSquares:
       return options.refine;
+    // And vertices inside merged cells, which are to be moved.
+    case Method::CubicalMarchingSquares:
+      return std::max(options.refine, options.mergeTolerance);
     default:
       return std::numeric_limits<double>::infinity();
   }

@@ -95,6 +95,24 @@ TEST(MergedCells, GiveClosedManifoldsOfAnyFieldWhateverIsMerged) {
   }
 }
 
+// How far vertices and the middles of triangles are from a sphere of radius 1, in voxels.
+double farthestFromSphere(const Mesh& mesh, double voxelSize) {
+  double most = 0;
+  const auto add = [&](double x, double y, double z) {
+    most = std::max(most, std::abs(std::hypot(x, y, z) - 1) / voxelSize);
+  };
+  for (const Triangle& triangle : mesh.triangles) {
+    double x = 0, y = 0, z = 0;
+    for (const VertexIndex v : triangle.vertices) {
+      const Position& p = mesh.positions[v];
+      add(p.x, p.y, p.z);
+      x += p.x / 3, y += p.y / 3, z += p.z / 3;
+    }
+    add(x, y, z);
+  }
+  return most;
+}
+
 TEST(MergedCells, AreFewerAndWithinTheTolerance) {
   const auto ball = shape(Shape::Sphere, 0.02);
   const std::size_t finest = merged(*ball, {}, 0).triangleCount();
@@ -103,19 +121,20 @@ TEST(MergedCells, AreFewerAndWithinTheTolerance) {
     const Mesh mesh = merged(*ball, {}, tolerance);
     EXPECT_LT(factor * static_cast<double>(mesh.triangleCount()), static_cast<double>(finest));
     factor = 50;
-    double most = 0;
-    for (const Triangle& triangle : mesh.triangles) {
-      double x = 0, y = 0, z = 0;
-      for (const VertexIndex v : triangle.vertices) {
-        const Position& p = mesh.positions[v];
-        most = std::max(most, std::abs(std::hypot(p.x, p.y, p.z) - 1) / 0.02);
-        x += p.x / 3, y += p.y / 3, z += p.z / 3;
-      }
-      most = std::max(most, std::abs(std::hypot(x, y, z) - 1) / 0.02);
-    }
+    const double most = farthestFromSphere(mesh, 0.02);
     EXPECT_LT(most, tolerance);
     EXPECT_GT(most, 0.1 * tolerance);
   }
+}
+
+TEST(MergedCells, AreBroughtToTheSurfaceByRefining) {
+  const auto ball = shape(Shape::Sphere, 0.04);
+  ExtractOptions options;
+  options.refine = 0.05;
+  const Mesh mesh = merged(*ball, options, 0.5);
+  expectClosedManifold(mesh, "refined");
+  EXPECT_LT(farthestFromSphere(mesh, 0.04), 0.1);
+  EXPECT_LT(mesh.triangleCount(), merged(*ball, {}, 0).triangleCount());
 }
 
 TEST(MergedCells, LeaveCreasesAsTheyAre) {
