@@ -1,0 +1,174 @@
+// What chunks cost beside a chain of the same tolerances. Prints a Markdown table:
+// tufa_chunk_table [--voxels N] [--chunk SIZE...] SHAPE|MESH|VDB...
+//
+// Triangles are those of all chunks at one LOD, over those of the chain's level; slivers have an
+// angle under 10 degrees. The ends of curves are the vertices that chunks keep at every LOD.
+
+#include <openvdb/openvdb.h>
+
+#include <tufa/chunks.h>
+#include <tufa/error.h>
+#include <tufa/io.h>
+#include <tufa/lod.h>
+#include <tufa/shapes.h>
+#include <tufa/voxelize.h>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <iostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "table_text.h"
+
+namespace {
+
+using namespace tufa;
+using bench::number;
+
+constexpr double kSliverCosine = 0.98480775301;  // of 10 degrees
+
+double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+openvdb::GridBase::Ptr volumeOf(const std::string& name, int voxels) {
+  if (const auto shape = shapeByName(name)) {
+    ShapeOptions options;
+    options.voxelSize = 3.0 / voxels;
+    return makeShape(*shape, options);
+  }
+  const std::filesystem::path path(name);
+  if (path.extension() == ".vdb") return readGrid(path);
+  const Mesh mesh = readMesh(path);
+  openvdb::BBoxd box;
+  for (const Position& p : mesh.positions) box.expand(openvdb::Vec3d(p.x, p.y, p.z));
+  VoxelizeOptions options;
+  options.voxelSize = box.extents()[static_cast<int>(box.maxExtent())] / voxels;
+  return voxelize(mesh, options);
+}
+
+struct Count {
+  std::size_t triangles = 0, slivers = 0;
+
+  void add(const std::vector<Position>& positions, const std::vector<Triangle>& all) {
+    for (const Triangle& t : all) {
+      openvdb::Vec3d p[3];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Position& at = positions[t.vertices[i]];
+        p[i] = {at.x, at.y, at.z};
+      }
+      bool isSliver = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const openvdb::Vec3d a = p[(i + 1) % 3] - p[i], b = p[(i + 2) % 3] - p[i];
+        isSliver |= !(a.dot(b) < kSliverCosine * a.length() * b.length());
+      }
+      ++triangles, slivers += isSliver ? 1 : 0;
+    }
+  }
+  [[nodiscard]] double share() const {
+    return 100.0 * static_cast<double>(slivers) /
+           static_cast<double>(std::max<std::size_t>(triangles, 1));
+  }
+};
+
+struct LevelCount {
+  Count own, beside;  ///< beside: with all strips to the next LOD
+  std::size_t pairs = 0;
+  std::set<std::array<double, 3>> onCurves, ends;
+
+  void add(const ChunkLevel& level, std::size_t intersections) {
+    own.add(level.positions, level.interior);
+    beside.add(level.positions, level.interior);
+    pairs += intersections;
+    for (std::size_t face = 0; face < kChunkFaces; ++face) {
+      own.add(level.positions, level.regular[face]);
+      beside.add(level.positions, level.transition[face]);
+      for (const ChunkSeam& seam : level.seams[face]) {
+        const auto placeOf = [&](VertexIndex v) {
+          const Position& p = level.positions[v];
+          return std::array{p.x, p.y, p.z};
+        };
+        for (const VertexIndex v : seam.vertices) onCurves.insert(placeOf(v));
+        if (seam.closed) continue;
+        ends.insert(placeOf(seam.vertices.front()));
+        ends.insert(placeOf(seam.vertices.back()));
+      }
+    }
+  }
+};
+
+std::vector<LevelCount> countsOf(const openvdb::GridBase& grid, int chunkSize, double& seconds) {
+  ChunkOptions options;
+  options.chunkSize = chunkSize;
+  std::vector<std::vector<ChunkLevel>> chunks;
+  const double start = cpuSeconds();
+  const ChunkIndex index = buildChunks(grid, options, [&](const ChunkIndex&, Chunk&& chunk) {
+    chunks.push_back(std::move(chunk.levels));
+  });
+  seconds = cpuSeconds() - start;
+  std::vector<LevelCount> counts(index.tolerances.size());
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      counts[i].add(chunks[c][i], index.chunks[c].levels[i].intersectionsLeft);
+    }
+  }
+  return counts;
+}
+
+void print(const std::string& volume, int voxels, const std::vector<int>& chunkSizes) {
+  const openvdb::GridBase::Ptr grid = volumeOf(volume, voxels);
+  LodOptions lods;
+  lods.levels = ChunkOptions().levels;
+  const double start = cpuSeconds();
+  const LodChain chain = buildLods(*grid, lods);
+  const double chainSeconds = cpuSeconds() - start;
+  const std::string name = std::filesystem::path(volume).stem().string();
+  for (const int chunkSize : chunkSizes) {
+    double seconds = 0;
+    const std::vector<LevelCount> counts = countsOf(*grid, chunkSize, seconds);
+    for (std::size_t i = 0; i < chain.levels.size(); ++i) {
+      Count whole;
+      whole.add(chain.levels[i].mesh.positions, triangulate(chain.levels[i].mesh));
+      const LevelCount& level = counts[i];
+      std::cout << "| " << name << " | " << chunkSize << " | " << i << " | " << whole.triangles
+                << " | " << level.own.triangles << " | "
+                << number("%.2f", static_cast<double>(level.own.triangles) /
+                                      static_cast<double>(whole.triangles))
+                << " | " << number("%.1f", whole.share()) << ", "
+                << number("%.1f", level.own.share()) << ", " << number("%.1f", level.beside.share())
+                << " | " << level.onCurves.size() << ", " << level.ends.size() << " | "
+                << level.pairs << " | " << number("%.2f", seconds / chainSeconds) << " |"
+                << std::endl;
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Compares chunks with a chain of the same tolerances. Prints a Markdown table.");
+  std::vector<std::string> volumes;
+  std::vector<int> chunkSizes{64, 16};
+  int voxels = 150;
+  app.add_option("VOLUME", volumes, "shapes, mesh files to voxelize, or level sets in .vdb files")
+      ->required();
+  app.add_option("--voxels", voxels, "along a mesh's longest side; shapes have two thirds")
+      ->capture_default_str();
+  app.add_option("--chunk", chunkSizes, "voxels along an edge of a chunk")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  openvdb::initialize();
+  std::cout
+      << "| volume | chunk | LOD | chain | chunks | ratio | slivers, %: chain, chunks, beside "
+         "the next LOD | vertices on curves, ends | pairs | CPU time over the chain's |\n"
+         "| --- | ---: | ---: | ---: | ---: | ---: | --- | --- | ---: | ---: |\n";
+  try {
+    for (const std::string& volume : volumes) print(volume, voxels, chunkSizes);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+  return 0;
+}
