@@ -2,7 +2,9 @@
 // tufa_chunk_table [--voxels N] [--chunk SIZE...] SHAPE|MESH|VDB...
 //
 // Triangles are those of all chunks at one LOD, over those of the chain's level; slivers have an
-// angle under 10 degrees. The ends of curves are the vertices that chunks keep at every LOD.
+// angle under 10 degrees. The ends of curves are the vertices that chunks keep at every LOD, and
+// the least number is that of the shortest polylines through vertices of the cut mesh that are
+// within the tolerance of its curves.
 
 #include <openvdb/openvdb.h>
 
@@ -100,6 +102,54 @@ struct LevelCount {
   }
 };
 
+using Curve = std::vector<openvdb::Vec3d>;
+
+// The curves of the cut mesh, each once; closed ones have their first vertex at both ends.
+std::vector<Curve> finestCurves(const openvdb::GridBase& grid, int chunkSize) {
+  ChunkOptions options;
+  options.chunkSize = chunkSize;
+  options.levels = 1;
+  options.contour.tolerance = 1e-6;  // nothing is reduced
+  std::vector<Curve> curves;
+  (void)buildChunks(grid, options, [&](const ChunkIndex&, Chunk&& chunk) {
+    for (std::size_t face = 0; face < kChunkFaces; face += 2) {
+      for (const ChunkSeam& seam : chunk.levels[0].seams[face]) {
+        Curve& curve = curves.emplace_back();
+        for (const VertexIndex v : seam.vertices) {
+          const Position& p = chunk.levels[0].positions[v];
+          curve.emplace_back(p.x, p.y, p.z);
+        }
+        if (seam.closed) curve.push_back(curve.front());
+      }
+    }
+  });
+  return curves;
+}
+
+double distance(const openvdb::Vec3d& p, const openvdb::Vec3d& a, const openvdb::Vec3d& b) {
+  const openvdb::Vec3d d = b - a;
+  const double along = d.lengthSqr() > 0 ? std::clamp((p - a).dot(d) / d.lengthSqr(), 0.0, 1.0) : 0;
+  return (p - a - d * along).length();
+}
+
+// Inner vertices of the shortest polyline through vertices of a curve, from its start to its end.
+std::size_t leastVertices(const Curve& curve, double tolerance) {
+  std::vector<std::size_t> edges(curve.size(), 0);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    edges[i] = edges[i - 1] + 1;
+    for (std::size_t j = i - 1; j-- > 0;) {
+      if (edges[j] + 1 >= edges[i]) continue;
+      bool isNear = true;
+      for (std::size_t k = j + 1; k < i && isNear; ++k) {
+        isNear = distance(curve[k], curve[j], curve[i]) <= tolerance;
+      }
+      if (isNear) edges[i] = edges[j] + 1;
+    }
+  }
+  const bool isClosed = curve.front() == curve.back();
+  return isClosed ? std::max<std::size_t>(edges.back(), 3) : edges.back() - 1;
+}
+
 std::vector<LevelCount> countsOf(const openvdb::GridBase& grid, int chunkSize, double& seconds) {
   ChunkOptions options;
   options.chunkSize = chunkSize;
@@ -129,18 +179,23 @@ void print(const std::string& volume, int voxels, const std::vector<int>& chunkS
   for (const int chunkSize : chunkSizes) {
     double seconds = 0;
     const std::vector<LevelCount> counts = countsOf(*grid, chunkSize, seconds);
+    const std::vector<Curve> curves = finestCurves(*grid, chunkSize);
     for (std::size_t i = 0; i < chain.levels.size(); ++i) {
       Count whole;
       whole.add(chain.levels[i].mesh.positions, triangulate(chain.levels[i].mesh));
       const LevelCount& level = counts[i];
+      std::size_t least = level.ends.size();
+      for (const Curve& curve : curves) {
+        least += leastVertices(curve, chain.levels[i].tolerance * grid->voxelSize()[0]);
+      }
       std::cout << "| " << name << " | " << chunkSize << " | " << i << " | " << whole.triangles
                 << " | " << level.own.triangles << " | "
                 << number("%.2f", static_cast<double>(level.own.triangles) /
                                       static_cast<double>(whole.triangles))
                 << " | " << number("%.1f", whole.share()) << ", "
                 << number("%.1f", level.own.share()) << ", " << number("%.1f", level.beside.share())
-                << " | " << level.onCurves.size() << ", " << level.ends.size() << " | "
-                << level.pairs << " | " << number("%.2f", seconds / chainSeconds) << " |"
+                << " | " << level.onCurves.size() << ", " << least << ", " << level.ends.size()
+                << " | " << level.pairs << " | " << number("%.2f", seconds / chainSeconds) << " |"
                 << std::endl;
     }
   }
@@ -162,7 +217,8 @@ int main(int argc, char** argv) {
   openvdb::initialize();
   std::cout
       << "| volume | chunk | LOD | chain | chunks | ratio | slivers, %: chain, chunks, beside "
-         "the next LOD | vertices on curves, ends | pairs | CPU time over the chain's |\n"
+         "the next LOD | vertices on curves, least number, ends | pairs | CPU time over the "
+         "chain's |\n"
          "| --- | ---: | ---: | ---: | ---: | ---: | --- | --- | ---: | ---: |\n";
   try {
     for (const std::string& volume : volumes) print(volume, voxels, chunkSizes);

@@ -172,6 +172,16 @@ TEST(ChunkFaces, CostFewTrianglesAtAnyLevel) {
   }
 }
 
+// Vertices of curves take part in collapses with those beside them, at places of their own.
+TEST(ChunkFaces, CostFewTrianglesInSmallChunks) {
+  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Torus, 0.02);
+  ChunkOptions options;
+  options.chunkSize = 16;
+  options.levels = 1;
+  const double whole = static_cast<double>(contour(*grid, options.contour).triangleCount());
+  EXPECT_LT(static_cast<double>(trianglesOf(makeChunks(*grid, options).index, 0)), 1.3 * whole);
+}
+
 // With strips of either kind: the certificate is a bound, and no tolerance is exceeded.
 TEST(ChunkErrors, KeepTheTolerances) {
   for (const Shape kind : {Shape::Terrain, Shape::Bracket, Shape::Gyroid}) {

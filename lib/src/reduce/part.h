@@ -134,8 +134,9 @@ class Part {
   [[nodiscard]] std::array<Index, 2> keptAtLine(Index a, Index b) const;
   [[nodiscard]] float errorAtLine(Index a, Index b, Vec3f place, const LocalQuadric& sum) const;
   Outcome tryCollapseAtLine(Index a, Index b);
-  [[nodiscard]] bool mayMove(Index a, Index b) const;
-  [[nodiscard]] Vec3f bestInPlane(Index a, Index b, Vec3f place, const LocalQuadric& sum) const;
+  [[nodiscard]] Index movingAtLine(Index a, Index b) const;
+  [[nodiscard]] Vec3f bestInPlane(Index kept, Index gone, Vec3f place,
+                                  const LocalQuadric& sum) const;
   Outcome tryInto(Index kept, Index gone, Vec3f place);
   [[nodiscard]] bool mayHold(Index a, Index b) const;
   [[nodiscard]] bool makesChord() const;

@@ -74,7 +74,10 @@ bool Part::mayGoAlone(Index gone, Index kept) const {
 // The quadric error at the better one of the places that a collapse may have.
 float Part::errorAtLine(Index a, Index b, Vec3f place, const LocalQuadric& sum) const {
   float least = std::numeric_limits<float>::infinity();
-  if (mayMove(a, b)) least = std::max(0.0f, sum.at(bestInPlane(a, b, place, sum) - place));
+  const Index moving = movingAtLine(a, b);
+  if (moving != kNone) {
+    least = std::max(0.0f, sum.at(bestInPlane(moving, moving == a ? b : a, place, sum) - place));
+  }
   for (const Index kept : keptAtLine(a, b)) {
     if (kept != kNone) least = std::min(least, std::max(0.0f, sum.at(position_[kept] - place)));
   }
@@ -99,7 +102,10 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
     Vec3f place;
   };
   Choice choices[3] = {{kNone, {}}, {kept[0], {}}, {kept[1], {}}};
-  if (mayMove(a, b)) choices[0] = {a, surface_->roundedPlace(bestInPlane(a, b, exact, sum_))};
+  if (const Index moving = movingAtLine(a, b); moving != kNone) {
+    const Index other = moving == a ? b : a;
+    choices[0] = {moving, surface_->roundedPlace(bestInPlane(moving, other, exact, sum_))};
+  }
   for (int i : {1, 2}) {
     if (choices[i].kept != kNone) choices[i].place = position_[choices[i].kept];
   }
@@ -117,22 +123,27 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
   return outcome;
 }
 
-// Whether two neighbours may become one at a new place: both inside a line, where the rest is
-// reduced too.
-bool Part::mayMove(Index a, Index b) const {
-  return limits_.lines == LineMode::Free && !surface_->planeNormals.empty() &&
-         line_[a].kind == LineKind::On && line_[b].kind == LineKind::On &&
-         line_[a].planes[0] == line_[b].planes[0] && line_[a].planes[0] != kNone;
+// Which of two neighbours, at least one of them on a line, stays on its line if they become one at
+// a new place in its plane: where the rest is reduced too, and the other one is on that line or on
+// none. Else kNone.
+Index Part::movingAtLine(Index a, Index b) const {
+  if (limits_.lines != LineMode::Free || surface_->planeNormals.empty()) return kNone;
+  const Index on = line_[a].kind == LineKind::On ? a : b, other = on == a ? b : a;
+  const LineVertex &p = line_[on], &q = line_[other];
+  if (p.kind != LineKind::On || p.planes[0] == kNone || q.kind == LineKind::End) return kNone;
+  return q.kind == LineKind::Off || q.planes[0] == p.planes[0] ? on : kNone;
 }
 
-// The place of least error in their plane. `sum` is seen from `place`.
-Vec3f Part::bestInPlane(Index a, Index b, Vec3f place, const LocalQuadric& sum) const {
-  const base::Frame frame = base::frameAbout(surface_->planeNormals[line_[a].planes[0]]);
-  const Vec3f middle = (position_[a] + position_[b]) * 0.5f;
+// The place of least error in the plane of the vertex that stays, which is not farther from where
+// it was, or from the middle of the two if both are on the line, than they were from each other.
+// `sum` is seen from `place`.
+Vec3f Part::bestInPlane(Index kept, Index gone, Vec3f place, const LocalQuadric& sum) const {
+  const base::Frame frame = base::frameAbout(surface_->planeNormals[line_[kept].planes[0]]);
+  const Vec3f from = isOnLine(gone) ? (position_[kept] + position_[gone]) * 0.5f : position_[kept];
   LocalQuadric q = sum;
-  q.moveBy(middle - place);
+  q.moveBy(from - place);
   const Vec3f off = q.minimumAlong(frame.x, frame.y);
-  return squaredLength(off) <= squaredLength(position_[a] - position_[b]) ? middle + off : middle;
+  return squaredLength(off) <= squaredLength(position_[kept] - position_[gone]) ? from + off : from;
 }
 
 Outcome Part::tryInto(Index kept, Index gone, Vec3f place) {
@@ -183,15 +194,12 @@ void Part::noteGone(Index kept, Index gone) {
   }
 }
 
-// Vertices stay inside their region, the triangles' around them; those of lines between both.
+// Vertices stay inside their region; those of lines in their plane, where the regions on both sides
+// have the same bounds but for it.
 bool Part::mayHold(Index a, Index b) const {
   if (!surface_->mayHold || place_ == position_[a]) return true;
-  const Index plane = isOnLine(a) && isOnLine(b) ? line_[a].planes[0] : kNone;
-  if (plane == kNone && (isOnLine(a) || isOnLine(b))) return true;
-  const auto mayHoldIn = [&](Index region) {
-    return surface_->mayHold(region, plane, place_, position_[a], position_[b]);
-  };
-  return mayHoldIn(region_[left_ / 3]) && (plane == kNone || mayHoldIn(region_[right_ / 3]));
+  const Index plane = isOnLine(a) ? line_[a].planes[0] : kNone;
+  return surface_->mayHold(region_[left_ / 3], plane, place_, position_[a], position_[b]);
 }
 
 bool Part::mayFlipAtLine(const Index* v) const {
