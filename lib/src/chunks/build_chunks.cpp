@@ -121,8 +121,8 @@ ChunkLevelEntry entryOf(const ChunkLevel& level, std::size_t pairsLeft, double m
   return out;
 }
 
-// For each chunk the pairs of triangles of a level that intersect, as they are or beside the next
-// level.
+// For each chunk the pairs of triangles of a level that intersect, as they are, beside the next
+// level, or on some faces beside it.
 std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::ChainLevel& level,
                                     base::Job& job) {
   std::vector<std::size_t> counts(cut.chunks.size(), 0);
@@ -147,6 +147,7 @@ std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::Ch
   };
   count(false);
   count(true);
+  for (const auto& [t, other] : chunks::findMixedForms(level, job)) ++counts[level.chunkOf[t]];
   return counts;
 }
 

@@ -22,7 +22,7 @@ struct LineVertex {
   LineKind kind = LineKind::Off;
   bool isBeside = false;  ///< off a line, and beside one when a step of LineMode::Alone began
   /// In a step of LineMode::Alone: the plane whose vertices' going has changed a triangle at this
-  /// vertex, kNone for none, kSeveral if it may not go at all.
+  /// vertex, kNone for none, kSeveral if it may not go any more.
   Index change = kNone;
   Index name = kNone;  ///< its number when the last step of LineMode::Alone began
   /// The planes of lines that it lies on, kNone where there are fewer than three.
@@ -40,6 +40,14 @@ struct LineVertex {
     }
     return count;
   }
+};
+
+/// A triangle in a step of LineMode::Alone, as it was when that began or as it is.
+struct Form {
+  std::array<Vec3f, 3> corners;
+  std::array<Index, 3> names;  ///< of its vertices, see LineVertex
+  Index region;
+  Index plane;  ///< for whose sake it changes
 };
 
 /// How lines are reduced. Lines lie in planes. Wherever they are reduced, a vertex of a line goes

@@ -43,6 +43,8 @@ class Part {
   /// Changes of LineVertex::change in all parts so far: vertices of the surface and planes. Other
   /// parts may have the same vertices.
   [[nodiscard]] std::vector<std::array<Index, 2>>& changes() { return changes_; }
+  /// Triangles that have changed for the first time, as they were, in all parts so far.
+  [[nodiscard]] std::vector<Form>& forms() { return newForms_; }
 
  private:
   static constexpr Index kBuckets = 512;
@@ -142,8 +144,19 @@ class Part {
   [[nodiscard]] bool makesChord() const;
   [[nodiscard]] Index planeBeside(Index v) const;
   [[nodiscard]] bool mayGoAlone(Index gone, Index kept) const;
+  [[nodiscard]] Index planeOfGoing(Index gone) const {
+    return isOnLine(gone) ? line_[gone].planes[0] : planeBeside(gone);
+  }
   void noteGone(Index kept, Index gone);
   [[nodiscard]] bool mayFlipAtLine(const Index* v) const;
+
+  // part_forms.cpp.
+  void loadForms(const Surface& surface);
+  [[nodiscard]] Form formOf(Index t, Index plane) const;
+  [[nodiscard]] bool meetsOldForm(const Form& form) const;
+  [[nodiscard]] bool meetsNewForm(const Form& form) const;
+  [[nodiscard]] bool formsMeet(Index kept, Index gone) const;
+  void noteForms(Index plane);
 
   // part_star.cpp.
   bool makeStar();
@@ -217,6 +230,10 @@ class Part {
   std::vector<Index> region_;                   ///< of each triangle
   std::vector<std::array<Index, 3>> wentInto_;  ///< names, from and to, and the plane
   std::vector<std::array<Index, 2>> changes_;
+  // In a step of LineMode::Alone. For each triangle Surface::changeOf, and those where it is not
+  // kNone; changed triangles near, as they were; foreign ones as they are.
+  std::vector<Index> changeOf_, changed_;
+  std::vector<Form> oldForms_, foreignForms_, newForms_;
   // For each corner; for each triangle its first sample; for each sample.
   std::vector<Index> vertex_, opposite_, firstSample_;
   std::vector<Sample> samples_;

@@ -19,6 +19,7 @@ void Part::loadLines(const Surface& surface) {
   for (Index i = 0; i < vertexCount_; ++i) line_[i] = surface.line[vertices[i]];
   for (Index t = 0; t < triangleCount_; ++t) region_[t] = surface.region[triangles[t]];
   wentInto_.clear();
+  if (isAlone()) loadForms(surface);
 }
 
 void Part::storeLines(Surface& surface) const {
@@ -26,6 +27,9 @@ void Part::storeLines(Surface& surface) const {
   for (const auto& [from, to, plane] : wentInto_) {
     surface.into[from] = to, surface.intoPlane[from] = plane;
   }
+  if (!isAlone()) return;
+  const auto triangles = partition_->triangles(number_);
+  for (const Index t : changed_) surface.changeOf[triangles[t]] = changeOf_[t];
 }
 
 // Whether the edge opposite a corner is between two regions.
@@ -156,7 +160,10 @@ Outcome Part::tryInto(Index kept, Index gone, Vec3f place) {
     if (isLast(left_) || isLast(previousCorner(right_))) return Outcome::Link;
   }
   if (makesChord()) return Outcome::Link;
-  return tryPlace(kept, gone, place);
+  const Outcome outcome = tryPlace(kept, gone, place);
+  const bool isMixed =
+      outcome == Outcome::Done && isAlone() && isOn(Outcome::Intersection) && formsMeet(kept, gone);
+  return isMixed ? Outcome::Intersection : outcome;
 }
 
 // Whether an edge other than of a line would run from the vertex that stays to another one of a
@@ -181,9 +188,10 @@ bool Part::makesChord() const {
 // Notes where a vertex goes, and that the triangles around it change. Called while the ring is that
 // of the collapse.
 void Part::noteGone(Index kept, Index gone) {
-  const Index plane = isOnLine(gone) ? line_[gone].planes[0] : planeBeside(gone);
+  const Index plane = planeOfGoing(gone);
   wentInto_.push_back({line_[gone].name, line_[kept].name, plane});
   if (limits_.lines != LineMode::Alone) return;
+  noteForms(plane);
   const auto note = [&](Index v) {
     line_[v].addChange(plane);
     changes_.push_back({partition_->vertices(number_)[v], plane});

@@ -121,10 +121,12 @@ void Reduction::beginLines() {
   const auto count = static_cast<Index>(surface_.line.size());
   surface_.into.resize(count);
   surface_.intoPlane.assign(count, kNone);
+  surface_.changeOf.assign(surface_.triangles.size(), kNone);
+  surface_.oldForms.clear();
   for (Index v = 0; v < count; ++v) {
     LineVertex& line = surface_.line[v];
     line.name = surface_.into[v] = v;
-    line.change = !stay_.empty() && stay_[v] != 0 ? LineVertex::kSeveral : kNone;
+    line.change = kNone;
     line.isBeside = false;
   }
   for (const Triangle& t : surface_.triangles) {
@@ -247,6 +249,8 @@ void Reduction::returnPart(std::unique_ptr<Part> part) {
   part->clearCounts();
   lastChanges_.insert(lastChanges_.end(), part->changes().begin(), part->changes().end());
   part->changes().clear();
+  lastForms_.insert(lastForms_.end(), part->forms().begin(), part->forms().end());
+  part->forms().clear();
   parts_.push_back(std::move(part));
 }
 
@@ -271,6 +275,8 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
   counts_ += lastCounts_;
   for (const auto& [vertex, plane] : lastChanges_) surface_.line[vertex].addChange(plane);
   lastChanges_.clear();
+  surface_.oldForms.insert(surface_.oldForms.end(), lastForms_.begin(), lastForms_.end());
+  lastForms_.clear();
   isReference_ = false;
   compact(surface_, dead);
   ++phaseNumber_;

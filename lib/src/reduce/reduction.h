@@ -101,10 +101,6 @@ class Reduction {
   /// kLeastTolerance nothing is done.
   void toTolerance(float tolerance, LineMode lines = LineMode::Free);
 
-  /// In steps of LineMode::Alone the vertices that are marked stay, by their numbers when the step
-  /// begins. Empty: none.
-  void lockLines(std::vector<std::uint8_t> stay) { stay_ = std::move(stay); }
-
   /// At most `count` triangles and few less, within the least tolerance that reaches it among a
   /// sequence of growing ones, up to `mostTolerance` voxels. Returns that tolerance. Where the
   /// count is out of reach, the mesh has more triangles and mostTolerance is returned.
@@ -127,9 +123,8 @@ class Reduction {
   [[nodiscard]] const std::vector<Index>& wentInto() const { return surface_.into; }
   /// For those that have gone the plane of the line that they were on, or beside.
   [[nodiscard]] const std::vector<Index>& wentFor() const { return surface_.intoPlane; }
-  /// The state between two steps, and back to one.
-  [[nodiscard]] Surface surface() const { return surface_; }
-  void restore(Surface surface) { surface_ = std::move(surface); }
+  /// The state between two steps.
+  [[nodiscard]] const Surface& surface() const { return surface_; }
   /// What was tried and made since the beginning.
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
 
@@ -153,13 +148,13 @@ class Reduction {
   std::vector<std::unique_ptr<Part>> parts_;  ///< as many as threads have been at work
   OperationCounts counts_, lastCounts_;
   std::vector<std::array<Index, 2>> lastChanges_;  ///< see Part::changes()
+  std::vector<Form> lastForms_;                    ///< see Part::forms()
   Certificate certificate_;
   bool isReference_;                                 ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance
   std::size_t nextTree_ = 0;
   int attempt_ = 0;  ///< at the present tolerance, from 0 on
   LineMode lines_ = LineMode::Free;
-  std::vector<std::uint8_t> stay_;  ///< see lockLines()
   int phaseNumber_ = 0;
   float tolerance_ = 0;
 };

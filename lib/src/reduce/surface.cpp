@@ -165,6 +165,7 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
     for (const Index v : s.triangles[t].vertices) vertexNumber[v] = 0;
     triangleNumber[t] = triangles;
     if (s.hasLines()) s.region[triangles] = s.region[t];
+    if (!s.changeOf.empty()) s.changeOf[triangles] = s.changeOf[t];
     s.triangles[triangles++] = s.triangles[t];
   }
   for (Index v = 0; v < vertexNumber.size(); ++v) {
@@ -181,6 +182,7 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
   s.position.resize(vertices), s.axis.resize(vertices), s.quadric.resize(vertices);
   s.flags.resize(vertices), s.source.resize(vertices), s.face.resize(vertices);
   if (s.hasLines()) s.region.resize(triangles), s.line.resize(vertices);
+  if (!s.changeOf.empty()) s.changeOf.resize(triangles);
   for (Index& t : s.owner) {
     if (t != kNone) t = triangleNumber[t];
   }

@@ -40,6 +40,10 @@ struct Surface {
   std::vector<LineVertex> line;
   std::vector<Index> into;
   std::vector<Index> intoPlane;  ///< for each name the plane of the line that it went for
+  // In a step of LineMode::Alone: for each triangle the plane for whose sake it has changed, kNone
+  // for none; and all that have changed, as they were.
+  std::vector<Index> changeOf;
+  std::vector<Form> oldForms;
   /// Edges of the input inside a region between vertices of lines in one plane, as keys of
   /// chordKey(), sorted: they may never become edges of lines.
   std::vector<std::uint64_t> chords;

@@ -114,7 +114,8 @@ TEST(MixedForms, AreFoundWhereTrianglesOfTwoPlanesWouldMeet) {
   constexpr auto kNone = ChunkPlane::kNone;
   level.intoPlane = {kNone, 0, 1, kNone, kNone, kNone, kNone, kNone};
   base::Job job(1, {});
-  EXPECT_EQ(findMixedForms(level, job).size(), 2U);
+  using Pair = std::array<std::uint32_t, 2>;
+  EXPECT_EQ(findMixedForms(level, job), (std::vector<Pair>{{0, 1}}));
   level.into[1] = 1;
   EXPECT_TRUE(findMixedForms(level, job).empty());
 }

@@ -185,17 +185,6 @@ TEST(Lines, AreHeldWhileTheRestIsReduced) {
   expectWhole(box.reduction.mesh());
 }
 
-TEST(Lines, KeepTheVerticesThatAreLocked) {
-  Reducer box(wavingBox(0.2f));
-  const std::set<Index> before = box.lineSources();
-  box.reduction.lockLines(std::vector<std::uint8_t>(box.input.positions.size(), 1));
-  box.reduction.toTolerance(0.3f, LineMode::Alone);
-  EXPECT_EQ(box.lineSources(), before);
-  box.reduction.lockLines({});
-  box.reduction.toTolerance(0.3f, LineMode::Alone);
-  EXPECT_LT(box.lineSources().size(), before.size() / 4);
-}
-
 // The middle region is a cap whose only line has three vertices when it is as coarse as can be.
 TEST(Lines, NeverVanishWithTheirRegion) {
   test::FineMesh ball = test::subdivided(test::octahedron(8), 4);

@@ -6,7 +6,6 @@
 
 #include "base/box.h"
 #include "base/single_precision.h"
-#include "chunks/chain/mixed_forms.h"
 #include "refine/surface_reduction.h"
 
 namespace tufa::chunks {
@@ -17,8 +16,6 @@ using base::Vec3f;
 constexpr std::size_t kGrain = 16384;
 // Voxels that vertices inside a chunk keep from its faces, unless they were nearer before.
 constexpr double kDepth = 2e-3;
-// How often curves are reduced less where forms intersect; then they are not reduced there at all.
-constexpr int kMostAttempts = 12;
 
 }  // namespace
 
@@ -105,32 +102,16 @@ Position ChunkChain::positionOf(const Vec3f& local) const {
 
 ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
   const float kept = static_cast<float>(std::max(0.0, tolerance - cut_.moved));
-  if (before != nullptr) reduceCurves(kept, *before);
+  if (before != nullptr) {
+    reduction_->toTolerance(kept, reduce::LineMode::Alone);
+    setInto(*before);
+    before->transitionErrors = errorsOf(reduction_->certificate());
+  }
   reduction_->toTolerance(kept,
                           before == nullptr ? reduce::LineMode::Free : reduce::LineMode::Held);
   ChainLevel level = extract();
   level.errors = errorsOf(reduction_->certificate());
   return level;
-}
-
-void ChunkChain::reduceCurves(float tolerance, ChainLevel& before) {
-  const reduce::Surface surface = reduction_->surface();
-  std::vector<std::uint8_t> stay(before.positions.size(), 0);
-  for (int attempt = 0;; ++attempt) {
-    reduction_->lockLines(stay);
-    reduction_->toTolerance(tolerance, reduce::LineMode::Alone);
-    setInto(before);
-    const std::vector<std::uint32_t> bad = findMixedForms(before, job_);
-    if (bad.empty()) break;
-    for (const std::uint32_t t : bad) {
-      for (const VertexIndex v : before.triangles[t].vertices) {
-        if (before.into[v] == v && attempt < kMostAttempts) continue;
-        stay[v] = 1;
-      }
-    }
-    reduction_->restore(surface);
-  }
-  before.transitionErrors = errorsOf(reduction_->certificate());
 }
 
 // What each vertex has gone into at last.

@@ -37,9 +37,8 @@ struct ChainLevel {
 ///
 /// What comes of the first step is a whole mesh that has passed all guards: the finer LOD with the
 /// coarser one's curves. So the strips between LODs are triangles of that mesh. No triangle changes
-/// in two planes at a time; where a triangle in its new form and another one in its old form, which
-/// belongs to another plane, would intersect, the first step is made again without what brought
-/// them together.
+/// in two planes at a time, and none in its new form meets another one in its old form that changes
+/// in another plane: reduction guards that too.
 class ChunkChain {
  public:
   /// All arguments must outlive this.
@@ -55,7 +54,6 @@ class ChunkChain {
   [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
   [[nodiscard]] base::Vec3f localOf(const Position& p) const;
   [[nodiscard]] Normal normalOn(const Triangle& face, const Vec3& p) const;
-  void reduceCurves(float tolerance, ChainLevel& before);
   void setInto(ChainLevel& level) const;
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 

@@ -30,13 +30,14 @@ std::uint32_t changingPlane(const ChainLevel& level, const Triangle& triangle, b
   return plane;
 }
 
-std::vector<std::uint32_t> findMixedForms(const ChainLevel& level, base::Job& job) {
-  std::vector<std::uint32_t> bad, changing, planes;
+std::vector<std::array<std::uint32_t, 2>> findMixedForms(const ChainLevel& level, base::Job& job) {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  std::vector<std::uint32_t> changing, planes;
   for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
     bool isMixed = false;
     const std::uint32_t plane = changingPlane(level, level.triangles[t], isMixed);
     if (plane == ChunkPlane::kNone) continue;
-    if (isMixed) bad.push_back(t);
+    if (isMixed) pairs.push_back({t, t});
     changing.push_back(t), planes.push_back(plane);
   }
   std::vector<base::Box> boxes;
@@ -45,7 +46,7 @@ std::vector<std::uint32_t> findMixedForms(const ChainLevel& level, base::Job& jo
   const base::Bvh own(std::move(boxes), job);
   std::mutex mutex;
   job.forRanges(changing.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> found;
+    std::vector<std::array<std::uint32_t, 2>> found;
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle t = changed(level, level.triangles[changing[i]]);
       if (isGone(t)) continue;
@@ -54,16 +55,14 @@ std::vector<std::uint32_t> findMixedForms(const ChainLevel& level, base::Job& jo
             !intersect::intersectElsewhere(level.positions, t, level.triangles[changing[j]])) {
           return;
         }
-        found.push_back(changing[i]);
-        found.push_back(changing[j]);
+        found.push_back({changing[i], changing[j]});
       });
     }
     const std::scoped_lock lock(mutex);
-    bad.insert(bad.end(), found.begin(), found.end());
+    pairs.insert(pairs.end(), found.begin(), found.end());
   });
-  std::sort(bad.begin(), bad.end());
-  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
-  return bad;
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace tufa::chunks

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,10 +10,12 @@
 
 namespace tufa::chunks {
 
-/// Finds the triangles of a level that, in the form beside the next level, intersect a triangle of
-/// the same chunk in its own form that would change in another plane, or that change in two
-/// planes: places in `level.triangles`, sorted. The level must have its `into`.
-[[nodiscard]] std::vector<std::uint32_t> findMixedForms(const ChainLevel& level, base::Job& job);
+/// Finds pairs of triangles of one chunk that change in different planes, the first of which, in
+/// its form beside the next level, intersects the second one in its own form; and with themselves
+/// those that change in two planes. Places in `level.triangles`, sorted. The level must have its
+/// `into`. An audit: reduction guards that there are none.
+[[nodiscard]] std::vector<std::array<std::uint32_t, 2>> findMixedForms(const ChainLevel& level,
+                                                                       base::Job& job);
 
 /// The plane in which a triangle changes beside the next level, ChunkPlane::kNone if it does not.
 /// `isMixed` is set where there are several.
