@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 
 #include <tufa/check.h>
+#include <tufa/chunks.h>
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/extract.h>
@@ -14,8 +15,10 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <random>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/expect_error.h"
@@ -152,6 +155,34 @@ TEST_P(SampleMesh, HasAChainThatKeepsItsPromises) {
   // A plate thinner than a voxel may have no sample inside.
   EXPECT_EQ(chain.levels.empty(), report.surfaceCells == 0);
   expectPromises(chain, report);
+}
+
+// Of random LODs, each chunk within one of its neighbours. Where the cut leaves pairs, as it does
+// on one sample, that is told.
+TEST_P(SampleMesh, HasChunksOfWhichEveryMixtureIsWhole) {
+  const Mesh input = readMesh(path());
+  VoxelizeOptions options;
+  options.voxelSize = extentOf(input) / 60;
+  const auto grid = voxelize(input, options);
+  ChunkOptions chunkOptions;
+  chunkOptions.chunkSize = 16;
+  std::vector<Chunk> chunks;
+  ContourReport report;
+  const ChunkIndex index = buildChunks(
+      *grid, chunkOptions,
+      [&](const ChunkIndex&, Chunk&& chunk) { chunks.push_back(std::move(chunk)); }, &report);
+  if (chunks.empty()) GTEST_SKIP() << "a plate thinner than a voxel";
+  const CheckReport uniform = checkTopology(tufa::test::uniformMesh(*grid));
+  std::mt19937 random(13);
+  std::vector<std::size_t> lods(chunks.size());
+  for (std::size_t& lod : lods) lod = random() % index.tolerances.size();
+  restrictLods(index, lods);
+  const CheckReport found = check(assembleChunks(chunks, lods));
+  EXPECT_EQ(found.closed, report.openEdges == 0);
+  EXPECT_TRUE(found.manifold && found.oriented);
+  EXPECT_EQ(found.eulerCharacteristic, uniform.eulerCharacteristic);
+  EXPECT_EQ(found.components.size(), uniform.components.size());
+  EXPECT_LE(found.selfIntersectingPairs.value_or(0), report.intersectionsLeft);
 }
 
 class SampleVolume : public Sample {};
