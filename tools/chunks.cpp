@@ -389,6 +389,7 @@ void addChunksCommand(CLI::App& app, Command& chosen) {
   addBuildOptions(*chunks, *arguments);
   addAssembleOptions(*chunks, arguments->assemble);
   addContourOptions(*chunks, arguments->chunks.contour, arguments->isovalue);
+  chunks->remove_option(chunks->get_option("--no-repair"));
   chunks->add_flag("--json", arguments->json, "one JSON object on standard output");
   chunks->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   chunks->callback([arguments, chunks, &chosen] {

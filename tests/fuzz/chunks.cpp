@@ -1,7 +1,6 @@
 // Small grids of any topology and any values through buildChunks(). The oracle is the promise:
 // chunks of any mixture of LODs fit together, closed where the data is closed, with the topology of
-// the uniform mesh, each within its tolerance. With repair: without it the tolerance may be
-// exceeded, and chunks far from the origin may touch themselves at a vertex.
+// the uniform mesh, each within its tolerance.
 
 #include <tufa/chunks.h>
 #include <tufa/error.h>
@@ -46,6 +45,7 @@ tufa::ChunkOptions optionsFrom(Source& source) {
   options.contour.ambiguity = static_cast<tufa::Ambiguity>(source.below(4));
   options.contour.nonFinite = tufa::NonFinite::Outside;
   options.contour.cap = source.coin();
+  options.contour.repair = source.coin();
   options.contour.tolerance = source.next() / 64.0;
   options.contour.threads = 1;
   return options;

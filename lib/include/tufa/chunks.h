@@ -22,10 +22,9 @@ inline constexpr int kChunkFaces = 6;
 /// Options of buildChunks().
 struct ChunkOptions {
   /// How the surface is read. `tolerance` is that of LOD 0; vertices near planes between chunks
-  /// move by up to 0.02 voxels whatever it is. Without `repair` what intersects is parted all the
-  /// same, later, and errors may exceed the tolerances, as ChunkLevel::maxErrorVoxels then says.
-  /// Ignored: `uniform`, `normals` (always the gradient's), `keepLeaves`, `keepCells`. Needs edge
-  /// collapse: `simplify`, and no bounds on cells or angles.
+  /// move by up to 0.02 voxels whatever it is. Ignored: `uniform`, `normals` (always the
+  /// gradient's), `repair` (always made), `keepLeaves`, `keepCells`. Needs edge collapse:
+  /// `simplify`, and no bounds on cells or angles.
   ContourOptions contour;
   int chunkSize = 64;  ///< voxels along each edge, a power of two from 8 to 1024
   int levels = 4;      ///< LODs of each chunk, 1 to 16

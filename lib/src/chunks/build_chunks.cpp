@@ -161,6 +161,9 @@ class ChunkBuilder {
     ContourOptions contour = options_.contour;
     contour.uniform = false;
     contour.normals = Normals::Gradient;
+    // Vertices at one place, where the surface touches itself, would be one to what joins chunks by
+    // positions; and what is parted later only, costs errors, triangles and time.
+    contour.repair = true;
     const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_));
     job_.beginStage("blocks", kEnds.blocks);
     const refine::SurfaceModel model(grid::openVolume(grid_, contour, job_), contour, kEnds, job_);
