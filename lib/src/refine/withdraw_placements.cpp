@@ -5,12 +5,14 @@
 #include <cmath>
 #include <iterator>
 #include <mutex>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
 #include "intersect/candidates.h"
 #include "intersect/surface.h"
+#include "refine/placement_conflict.h"
 #include "uniform/place_vertices.h"
 #include "uniform/quads.h"
 
@@ -39,21 +41,6 @@ constexpr std::uint8_t kAtPlain = kMostParts + 1, kAtMassPoint = 2 * kAtPlain;
 constexpr double kSharpSheets = -0.766;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
-
-// A fold, an intersecting pair, or two vertices at one point.
-struct Conflict {
-  enum class Kind { SamePoint, Fold, Pair };
-  Kind kind = Kind::SamePoint;
-  std::array<VertexIndex, 8> vertices;
-  int count = 0;
-  std::array<std::uint32_t, 2> parts{};  // the faces of a fold, the quads of a pair
-  std::array<VertexIndex, 2> edge{};     // of a fold
-  void add(VertexIndex vertex) {
-    const auto* end = vertices.begin() + count;
-    if (std::find(vertices.begin(), vertices.begin() + count, vertex) == end)
-      vertices[count++] = vertex;
-  }
-};
 
 // A face at an edge, the edge's ends in rising order.
 struct EdgeFace {
@@ -157,9 +144,7 @@ class PlacementGuard {
            return any;
          })) {
       visit(quad, [&](VertexIndex a, VertexIndex b) {
-        Conflict& conflict = conflicts.emplace_back();
-        conflict.add(a);
-        conflict.add(b);
+        conflicts.push_back({Conflict::Kind::SamePoint, {}, {a, b}});
       });
     }
     return conflicts;
@@ -201,14 +186,7 @@ class PlacementGuard {
       const EdgeFace& a = edges[i];
       const EdgeFace& b = edges[i + 1];
       if (a.low != b.low || a.high != b.high || !isFold(a, b)) continue;
-      Conflict conflict;
-      conflict.kind = Conflict::Kind::Fold;
-      conflict.parts = {a.face, b.face};
-      conflict.edge = {a.low, a.high};
-      for (const std::uint32_t face : {a.face, b.face}) {
-        for (const VertexIndex vertex : cornersOf(face).vertices) conflict.add(vertex);
-      }
-      conflicts.push_back(conflict);
+      conflicts.push_back({Conflict::Kind::Fold, {a.face, b.face}, {a.low, a.high}});
     }
   }
 
@@ -263,15 +241,25 @@ class PlacementGuard {
           polygons_, touched_, job_,
           [&](std::uint32_t a, std::uint32_t b) { return isCandidate(a) || isCandidate(b); });
     }
+    conflicts.reserve(conflicts.size() + pairs.size());
     for (const intersect::PolygonPair& pair : pairs) {
-      Conflict conflict;
-      conflict.kind = Conflict::Kind::Pair;
-      conflict.parts = {pair.a, pair.b};
-      for (const intersect::PolygonIndex quad : {pair.a, pair.b}) {
-        for (const VertexIndex vertex : mesh_.quads[quad].vertices) conflict.add(vertex);
-      }
-      conflicts.push_back(conflict);
+      conflicts.push_back({Conflict::Kind::Pair, {pair.a, pair.b}, {}});
     }
+  }
+
+  [[nodiscard]] Involved involvedIn(const Conflict& conflict) const {
+    Involved out;
+    for (const std::uint32_t part : conflict.parts) {
+      if (conflict.kind == Conflict::Kind::Fold) {
+        for (const VertexIndex vertex : cornersOf(part).vertices) out.add(vertex);
+      } else if (conflict.kind == Conflict::Kind::Pair) {
+        for (const VertexIndex vertex : mesh_.quads[part].vertices) out.add(vertex);
+      }
+    }
+    if (conflict.kind == Conflict::Kind::SamePoint) {
+      for (const VertexIndex vertex : conflict.edge) out.add(vertex);
+    }
+    return out;
   }
 
   // A place that a vertex may go to.
@@ -284,36 +272,49 @@ class PlacementGuard {
 
   // Makes the smallest move that settles each conflict. Whether there was any.
   bool withdrawFrom(const std::vector<Conflict>& conflicts) {
-    std::vector<VertexIndex> vertices;
-    for (const Conflict& conflict : conflicts) {
-      vertices.insert(vertices.end(), conflict.vertices.begin(),
-                      conflict.vertices.begin() + conflict.count);
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const std::vector<VertexIndex> vertices = verticesOf(conflicts);
     const auto [plain, mass] =
         uniform::fallbackPoints(surface_.volume.blocks, surface_.volume.scale, surface_.topology,
                                 surface_.affine(), vertices, job_);
-    std::vector<Move> chosen;
+    const auto slotOf = [&](VertexIndex vertex) {
+      return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
+                                      vertices.begin());
+    };
+    std::vector<std::optional<Move>> chosen(vertices.size());
+    std::vector<Move> moves;
     for (const Conflict& conflict : conflicts) {
-      std::vector<Move> moves;
-      for (int i = 0; i < conflict.count; ++i) {
-        const auto slot = static_cast<std::size_t>(
-            std::lower_bound(vertices.begin(), vertices.end(), conflict.vertices[i]) -
-            vertices.begin());
-        addMoves(conflict.vertices[i], plain[slot], mass[slot], moves);
+      moves.clear();
+      const Involved involved = involvedIn(conflict);
+      for (int i = 0; i < involved.count; ++i) {
+        const std::size_t slot = slotOf(involved.vertices[i]);
+        addMoves(involved.vertices[i], plain[slot], mass[slot], moves);
       }
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
         return std::pair(a.distance2, a.vertex) < std::pair(b.distance2, b.vertex);
       });
       if (const Move* move = settling(conflict, moves)) {
-        chosen.push_back(*move);
+        std::optional<Move>& best = chosen[slotOf(move->vertex)];
+        if (!best || leavesFewer(*move, *best)) best = *move;
       } else {
         ++result_.left;
       }
     }
-    apply(chosen);
-    return !chosen.empty();
+    return apply(chosen);
+  }
+
+  // The vertices of all conflicts, sorted.
+  [[nodiscard]] std::vector<VertexIndex> verticesOf(const std::vector<Conflict>& conflicts) const {
+    std::vector<VertexIndex> vertices;
+    if (conflicts.empty()) return vertices;
+    std::vector<bool> isIn(mesh_.positions.size());
+    for (const Conflict& conflict : conflicts) {
+      const Involved involved = involvedIn(conflict);
+      for (int i = 0; i < involved.count; ++i) isIn[involved.vertices[i]] = true;
+    }
+    for (VertexIndex vertex = 0; vertex < isIn.size(); ++vertex) {
+      if (isIn[vertex]) vertices.push_back(vertex);
+    }
+    return vertices;
   }
 
   // Part of the way to the next place, that place, and the mass point.
@@ -355,8 +356,7 @@ class PlacementGuard {
     switch (conflict.kind) {
       case Conflict::Kind::SamePoint: {
         const double least = std::pow(kSamePoint * surface_.affine().voxelSize(), 2);
-        return (pointOf(conflict.vertices[0]) - pointOf(conflict.vertices[1])).squaredLength() <
-               least;
+        return (pointOf(conflict.edge[0]) - pointOf(conflict.edge[1])).squaredLength() < least;
       }
       case Conflict::Kind::Fold:
         return isFold({conflict.edge[0], conflict.edge[1], conflict.parts[0]},
@@ -369,20 +369,25 @@ class PlacementGuard {
                                          mesh_.quads[b].vertices, a == b);
   }
 
-  // Of several moves of a vertex the one that leaves it the fewest places.
-  void apply(std::vector<Move>& moves) {
-    std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
-      return std::tuple(a.vertex, b.step, b.distance2) < std::tuple(b.vertex, a.step, a.distance2);
-    });
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-      const Move& move = moves[i];
-      if (i > 0 && moves[i - 1].vertex == move.vertex) continue;
+  // Of several moves of a vertex the one that leaves it the fewest places is made.
+  static bool leavesFewer(const Move& a, const Move& b) {
+    return std::tuple(b.step, b.distance2) < std::tuple(a.step, a.distance2);
+  }
+
+  // Whether there was any.
+  bool apply(const std::vector<std::optional<Move>>& moves) {
+    bool any = false;
+    for (const std::optional<Move>& chosen : moves) {
+      if (!chosen) continue;
+      any = true;
+      const Move& move = *chosen;
       if (steps_[move.vertex] == 0) ++result_.vertices;
       mesh_.positions[move.vertex] = move.to;
       steps_[move.vertex] = move.step;
       if (move.step >= kAtPlain) surface_.sheets.withdraw(move.vertex);
       moved_[move.vertex] = 1;
     }
+    return any;
   }
 
   void findTouched() {

@@ -176,14 +176,7 @@ class Repairer {
   std::vector<std::vector<intersect::PolygonPair>> findClusters() {
     std::vector<Box> all;
     for (const intersect::PolygonPair& pair : pairs_) all.push_back(sightOf(pair));
-    std::vector<std::vector<std::uint32_t>> seen(pairs_.size());
     const base::Bvh tree(all, job_);
-    for (std::size_t leaf = 0; leaf < tree.leafCount(); ++leaf) {
-      tree.pairsOfLeaf(leaf, [&](std::uint32_t i, std::uint32_t j) {
-        seen[i].push_back(j);
-        seen[j].push_back(i);
-      });
-    }
     // By place: a grid that is translated has its polygons in another order.
     std::vector<Vec3> places;
     for (const intersect::PolygonPair& pair : pairs_)
@@ -197,12 +190,18 @@ class Repairer {
     std::vector<std::vector<intersect::PolygonPair>> clusters;
     sights_.clear();
     std::vector<bool> taken(pairs_.size());
+    // Of one pair at a time: where a surface touches itself everywhere, each sees thousands.
+    std::vector<std::uint32_t> seen;
     for (const std::uint32_t i : order) {
       if (taken[i] || stuck_.count(pairs_[i]) != 0) continue;
       clusters.push_back({pairs_[i]});
       sights_.push_back(all[i]);
-      std::sort(seen[i].begin(), seen[i].end(), before);
-      for (const std::uint32_t other : seen[i]) {
+      seen.clear();
+      tree.itemsMeeting(all[i], [&](std::uint32_t other, const Box&) {
+        if (other != i) seen.push_back(other);
+      });
+      std::sort(seen.begin(), seen.end(), before);
+      for (const std::uint32_t other : seen) {
         taken[other] = true;
         if (contains(all[i], pairs_[other])) clusters.back().push_back(pairs_[other]);
       }
