@@ -142,7 +142,7 @@ TEST_F(Bombs, OfACheckerboardTakeMemoryInProportion) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer takes memory of its own";
   write(makeCheckerboard(3), COMPRESS_ZIP | COMPRESS_ACTIVE_MASK);
   expectProportion({"mesh", file, "--iso", "0", "--uniform", "--quiet", "-o", folder / "m.ply"},
-                   2000);
+                   4000);
 }
 
 /// A file of one leaf, whose values are the last bytes.
