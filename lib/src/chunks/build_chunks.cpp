@@ -178,6 +178,7 @@ class ChunkBuilder {
     chunks::CutMesh cut =
         chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, job_);
     chunks::partRounded(cut, model.affine(), isSingle, job_);
+    chunks::keepApart(cut, model.affine(), isSingle, job_);
     // The farthest that a vertex moves to the lattice.
     cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
     makeLevels(cut, model, rule, isSingle, index.tolerances);

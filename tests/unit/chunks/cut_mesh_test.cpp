@@ -10,6 +10,7 @@
 
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
+#include "chunks/cut/part_rounded.h"
 #include "support/mesh_oracle.h"
 #include "support/model.h"
 
@@ -137,6 +138,28 @@ TEST(FlipCaps, TurnsTheEdgeThatAVertexLiesOn) {
     const Vec3 n = (points[t.vertices[1]] - points[t.vertices[0]])
                        .cross(points[t.vertices[2]] - points[t.vertices[0]]);
     EXPECT_NEAR(n[2], 2, 1e-4);  // half of what the two were
+  }
+}
+
+// Far from the origin, what lay apart is at one place in world space.
+TEST(CutMesh, KeepsVerticesApartThatAreRoundedToOnePlace) {
+  base::Job job(1, {});
+  const auto far = openvdb::math::Transform::createLinearTransform(0.5);
+  far->postTranslate(openvdb::Vec3d(1e6, 0, 0));
+  const grid::Affine affine{grid::Transform(*far)};
+  for (const bool singlePrecision : {false, true}) {
+    CutMesh cut;
+    cut.mesh.positions = {{1, 0, 0}, {1 + 1e-13, 0, 0}, {1 + 2e-13, 0, 0}, {2, 0, 0}};
+    keepApart(cut, affine, singlePrecision, job);
+    std::set<double> places;
+    for (const Position& p : cut.mesh.positions) {
+      const double x = affine.toWorld(p).x;
+      places.insert(singlePrecision ? static_cast<double>(static_cast<float>(x)) : x);
+    }
+    EXPECT_EQ(places.size(), 4u);
+    EXPECT_EQ(cut.mesh.positions[3].x, 2);
+    EXPECT_GT(cut.moved, 0);
+    EXPECT_LE(cut.moved, singlePrecision ? 0.3 : 1e-9);
   }
 }
 

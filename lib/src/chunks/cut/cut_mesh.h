@@ -31,7 +31,7 @@ struct CutMesh {
   std::vector<std::array<std::uint32_t, 3>> planesOf;
   /// The positions that distances are measured to, where some are others than the mesh's.
   std::vector<Position> reference;
-  double moved = 0;  ///< the farthest that a vertex was moved to a plane, voxels
+  double moved = 0;  ///< how far vertices were moved at most: to planes, and apart; voxels
 };
 
 /// Cuts a mesh, positions counted from affine.origin(), into chunks of `size` voxels.

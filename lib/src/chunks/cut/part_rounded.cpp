@@ -1,13 +1,65 @@
 #include "chunks/cut/part_rounded.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/single_precision.h"
 #include "refine/repair/repair.h"
 
 namespace tufa::chunks {
+namespace {
+
+using Place = std::array<double, 3>;
+
+double nextAbove(double x, bool singlePrecision) {
+  if (!singlePrecision) return std::nextafter(x, std::numeric_limits<double>::infinity());
+  return double{std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity())};
+}
+
+}  // namespace
+
+void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job) {
+  std::vector<Position>& positions = cut.mesh.positions;
+  const auto placeOf = [&](const Position& position) {
+    const Position world = affine.toWorld(position);
+    const Position p = singlePrecision ? base::toSingle(world) : world;
+    return Place{p.x, p.y, p.z};
+  };
+  using Entry = std::pair<Place, VertexIndex>;
+  std::vector<Entry> sorted(positions.size());
+  job.forRanges(positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      sorted[v] = {placeOf(positions[v]), static_cast<VertexIndex>(v)};
+    }
+  });
+  base::parallelSort(sorted.begin(), sorted.end(), std::less<>());
+  std::set<Place> added;
+  const auto isTaken = [&](const Place& place) {
+    const auto found = std::lower_bound(sorted.begin(), sorted.end(), Entry{place, 0});
+    return (found != sorted.end() && found->first == place) || added.contains(place);
+  };
+  double moved = 0;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i].first != sorted[i - 1].first) continue;
+    Position& position = positions[sorted[i].second];
+    const Position before = position;
+    Place to = sorted[i].first;
+    do {
+      to[0] = nextAbove(to[0], singlePrecision);
+      position = affine.fromWorld({to[0], to[1], to[2]});
+    } while (isTaken(placeOf(position)));
+    added.insert(placeOf(position));
+    moved = std::max(moved, (Vec3(position) - Vec3(before)).length());
+  }
+  cut.moved += moved / affine.voxelSize();
+}
 
 void partRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job) {
   std::vector<Position>& positions = cut.mesh.positions;
