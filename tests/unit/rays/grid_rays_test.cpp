@@ -107,6 +107,15 @@ TEST(GridRays, FogInSlantedVoxelsIsWhereItsMeshIs) {
   EXPECT_LT(compareSurfaces(*fog, *mesh, 0.03, picture).share(), 0.0005);
 }
 
+// OpenVDB's intersector walked a box without bounds.
+TEST(GridRays, EndWhereNoVoxelIsActive) {
+  const auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1, {0, 0, 0}, 0.2F);
+  for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf) leaf->setValuesOff();
+  PictureOptions options;
+  options.width = options.height = 9;
+  EXPECT_NO_THROW((void)takePicture(*makeRaySurface(grid), options));
+}
+
 TEST(MeshRays, PassNoEdgeOrVertexOfAClosedMesh) {
   const Mesh mesh = contour(*sphereGrid(0.2));
   const auto surface = makeRaySurface(mesh);

@@ -88,11 +88,12 @@ std::shared_ptr<const RaySurface> surfaceOf(const std::shared_ptr<const openvdb:
   return std::make_shared<LevelSetSurface<GridT>>(grid, bounds);
 }
 
-/// Whether the intersector can be asked: it takes active tiles for empty.
+/// Whether the intersector can be asked: it takes active tiles for empty, and does not come to an
+/// end where no voxel is active.
 bool isSuited(const openvdb::GridBase& grid, const RaySurfaceOptions& options) {
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !grid.hasUniformVoxels()) return false;
   if (options.isovalue.value_or(0) != 0 || options.inside == Inside::Above) return false;
-  return grid.constBaseTree().leafCount() > 0 && grid.constBaseTree().activeTileCount() == 0;
+  return grid.constBaseTree().activeVoxelCount() > 0 && grid.constBaseTree().activeTileCount() == 0;
 }
 
 }  // namespace
