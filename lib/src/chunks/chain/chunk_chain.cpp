@@ -22,11 +22,7 @@ constexpr double kDepth = 2e-3;
 ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
                        const octree::CutRule& rule, int chunkSize, bool singlePrecision,
                        base::Job& job)
-    : cut_(cut),
-      model_(model),
-      chunkSize_(chunkSize),
-      singlePrecision_(singlePrecision),
-      job_(job) {
+    : cut_(cut), model_(model), chunkSize_(chunkSize), singlePrecision_(singlePrecision) {
   base::Box box = base::Box::empty();
   for (const Position& p : cut.mesh.positions) box.add(Vec3(p));
   middle_ = box.centre();

@@ -61,7 +61,6 @@ class ChunkChain {
   const refine::SurfaceModel& model_;
   int chunkSize_;
   bool singlePrecision_;
-  base::Job& job_;
   Vec3 middle_{0.0};
   std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
   std::optional<reduce::Reduction> reduction_;
