@@ -46,6 +46,9 @@ struct BlockCells {
   }
 };
 
+// The corners of a cell that are the lower ends of its edges along each axis, by bits.
+constexpr std::array<unsigned, 3> kLowerCorners = {0x0f, 0x33, 0x55};
+
 template <class Body>
 void forPlaces(const Place& first, int size, const Body& body) {
   for (int x = first[0]; x < first[0] + size; ++x) {
@@ -170,38 +173,23 @@ class CellMerger {
 
   [[nodiscard]] bool isLeaf(const Place& at, int size, const Block& block) const {
     bool smooth = true, any = false;
+    // A bit for each axis: whether a lattice edge along it leads out of the inside, or into it.
+    unsigned out = 0, in = 0;
     forPlaces(at, size, [&](const Place& place) {
       const BlockCells::Cell* const cell = block.cells.at(place);
       if (cell == nullptr) return;
       any = true;
       smooth = smooth && features_[cell->index].parts == 0;
-    });
-    return any && smooth && edgesAreCrossedOnce(at, size, block.corners) && isFlat(at, size, block);
-  }
-
-  [[nodiscard]] static bool edgesAreCrossedOnce(const Place& at, int size,
-                                                const grid::CornerWords& corners) {
-    for (int edge = 0; edge < kEdges; ++edge) {
-      const int lower = uniform::edgeCorners(edge)[0], axis = edge / 4;
-      Place point = {at[0] + (lower >> 2) * size, at[1] + ((lower >> 1) & 1) * size,
-                     at[2] + (lower & 1) * size};
-      bool inside = isInside(corners, point);
-      int crossed = 0;
-      for (int step = 0; step < size; ++step) {
-        ++point[axis];
-        const bool next = isInside(corners, point);
-        crossed += next != inside ? 1 : 0;
-        inside = next;
+      const unsigned mask =
+          uniform::cornerMask(block.corners, grid::cellIndex(place[0], place[1], place[2]));
+      for (int axis = 0; axis < 3; ++axis) {
+        const unsigned lower = mask & kLowerCorners[axis];
+        const unsigned upper = mask >> (4 >> axis) & kLowerCorners[axis];
+        out |= static_cast<unsigned>((lower & ~upper) != 0) << axis;
+        in |= static_cast<unsigned>((upper & ~lower) != 0) << axis;
       }
-      if (crossed > 1) return false;
-    }
-    return true;
-  }
-  // Of a lattice point 0..8 steps from the block's origin on each axis.
-  static bool isInside(const grid::CornerWords& corners, const Place& at) {
-    const int dy = at[1] >> 3, dz = at[2] >> 3;
-    const int bit = (at[1] - dy) * 8 + at[2] - dz;
-    return (corners.words[at[0]][dy * 2 + dz] >> bit & 1) != 0;
+    });
+    return any && smooth && (out & in) == 0 && isFlat(at, size, block);
   }
 
   // Whether two parallel planes as far apart as the tolerance have all crossings between them, and

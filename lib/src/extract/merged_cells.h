@@ -27,9 +27,11 @@ struct MergeRule {
 /// segments, whatever their levels: there are no cracks. The loops that segments form on a leaf
 /// are filled inside it, by chords that lie in no face of it or by a fan around their middle.
 ///
-/// No edge of a leaf is crossed twice. Hence a chain ends at two different sides of its square, no
-/// two chains of one mesh have both ends in common, a loop has three corners or more, and no edge
-/// has more than two triangles: the mesh is closed and a 2-manifold on any field.
+/// All crossed lattice edges of a leaf along one axis lead the same way, out of the inside or into
+/// it. So no component lies in a leaf alone and would be lost, no chain is closed in its square,
+/// and no edge of a leaf is crossed twice. Hence a chain ends at two different sides of its square,
+/// no two chains of one mesh have both ends in common, a loop has three corners or more, and no
+/// edge has more than two triangles: the mesh is closed and a 2-manifold on any field.
 ///
 /// All crossings of a leaf lie between two planes that are the tolerance apart, and so do its
 /// triangles and the finest ones that they stand for. A cell with a feature is not merged, nor are
