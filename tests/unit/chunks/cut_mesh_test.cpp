@@ -163,5 +163,24 @@ TEST(CutMesh, KeepsVerticesApartThatAreRoundedToOnePlace) {
   }
 }
 
+// Next to 0 there are more numbers than anyone can count through, and index space knows few of
+// them.
+TEST(CutMesh, KeepsVerticesApartThatAreRoundedToTheOrigin) {
+  base::Job job(1, {});
+  const auto moved = openvdb::math::Transform::createLinearTransform(0.5);
+  moved->postTranslate(openvdb::Vec3d(-2.5, 0, 0));
+  const grid::Affine affine{grid::Transform(*moved)};
+  for (const bool singlePrecision : {false, true}) {
+    CutMesh cut;
+    cut.mesh.positions = {{2.5, 1, 0}, {2.5, 1, 0}, {2.5, 1, 0}};
+    keepApart(cut, affine, singlePrecision, job);
+    std::set<double> places;
+    for (const Position& p : cut.mesh.positions) places.insert(affine.toWorld(p).x);
+    EXPECT_EQ(places.size(), 3u);
+    EXPECT_GT(cut.moved, 0);
+    EXPECT_LE(cut.moved, 1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace tufa::chunks

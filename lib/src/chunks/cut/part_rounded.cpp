@@ -47,14 +47,17 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
   };
   double moved = 0;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
-    if (sorted[i].first != sorted[i - 1].first) continue;
+    const Place& shared = sorted[i].first;
+    if (shared != sorted[i - 1].first) continue;
     Position& position = positions[sorted[i].second];
     const Position before = position;
-    Place to = sorted[i].first;
-    do {
-      to[0] = nextAbove(to[0], singlePrecision);
-      position = affine.fromWorld({to[0], to[1], to[2]});
-    } while (isTaken(placeOf(position)));
+    const auto moveBy = [&](double distance) {
+      position = affine.fromWorld({shared[0] + distance, shared[1], shared[2]});
+    };
+    // Numbers near 0 lie far closer together than the places that vertices can have.
+    double step = nextAbove(shared[0], singlePrecision) - shared[0];
+    for (moveBy(step); placeOf(position) == shared; moveBy(step)) step *= 2;
+    for (int n = 2; isTaken(placeOf(position)); ++n) moveBy(n * step);
     added.insert(placeOf(position));
     moved = std::max(moved, (Vec3(position) - Vec3(before)).length());
   }
