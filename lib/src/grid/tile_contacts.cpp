@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "grid/block_bits.h"
+#include "grid/node_tiles.h"
 
 namespace tufa::grid {
 namespace {
@@ -43,9 +44,9 @@ class TileContacts {
     tree_.getNodes(uppers);
     tree_.getNodes(lowers);
     for (const UpperNode* node : uppers) {
-      for (auto tile = node->cbeginValueAll(); tile; ++tile) {
-        if (isInside(*tile, iso_) == walked_) bigTiles_.push_back(tile.getCoord());
-      }
+      forTiles(*node, [&](openvdb::Index at, auto value) {
+        if (isInside(value, iso_) == walked_) bigTiles_.push_back(node->offsetToGlobalCoord(at));
+      });
     }
     job.forRanges(bigTiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
       Accessor accessor(tree_);
@@ -144,13 +145,13 @@ class TileContacts {
     std::array<State, kPadded * kPadded * kPadded> states;
     states.fill(State::Leaf);
     bool some = false;
-    for (auto tile = node.cbeginValueAll(); tile; ++tile) {
+    forTiles(node, [&](openvdb::Index place, auto value) {
       Coord local;
-      LowerNode::offsetToLocalCoord(tile.pos(), local);
-      const State state = isInside(*tile, iso_) ? State::Inside : State::Outside;
+      LowerNode::offsetToLocalCoord(place, local);
+      const State state = isInside(value, iso_) ? State::Inside : State::Outside;
       states[at(local[0] + 1, local[1] + 1, local[2] + 1)] = state;
       some |= state == mine;
-    }
+    });
     if (!some) return;
     const auto isPadding = [](int i) { return i == 0 || i == kPadded - 1; };
     for (int i = 0; i < kPadded; ++i) {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "grid/node_tiles.h"
+
 namespace tufa::grid {
 namespace {
 
@@ -53,10 +55,10 @@ class TileFaces {
       Accessor accessor(tree_);
       std::uint64_t sum = 0;
       for (std::size_t i = begin; i < end; ++i) {
-        for (auto tile = nodes[i]->cbeginValueAll(); tile; ++tile) {
-          if (isInside(*tile, iso_) != walked_) continue;
-          sum += facesOf<typename Node::ChildNodeType>(tile.getCoord(), accessor);
-        }
+        forTiles(*nodes[i], [&](openvdb::Index at, auto value) {
+          if (isInside(value, iso_) != walked_) return;
+          sum += facesOf<typename Node::ChildNodeType>(nodes[i]->offsetToGlobalCoord(at), accessor);
+        });
       }
       sum_ += sum;
     });

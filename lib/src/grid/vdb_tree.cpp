@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "base/huge_pages.h"
+#include "grid/node_tiles.h"
 #include "grid/openvdb_templates.h"
 #include "grid/samples.h"
 #include "grid/tile_contacts.h"
@@ -136,7 +137,8 @@ template <class TreeT>
 class VdbTree final : public Tree {
   using T = typename TreeT::ValueType;
   using Leaf = typename TreeT::LeafNodeType;
-  using Node = typename TreeT::RootNodeType::ChildNodeType::ChildNodeType;
+  using UpperNode = typename TreeT::RootNodeType::ChildNodeType;
+  using Node = typename UpperNode::ChildNodeType;
   static_assert(Leaf::LOG2DIM == 3 && Node::LOG2DIM == BlockPlaces::kNodeBits);
 
  public:
@@ -170,7 +172,7 @@ class VdbTree final : public Tree {
   Summary readSides(const IsoChoice& iso, std::vector<BlockBits>& inside,
                     base::Job& job) const override {
     Summary summary = readLeaves(iso, inside, job);
-    readTiles(summary);
+    readTiles(summary, job);
     return summary;
   }
 
@@ -189,9 +191,9 @@ class VdbTree final : public Tree {
     job.forRanges(nodes.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         BlockRef* place = places.node(i);
-        for (auto tile = nodes[i]->cbeginValueAll(); tile; ++tile) {
-          place[tile.pos()] = isInside(*tile, iso) ? kInsideTile : kOutsideTile;
-        }
+        forTiles(*nodes[i], [&](openvdb::Index at, T value) {
+          place[at] = isInside(value, iso) ? kInsideTile : kOutsideTile;
+        });
         BlockRef next = firstLeaf[i];
         for (auto leaf = nodes[i]->cbeginChildOn(); leaf; ++leaf) place[leaf.pos()] = next++;
       }
@@ -249,18 +251,47 @@ class VdbTree final : public Tree {
     return summary;
   }
 
-  void readTiles(Summary& summary) const {
+  void readTiles(Summary& summary, base::Job& job) const {
     if (!std::isfinite(tree_.background())) {
       throw Error(ErrorCode::NonFiniteValues,
                   "the grid's background is not a finite number; set a finite background");
     }
-    auto tile = tree_.cbeginValueAll();
-    tile.setMaxDepth(tile.getLeafDepth() - 1);
-    for (; tile; ++tile) {
-      if (tile.isValueOn()) summary.activeVoxels += tile.getVoxelCount();
+    for (auto tile = tree_.root().cbeginValueAll(); tile; ++tile) {
+      if (tile.isValueOn()) summary.activeVoxels += UpperNode::NUM_VOXELS;
       if (std::isfinite(*tile)) continue;
       if (summary.nonFiniteValues++ == 0) summary.firstNonFinite = fromVdb(tile.getCoord());
     }
+    readTilesOf<UpperNode>(summary, job);
+    readTilesOf<Node>(summary, job);
+  }
+
+  template <class NodeT>
+  void readTilesOf(Summary& summary, base::Job& job) const {
+    std::vector<const NodeT*> nodes;
+    tree_.getNodes(nodes);
+    std::mutex mutex;
+    std::size_t firstBad = nodes.size(), nonFinite = 0;
+    openvdb::Coord firstPlace;
+    std::atomic<std::uint64_t> active{0};
+    job.forRanges(nodes.size(), 16, [&](std::size_t begin, std::size_t end) {
+      std::uint64_t activeHere = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        activeHere += activeTiles(*nodes[i]);
+        forTiles(*nodes[i], [&](openvdb::Index at, T value) {
+          if (std::isfinite(value)) return;
+          const std::scoped_lock lock(mutex);
+          ++nonFinite;
+          if (i >= firstBad) return;
+          firstBad = i;
+          firstPlace = nodes[i]->offsetToGlobalCoord(at);
+        });
+      }
+      active += activeHere;
+    });
+    summary.activeVoxels += active * NodeT::ChildNodeType::NUM_VOXELS;
+    if (nonFinite == 0) return;
+    if (summary.nonFiniteValues == 0) summary.firstNonFinite = fromVdb(firstPlace);
+    summary.nonFiniteValues += nonFinite;
   }
 
   const TreeT& tree_;
