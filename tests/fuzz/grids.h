@@ -65,7 +65,7 @@ Value valueFrom(Source& source, bool wild) {
 template <class GridT>
 typename GridT::Ptr gridOfType(Source& source) {
   using Value = typename GridT::ValueType;
-  constexpr int kSmallest = 2;
+  constexpr int kSmallest = TUFA_FUZZ_SIDE < 4 ? 1 : 2;
   constexpr int kSizes = TUFA_FUZZ_SIDE - kSmallest + 1;
   constexpr bool kHasTiles = TUFA_FUZZ_SIDE >= 8;
   const bool wild = source.coin();

@@ -1,8 +1,12 @@
 // Runs a fuzz target without libFuzzer: on every file of the folders it is given, or, given two
-// numbers, on that many random inputs from that seed on; a broken promise then leaves its input in
-// the file broken_promise.
+// numbers, on that many random inputs from that seed on; a broken promise or a crash then leaves
+// its input in the file broken_promise.
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -28,16 +32,25 @@ void runOnFiles(std::vector<std::filesystem::path> files) {
   }
 }
 
+/// The input at hand, for the handler of signals.
+std::string current;
+
+void keepInput(int signal) {
+  const int file = ::open("broken_promise", O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file >= 0 && ::write(file, current.data(), current.size()) >= 0) ::close(file);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
 void runOnRandomInputs(std::uint64_t count, std::uint64_t seed) {
+  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE}) std::signal(signal, keepInput);
   constexpr std::size_t kLongest = 128;
   for (std::uint64_t n = seed; n < seed + count; ++n) {
     std::mt19937_64 random(n);
-    std::string bytes(1 + random() % kLongest, '\0');
-    for (char& byte : bytes) byte = static_cast<char>(random() % 256);
-    std::ofstream("broken_promise", std::ios::binary) << bytes;
-    runOn(bytes);
+    current.assign(1 + random() % kLongest, '\0');
+    for (char& byte : current) byte = static_cast<char>(random() % 256);
+    runOn(current);
   }
-  std::filesystem::remove("broken_promise");
 }
 
 }  // namespace
