@@ -7,6 +7,8 @@
 #include <openvdb/points/StreamCompression.h>
 #include <zlib.h>
 
+#include <tufa/io.h>
+#include <tufa/mesh.h>
 #include <cstdint>
 #include <cstring>
 #include <random>
@@ -135,6 +137,8 @@ TEST_F(Bombs, OfNoiseTakeMemoryInProportion) {
                    1500);
   write(makeNoise(4), COMPRESS_ZIP | COMPRESS_ACTIVE_MASK);
   expectProportion({"mesh", file, "--iso", "0", "--quiet", "-o", folder / "m.ply"}, 4000);
+  write(makeNoise(3), COMPRESS_ZIP | COMPRESS_ACTIVE_MASK);
+  expectProportion({"chunks", file, "--iso", "0", "--quiet", "-o", folder / "c"}, 4000);
 }
 
 // Thirty pairs a voxel intersect before repair, which took 7.5 KB a voxel.
@@ -143,6 +147,34 @@ TEST_F(Bombs, OfACheckerboardTakeMemoryInProportion) {
   write(makeCheckerboard(3), COMPRESS_ZIP | COMPRESS_ACTIVE_MASK);
   expectProportion({"mesh", file, "--iso", "0", "--uniform", "--quiet", "-o", folder / "m.ply"},
                    4000);
+}
+
+// An STL with one far vertex took 2.3 GB.
+TEST_F(Bombs, OfOneFarVertexAreRefusedOrTakeWhatTheirBandTakes) {
+  Mesh mesh;
+  mesh.triangles = {Triangle(0, 2, 1), Triangle(0, 1, 3), Triangle(1, 2, 3), Triangle(2, 0, 3)};
+  const auto voxelizeNeedle = [&](double height, std::uint64_t bandVoxels) {
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, height}};
+    tufa::write(mesh, folder / "far.stl");
+    return run({"voxelize", folder / "far.stl", "--voxel", "0.1", "--band-voxels",
+                std::to_string(bandVoxels), "--quiet", "-o", file});
+  };
+  for (const double height : {1e6, 1e8}) {
+    const auto outcome = voxelizeNeedle(height, std::uint64_t{1} << 27);
+    EXPECT_EQ(outcome.exitCode, 3) << height;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    if (!kSanitized) {
+      EXPECT_LT(outcome.peakBytes, kLeastBytes) << height;
+    }
+    EXPECT_FALSE(std::filesystem::exists(file));
+  }
+  EXPECT_NE(voxelizeNeedle(1e6, 8'000'000).err.find("--band-voxels"), std::string::npos);
+  const auto outcome = voxelizeNeedle(2000, 8'000'000);
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  constexpr std::uint64_t kVoxelBytes = 40;
+  if (!kSanitized) {
+    EXPECT_LT(outcome.peakBytes, kLeastBytes + kVoxelBytes * 8'000'000);
+  }
 }
 
 /// A file of one leaf, whose values are the last bytes.
