@@ -6,7 +6,7 @@
 #include <cstdint>
 
 // Walks over the tiles of an internal node. A node has 4096 or 32,768 of them, most of no interest,
-// and OpenVDB's iterators search the mask of children anew for each: ten times the time.
+// and OpenVDB's iterators search the mask of children anew for each.
 
 namespace tufa::grid {
 
