@@ -80,6 +80,7 @@ struct LevelCount {
   Count own, beside;  ///< beside: with all strips to the next LOD
   std::size_t pairs = 0;
   std::set<std::array<double, 3>> onCurves, ends;
+  std::size_t closed = 0;  ///< curves, on the lower faces of chunks so that each counts once
 
   void add(const ChunkLevel& level, std::size_t intersections) {
     own.add(level.positions, level.interior);
@@ -94,7 +95,10 @@ struct LevelCount {
           return std::array{p.x, p.y, p.z};
         };
         for (const VertexIndex v : seam.vertices) onCurves.insert(placeOf(v));
-        if (seam.closed) continue;
+        if (seam.closed) {
+          closed += face % 2 == 0 ? 1 : 0;
+          continue;
+        }
         ends.insert(placeOf(seam.vertices.front()));
         ends.insert(placeOf(seam.vertices.back()));
       }
@@ -168,6 +172,19 @@ std::vector<LevelCount> countsOf(const openvdb::GridBase& grid, int chunkSize, d
   return counts;
 }
 
+// Triangles of a closed surface of a mesh's topology that has so many vertices: by Euler's formula,
+// as each triangle has three half edges.
+std::size_t leastTriangles(std::size_t vertices, const Mesh& mesh) {
+  const std::size_t triangles = triangulate(mesh).size();
+  // Vertices that others part from a crease's other side count once.
+  std::set<std::array<double, 3>> places;
+  for (const Position& p : mesh.positions) places.insert({p.x, p.y, p.z});
+  const auto twiceEuler =
+      2 * static_cast<std::ptrdiff_t>(places.size()) - static_cast<std::ptrdiff_t>(triangles);
+  return static_cast<std::size_t>(
+      std::max<std::ptrdiff_t>(0, 2 * static_cast<std::ptrdiff_t>(vertices) - twiceEuler));
+}
+
 void print(const std::string& volume, int voxels, const std::vector<int>& chunkSizes) {
   const openvdb::GridBase::Ptr grid = volumeOf(volume, voxels);
   LodOptions lods;
@@ -182,7 +199,8 @@ void print(const std::string& volume, int voxels, const std::vector<int>& chunkS
     const std::vector<Curve> curves = finestCurves(*grid, chunkSize);
     for (std::size_t i = 0; i < chain.levels.size(); ++i) {
       Count whole;
-      whole.add(chain.levels[i].mesh.positions, triangulate(chain.levels[i].mesh));
+      const Mesh& mesh = chain.levels[i].mesh;
+      whole.add(mesh.positions, triangulate(mesh));
       const LevelCount& level = counts[i];
       std::size_t least = level.ends.size();
       for (const Curve& curve : curves) {
@@ -195,7 +213,9 @@ void print(const std::string& volume, int voxels, const std::vector<int>& chunkS
                 << " | " << number("%.1f", whole.share()) << ", "
                 << number("%.1f", level.own.share()) << ", " << number("%.1f", level.beside.share())
                 << " | " << level.onCurves.size() << ", " << least << ", " << level.ends.size()
-                << " | " << level.pairs << " | " << number("%.2f", seconds / chainSeconds) << " |"
+                << ", " << level.closed << " | " << leastTriangles(least, mesh) << ", "
+                << leastTriangles(level.ends.size() + 3 * level.closed, mesh) << " | "
+                << level.pairs << " | " << number("%.2f", seconds / chainSeconds) << " |"
                 << std::endl;
     }
   }
@@ -217,9 +237,12 @@ int main(int argc, char** argv) {
   openvdb::initialize();
   std::cout
       << "| volume | chunk | LOD | chain | chunks | ratio | slivers, %: chain, chunks, beside "
-         "the next LOD | vertices on curves, least number, ends | pairs | CPU time over the "
+         "the next LOD | vertices on curves, least number, ends, closed curves | triangles of as "
+         "many "
+         "vertices as the least number, as ends and 3 of each closed curve | pairs | CPU time over "
+         "the "
          "chain's |\n"
-         "| --- | ---: | ---: | ---: | ---: | ---: | --- | --- | ---: | ---: |\n";
+         "| --- | ---: | ---: | ---: | ---: | ---: | --- | --- | --- | ---: | ---: |\n";
   try {
     for (const std::string& volume : volumes) print(volume, voxels, chunkSizes);
   } catch (const std::exception& error) {

@@ -31,7 +31,7 @@ struct ChunkOptions {
   double factor = 4;   ///< each LOD's tolerance over that of the LOD before; above 1, to 10^6
   /// Normals are split where those of two faces at an edge differ by more than this angle, so that
   /// a position on a crease has several vertices: degrees, 0 to 180; 180 splits none. On faces of
-  /// chunks those of LOD 0 count, so that normals there are the same for all LODs.
+  /// chunks those of the first LOD that has a vertex at its place count, for all LODs.
   double creaseAngle = 40;
   /// How files of .glb are to be stored. If not as floats, all positions are moved to one lattice,
   /// see ChunkIndex::step.
@@ -42,11 +42,13 @@ struct ChunkOptions {
   std::vector<Coord> only;
 };
 
-/// A curve along which the surface passes a face of a chunk, at one LOD of the chunk. Vertices of a
-/// coarser LOD are some of those of a finer one, at the same places.
+/// A curve along which the surface passes a face of a chunk, at one LOD of the chunk.
 struct ChunkSeam {
   std::vector<VertexIndex> vertices;  ///< in the order of the chunk's triangles beside them
   bool closed = false;                ///< the last vertex is followed by the first
+  /// For each vertex the place of the one of the next LOD's curve that it becomes there; its own at
+  /// the last LOD.
+  std::vector<Position> next;
 };
 
 /// A chunk at one LOD: an interior, and for each face two strips, one of which is drawn. All

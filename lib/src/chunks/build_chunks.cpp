@@ -208,8 +208,7 @@ class ChunkBuilder {
   }
 
   void handOut(const chunks::CutMesh& cut, ChunkIndex& index) {
-    const chunks::CurveNormals curves(levels_.front(), cut.mesh.positions.size(),
-                                      options_.creaseAngle, job_);
+    const chunks::CurveNormals curves(levels_, options_.creaseAngle, job_);
     std::vector<std::vector<ChunkLevel>> levels;
     std::vector<std::vector<std::size_t>> pairs;
     for (chunks::ChainLevel& level : levels_) {

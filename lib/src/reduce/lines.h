@@ -51,7 +51,8 @@ struct Form {
 };
 
 /// How lines are reduced. Lines lie in planes. Wherever they are reduced, a vertex of a line goes
-/// into a neighbour on its line under all guards, so that those left keep their places.
+/// into a neighbour on its line under all guards, which may move in its plane if Regions::normals
+/// are given.
 enum class LineMode : std::uint8_t {
   Free,   ///< together with the rest
   Alone,  ///< and beside them only what goes into a neighbour that stays where it is
@@ -68,8 +69,8 @@ struct Regions {
   Index count = 0;
   /// For each vertex the planes of LineVertex; to be given for vertices on lines only.
   std::vector<std::array<Index, 3>> planes;
-  /// Of planes by their numbers, unit. Given, vertices of lines may move in their plane where lines
-  /// are reduced together with the rest.
+  /// Of planes by their numbers, unit. Given, vertices of lines may move in their plane as they
+  /// take in others; where lines are reduced alone, others of their line only.
   std::vector<Vec3f> normals;
   /// Whether a vertex of a region that was at `a` or `b` may be at a place. `plane`: in which it
   /// is, if it is on a line, else kNone. Called from several threads.

@@ -147,6 +147,8 @@ class Part {
   [[nodiscard]] Index planeOfGoing(Index gone) const {
     return isOnLine(gone) ? line_[gone].planes[0] : planeBeside(gone);
   }
+  /// Whether the vertex that stays in the collapse at hand gets another place.
+  [[nodiscard]] bool isMovingKept() const { return !(place_ == position_[kept_]); }
   void noteGone(Index kept, Index gone);
   [[nodiscard]] bool mayFlipAtLine(const Index* v) const;
 

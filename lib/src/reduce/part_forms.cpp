@@ -134,25 +134,26 @@ bool Part::meetsNewForm(const Form& form) const {
 // Beside chunks of several LODs some triangles of a region are drawn as they were, those that
 // change for the sake of one plane, and others as they are. So of two that change in different
 // planes, neither may meet the other's old form. The collapse at hand makes new forms of all
-// triangles around the vertex that goes; those that have not changed before become old forms. Cost:
-// little, as few triangles of a part change in another plane.
+// triangles around the vertex that goes, and around the one that stays if it moves; those that have
+// not changed before become old forms. Cost: little, as few triangles of a part change in another
+// plane.
 bool Part::formsMeet(Index kept, Index gone) const {
   const Index plane = planeOfGoing(gone);
-  Index c = corner_[gone];
-  do {
-    const Index t = c / 3;
+  const auto meets = [&](Index t) {
     Form form = formOf(t, plane);
     if (changeOf_[t] == kNone && meetsNewForm(form)) return true;
-    bool isGone = false;
+    int merged = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      isGone |= form.names[i] == line_[kept].name;
-      if (form.names[i] != line_[gone].name) continue;
-      form.names[i] = line_[kept].name, form.corners[i] = position_[kept];
+      if (form.names[i] != line_[gone].name && form.names[i] != line_[kept].name) continue;
+      form.names[i] = line_[kept].name, form.corners[i] = place_;
+      ++merged;
     }
-    if (!isGone && meetsOldForm(form)) return true;
-    c = around(c);
-  } while (c != corner_[gone]);
-  return false;
+    return merged < 2 && meetsOldForm(form);
+  };
+  for (int i = isMovingKept() ? 0 : split_; i < size_; ++i) {
+    if (meets(at_[i] / 3)) return true;
+  }
+  return meets(left_ / 3) || meets(right_ / 3);
 }
 
 // Called while the ring is that of a collapse that will be made.
@@ -164,7 +165,7 @@ void Part::noteForms(Index plane) {
     changeOf_[t] = plane;
     changed_.push_back(t);
   };
-  for (int i = split_; i < size_; ++i) note(at_[i] / 3);
+  for (int i = isMovingKept() ? 0 : split_; i < size_; ++i) note(at_[i] / 3);
   note(left_ / 3), note(right_ / 3);
 }
 

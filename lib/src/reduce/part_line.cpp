@@ -1,8 +1,8 @@
 // Collapses at lines, the edges between regions: which vertex stays, and what a region may not do.
 //
-// In LineMode::Alone every vertex keeps its place. So the lines of a
-// coarser mesh have a part of the vertices of the finer one, and what a vertex went into is all
-// that is needed to give a region the lines of the coarser mesh: see chunks/chain/chunk_chain.h.
+// In LineMode::Alone vertices go, or two neighbours on a line become one at a new place in its
+// plane. So what each vertex went into, and where that is now, is all that is needed to give a
+// region the lines of the coarser mesh: see chunks/chain/chunk_chain.h.
 
 #include <algorithm>
 #include <limits>
@@ -128,13 +128,18 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
 }
 
 // Which of two neighbours, at least one of them on a line, stays on its line if they become one at
-// a new place in its plane: where the rest is reduced too, and the other one is on that line or on
-// none. Else kNone.
+// a new place in its plane: where the rest is reduced too, the other one is on that line or on
+// none; where lines alone are, both are on it, and what changes around both changes for their plane
+// only. Else kNone.
 Index Part::movingAtLine(Index a, Index b) const {
-  if (limits_.lines != LineMode::Free || surface_->planeNormals.empty()) return kNone;
+  if (limits_.lines == LineMode::Held || surface_->planeNormals.empty()) return kNone;
   const Index on = line_[a].kind == LineKind::On ? a : b, other = on == a ? b : a;
   const LineVertex &p = line_[on], &q = line_[other];
   if (p.kind != LineKind::On || p.planes[0] == kNone || q.kind == LineKind::End) return kNone;
+  if (limits_.lines == LineMode::Alone) {
+    const bool mayMove = q.kind == LineKind::On && p.mayChange(p.planes[0]);
+    if (!mayMove || !mayGoAlone(other, on)) return kNone;
+  }
   return q.kind == LineKind::Off || q.planes[0] == p.planes[0] ? on : kNone;
 }
 
@@ -191,6 +196,8 @@ void Part::noteGone(Index kept, Index gone) {
   const Index plane = planeOfGoing(gone);
   wentInto_.push_back({line_[gone].name, line_[kept].name, plane});
   if (limits_.lines != LineMode::Alone) return;
+  const bool isMoving = isMovingKept();
+  if (isMoving) wentInto_.push_back({line_[kept].name, line_[kept].name, plane});
   noteForms(plane);
   const auto note = [&](Index v) {
     line_[v].addChange(plane);
@@ -198,7 +205,8 @@ void Part::noteGone(Index kept, Index gone) {
   };
   note(kept);
   for (int i = 0; i < size_; ++i) {
-    if (i == 0 || i >= split_) note(ring_[i]);  // others are beside the one that stays alone
+    // Others are beside the one that stays alone.
+    if (isMoving || i == 0 || i >= split_) note(ring_[i]);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <tufa/chunks.h>
+#include <array>
+#include <set>
 
 #include "support/expect_error.h"
 #include "support/mesh_oracle.h"
@@ -50,6 +52,43 @@ TEST(AssembleChunks, FillsTheFaceBetweenDistantLevels) {
                        drum[1].levels[1].interior.size() + drum[1].levels[1].regular[0].size());
   EXPECT_EQ(far, drum[0].levels[0].interior.size() + drum[0].levels[0].transition[1].size() + 3 +
                      drum[1].levels[2].interior.size() + drum[1].levels[2].regular[0].size());
+}
+
+// The coarsest level's curve is at none of the places, or at one of the places, of that before it.
+TEST(AssembleChunks, FillsTheFaceWhereCurvesHaveMoved) {
+  for (const std::size_t kept : {0U, 1U}) {
+    std::vector<Chunk> drum = makeDrum();
+    std::set<std::array<double, 3>> stay;
+    for (Chunk& chunk : drum) {
+      const std::size_t face = chunk.index[0] == 0 ? 1 : 0;
+      const auto move = [&](Position& p) {
+        if (p.x != 8 || stay.contains({p.x, p.y, p.z})) return;
+        if (stay.size() < kept) {
+          stay.insert({p.x, p.y, p.z});
+        } else {
+          p.y += 0.1 * (4 - p.y), p.z += 0.1 * (4 - p.z);
+        }
+      };
+      for (const VertexIndex v : chunk.levels[2].seams[face][0].vertices) {
+        move(chunk.levels[2].positions[v]);
+      }
+      for (Position& p : chunk.levels[2].seams[face][0].next) move(p);
+      for (Position& p : chunk.levels[1].seams[face][0].next) move(p);
+    }
+    for (const auto& lods : {std::vector<std::size_t>{0, 2}, std::vector<std::size_t>{2, 0}}) {
+      const test::MeshTopology topology = inspect(assembleChunks(drum, lods));
+      EXPECT_TRUE(topology.manifold() && topology.closed()) << kept << topology;
+      EXPECT_EQ(topology.euler(), 2) << kept;
+    }
+  }
+}
+
+TEST(AssembleChunks, RefusesSeamsThatLeadNowhere) {
+  std::vector<Chunk> drum = makeDrum();
+  drum[0].levels[1].seams[1][0].next[0].y += 1;
+  test::expectError(ErrorCode::InvalidArgument, "do not lead to", [&] {
+    static_cast<void>(assembleChunks(drum, {0, 2}));
+  });
 }
 
 TEST(AssembleChunks, LeavesChunksOpenWhoseNeighboursAreMissing) {

@@ -65,8 +65,8 @@ TEST(ChunkChain, PassesOnTheCurvesOfTheNextLevel) {
   for (const double tolerance : {0.05, 0.4}) chain.make(tolerance);
   const ChainLevel &fine = chain.levels[0], &coarse = chain.levels[1];
   std::set<VertexIndex> changedInto, own;
-  std::size_t changes = 0, beside = 0;
-  for (VertexIndex v = 0; v < fine.positions.size(); ++v) {
+  std::size_t changes = 0, beside = 0, moved = 0;
+  for (VertexIndex v = 0; v < fine.own; ++v) {
     EXPECT_EQ(fine.into[fine.into[v]], fine.into[v]);
     EXPECT_EQ(fine.into[v] != v, fine.intoPlane[v] != ChunkPlane::kNone);
     if (fine.cutVertex[v] == ChainLevel::kNone) {
@@ -74,16 +74,21 @@ TEST(ChunkChain, PassesOnTheCurvesOfTheNextLevel) {
       continue;
     }
     changes += fine.into[v] != v ? 1 : 0;
-    changedInto.insert(fine.cutVertex[fine.into[v]]);
+    changedInto.insert(fine.curveVertex[fine.into[v]]);
   }
   for (VertexIndex v = 0; v < coarse.positions.size(); ++v) {
     if (coarse.cutVertex[v] == ChainLevel::kNone) continue;
-    own.insert(coarse.cutVertex[v]);
-    const auto same = std::find(fine.cutVertex.begin(), fine.cutVertex.end(), coarse.cutVertex[v]) -
-                      fine.cutVertex.begin();
+    own.insert(coarse.curveVertex[v]);
+    const auto same =
+        std::find(fine.curveVertex.begin(), fine.curveVertex.end(), coarse.curveVertex[v]) -
+        fine.curveVertex.begin();
+    ASSERT_LT(same, std::ssize(fine.positions));
     EXPECT_EQ(fine.positions[static_cast<std::size_t>(same)], coarse.positions[v]);
+    moved += static_cast<std::size_t>(same) < fine.own ? 0 : 1;
   }
   EXPECT_EQ(changedInto, own);
+  EXPECT_GT(moved, 5U);
+  EXPECT_EQ(moved, fine.positions.size() - fine.own);
   EXPECT_GT(changes, 10U);
   EXPECT_GT(beside, 10U);
 }
@@ -125,7 +130,7 @@ TEST(SplitLevel, GivesEachTriangleToOnePartOfItsChunk) {
   for (const double tolerance : {0.05, 0.4}) chain.make(tolerance);
   const ChainLevel& level = chain.levels[0];
   base::Job& job = chain.model.job();
-  const CurveNormals curves(level, chain.cut.mesh.positions.size(), 180, job);
+  const CurveNormals curves(chain.levels, 180, job);
   const std::vector<ChunkLevel> chunks =
       splitLevel(chain.cut, level, shade(level, curves, 180, job), job);
   ASSERT_EQ(chunks.size(), chain.cut.chunks.size());

@@ -17,16 +17,22 @@ struct HandSeam {
   VertexIndex begin = kNone, end = kNone;  ///< on a chunk edge, before and behind the arcs
   bool closed = false;
 
-  /// Its vertices on the face, as they run around the triangles of the strip.
-  [[nodiscard]] ChunkSeam curve() const {
+  /// Its vertices on the face, as they run around the triangles of the strip. `next`: what stands
+  /// for each arc on the face at the next level.
+  [[nodiscard]] ChunkSeam curve(const ChunkLevel& level,
+                                const std::vector<VertexIndex>& next) const {
+    std::vector<VertexIndex> own = polyline, later = next;
+    for (std::vector<VertexIndex>* line : {&own, &later}) {
+      if (begin != kNone) line->insert(line->begin(), begin);
+      if (end != kNone) line->push_back(end);
+    }
     ChunkSeam seam;
     seam.closed = closed;
-    std::vector<VertexIndex>& v = seam.vertices;
-    v = polyline;
-    if (begin != kNone) v.insert(v.begin(), begin);
-    if (end != kNone) v.push_back(end);
-    v.erase(std::unique(v.begin(), v.end()), v.end());
-    std::reverse(v.begin(), v.end());
+    for (std::size_t i = own.size(); i-- > 0;) {
+      if (i > 0 && own[i] == own[i - 1]) continue;
+      seam.vertices.push_back(own[i]);
+      seam.next.push_back(level.positions[later[i]]);
+    }
     return seam;
   }
 };
@@ -118,8 +124,9 @@ inline std::vector<Chunk> makeDrum() {
         maker.addTriangle(tip, seam.tiles[next], seam.tiles[i], level.interior);
       }
       maker.addStrip(seam, seam.polyline, level.regular[face]);
-      if (k < 2) maker.addStrip(seam, seamOf(8, kLineArcs[k + 1]), level.transition[face]);
-      level.seams[face].push_back(seam.curve());
+      const std::vector<VertexIndex> next = k < 2 ? seamOf(8, kLineArcs[k + 1]) : seam.polyline;
+      if (k < 2) maker.addStrip(seam, next, level.transition[face]);
+      level.seams[face].push_back(seam.curve(level, next));
     }
   }
   return chunks;
@@ -187,8 +194,9 @@ inline std::vector<Chunk> makeSheet() {
         const HandSeam& seam = alongX ? top : right;
         const std::size_t face = kTurned[(turn + (alongX ? 1 : 0)) % 4];
         maker.addStrip(seam, seam.polyline, level.regular[face]);
-        if (k < 2) maker.addStrip(seam, lineOf(k + 1, alongX), level.transition[face]);
-        level.seams[face].push_back(seam.curve());
+        const std::vector<VertexIndex> next = k < 2 ? lineOf(k + 1, alongX) : seam.polyline;
+        if (k < 2) maker.addStrip(seam, next, level.transition[face]);
+        level.seams[face].push_back(seam.curve(level, next));
       }
     }
   }

@@ -34,12 +34,14 @@ struct Roof {
       level.triangles.emplace_back(v + 1, v + 3, v + 4);
     }
     level.cutVertex = {none, none, none, 3, 4, 5, none, none, none};
+    level.curveVertex = level.cutVertex;
+    level.own = 9;
     level.isEnd.assign(9, 0);
     level.into = {0, 1, 2, 3, 4, 5, 6, 7, 8};
   }
 
   [[nodiscard]] ShadedLevel shaded(double creaseAngle) {
-    const CurveNormals curves(level, 9, creaseAngle, job);
+    const CurveNormals curves({level}, creaseAngle, job);
     return shade(level, curves, creaseAngle, job);
   }
 };

@@ -177,6 +177,37 @@ TEST(Lines, ReducedAloneChangeVertexNumbersOnly) {
   EXPECT_GT(gone, 0U) << "nothing beside the line";
 }
 
+// Two vertices of a line become one at a better place, which the step tells by the plane that the
+// one that stays went for. All others are where they were.
+TEST(Lines, MayMoveInTheirPlaneAlone) {
+  Reducer kept(wavingBox(0.8f)), moving(wavingBox(0.8f), {{1, 0, 0}});
+  for (Reducer* box : {&kept, &moving}) {
+    box->reduction.toTolerance(0.02f, LineMode::Held);
+    const ReducedMesh before = box->reduction.mesh();
+    box->reduction.toTolerance(0.3f, LineMode::Alone);
+    EXPECT_LE(box->reduction.certificate().largest, 0.3f);
+    expectWhole(box->reduction.mesh());
+    expectApart(*box);
+    std::size_t moved = 0;
+    const Surface surface = box->reduction.surface();
+    for (Index v = 0; v < surface.line.size(); ++v) {
+      const Index name = surface.line[v].name;
+      const bool isMoved = !(surface.position[v] == before.positions[name]);
+      EXPECT_EQ(box->reduction.wentInto()[name], name);
+      EXPECT_EQ(isMoved, box->reduction.wentFor()[name] != kNone);
+      EXPECT_TRUE(!isMoved || surface.position[v].x == kMiddle);
+      moved += isMoved ? 1 : 0;
+    }
+    if (box == &kept) {
+      EXPECT_EQ(moved, 0U);
+    }
+    if (box == &moving) {
+      EXPECT_GT(moved, 4U);
+    }
+  }
+  EXPECT_LT(moving.lineSources().size(), kept.lineSources().size());
+}
+
 TEST(Lines, AreHeldWhileTheRestIsReduced) {
   Reducer box(wavingBox(0.8f));
   box.reduction.toTolerance(0.3f, LineMode::Held);

@@ -22,7 +22,11 @@ constexpr double kDepth = 2e-3;
 ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
                        const octree::CutRule& rule, int chunkSize, bool singlePrecision,
                        base::Job& job)
-    : cut_(cut), model_(model), chunkSize_(chunkSize), singlePrecision_(singlePrecision) {
+    : cut_(cut),
+      model_(model),
+      chunkSize_(chunkSize),
+      singlePrecision_(singlePrecision),
+      curveVertices_(static_cast<VertexIndex>(cut.mesh.positions.size())) {
   base::Box box = base::Box::empty();
   for (const Position& p : cut.mesh.positions) box.add(Vec3(p));
   middle_ = box.centre();
@@ -105,20 +109,34 @@ ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
   }
   reduction_->toTolerance(kept,
                           before == nullptr ? reduce::LineMode::Free : reduce::LineMode::Held);
-  ChainLevel level = extract();
+  ChainLevel level = extract(before);
   level.errors = errorsOf(reduction_->certificate());
   return level;
 }
 
-// What each vertex has gone into at last.
-void ChunkChain::setInto(ChainLevel& level) const {
+// What each vertex has gone into at last. One that went for a plane and into none has moved: its
+// new place is a vertex of its own.
+void ChunkChain::setInto(ChainLevel& level) {
   const std::vector<reduce::Index>& went = reduction_->wentInto();
-  for (VertexIndex v = 0; v < level.positions.size(); ++v) {
+  level.intoPlane = reduction_->wentFor();
+  const reduce::ReducedMesh reduced = reduction_->mesh();
+  const std::vector<reduce::LineVertex> lines = reduction_->surface().line;
+  std::vector<VertexIndex> now(level.own);
+  std::iota(now.begin(), now.end(), 0);
+  for (VertexIndex v = 0; v < lines.size(); ++v) {
+    const reduce::Index name = lines[v].name;
+    if (level.intoPlane[name] == ChunkPlane::kNone) continue;
+    now[name] = static_cast<VertexIndex>(level.positions.size());
+    add(level, reduced, v);
+    level.curveVertex.push_back(curveVertices_++);
+    level.into.push_back(now[name]);
+  }
+  for (VertexIndex v = 0; v < level.own; ++v) {
     VertexIndex last = v;
     while (went[last] != last) last = went[last];
-    level.into[v] = last;
+    level.into[v] = now[last];
   }
-  level.intoPlane = reduction_->wentFor();
+  level.intoPlane.resize(level.positions.size(), ChunkPlane::kNone);
 }
 
 std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate) const {
@@ -144,34 +162,38 @@ Normal ChunkChain::normalOn(const Triangle& face, const Vec3& p) const {
   return Normal(sum.unitOrX());
 }
 
-ChainLevel ChunkChain::extract() const {
+// A vertex of the mesh as it is now.
+void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, VertexIndex v) const {
+  const reduce::Index source = reduced.sources[v];
+  const reduce::LineKind kind = source == reduce::kNone ? reduce::LineKind::Off : kinds_[source];
+  level.cutVertex.push_back(kind == reduce::LineKind::Off ? ChainLevel::kNone : source);
+  level.isEnd.push_back(kind == reduce::LineKind::End ? 1 : 0);
+  Position p;
+  if (source != reduce::kNone && localOf(cut_.mesh.positions[source]) == reduced.positions[v]) {
+    p = cut_.mesh.positions[source];
+    level.normals.push_back(cut_.mesh.normals[source]);
+  } else {
+    p = positionOf(reduced.positions[v]);
+    level.normals.push_back(normalOn(cut_.mesh.triangles[reduced.faces[v]], Vec3(p)));
+  }
+  p = model_.affine().toWorld(p);
+  level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);
+}
+
+ChainLevel ChunkChain::extract(const ChainLevel* before) const {
   reduce::ReducedMesh reduced = reduction_->mesh();
   ChainLevel level;
-  const std::size_t count = reduced.positions.size();
-  level.positions.resize(count);
-  level.normals.resize(count);
-  level.cutVertex.assign(count, ChainLevel::kNone);
-  level.into.resize(count);
-  level.intoPlane.assign(count, ChunkPlane::kNone);
-  level.isEnd.resize(count);
-  for (VertexIndex v = 0; v < count; ++v) {
-    const reduce::Index source = reduced.sources[v];
-    Position p;
-    if (source != reduce::kNone) {
-      if (kinds_[source] != reduce::LineKind::Off) level.cutVertex[v] = source;
-      level.isEnd[v] = kinds_[source] == reduce::LineKind::End ? 1 : 0;
-    }
-    if (source != reduce::kNone && localOf(cut_.mesh.positions[source]) == reduced.positions[v]) {
-      p = cut_.mesh.positions[source];
-      level.normals[v] = cut_.mesh.normals[source];
-    } else {
-      p = positionOf(reduced.positions[v]);
-      level.normals[v] = normalOn(cut_.mesh.triangles[reduced.faces[v]], Vec3(p));
-    }
-    p = model_.affine().toWorld(p);
-    level.positions[v] = singlePrecision_ ? base::toSingle(p) : p;
-    level.into[v] = v;
+  level.own = reduced.positions.size();
+  const std::vector<reduce::LineVertex> lines = reduction_->surface().line;
+  for (VertexIndex v = 0; v < level.own; ++v) {
+    add(level, reduced, v);
+    const VertexIndex onCurve = level.cutVertex[v];
+    level.curveVertex.push_back(onCurve == ChainLevel::kNone || before == nullptr
+                                    ? onCurve
+                                    : before->curveVertex[before->into[lines[v].name]]);
+    level.into.push_back(v);
   }
+  level.intoPlane.assign(level.own, ChunkPlane::kNone);
   level.triangles = std::move(reduced.triangles);
   level.chunkOf = std::move(reduced.regions);
   level.transitionErrors.assign(cut_.chunks.size(), 0);

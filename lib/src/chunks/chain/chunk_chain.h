@@ -17,12 +17,18 @@ namespace tufa::chunks {
 
 /// One LOD of the whole surface, and what its chunks need to meet those of the next one.
 struct ChainLevel {
-  std::vector<Position> positions;  ///< as they are written
+  /// As they are written. Behind the LOD's own vertices are those of the next LOD's curves that are
+  /// at none of their places.
+  std::vector<Position> positions;
+  std::size_t own = 0;  ///< number of the LOD's own vertices
   std::vector<Normal> normals;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> chunkOf;  ///< of each triangle, a place in CutMesh::chunks
   /// For each vertex its number in the cut mesh if it is on a plane's curve, else kNone.
   std::vector<VertexIndex> cutVertex;
+  /// For each vertex on a curve its number among all vertices that curves have at any LOD: the same
+  /// at LODs where it is at the same place; else kNone.
+  std::vector<VertexIndex> curveVertex;
   std::vector<std::uint8_t> isEnd;  ///< of a curve
   /// For each vertex the one of this LOD that stands for it beside the next LOD.
   std::vector<VertexIndex> into;
@@ -33,7 +39,7 @@ struct ChainLevel {
 };
 
 /// LODs of a cut mesh. Each is reduced from the one before in two steps: its curves on planes
-/// first, and then all else, with the curves as they are.
+/// first, whose vertices may move in their plane, and then all else, with the curves as they are.
 ///
 /// What comes of the first step is a whole mesh that has passed all guards: the finer LOD with the
 /// coarser one's curves. So the strips between LODs are triangles of that mesh. No triangle changes
@@ -50,11 +56,12 @@ class ChunkChain {
 
  private:
   [[nodiscard]] reduce::Regions regionsOf() const;
-  [[nodiscard]] ChainLevel extract() const;
+  [[nodiscard]] ChainLevel extract(const ChainLevel* before) const;
+  void add(ChainLevel& level, const reduce::ReducedMesh& reduced, VertexIndex v) const;
   [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
   [[nodiscard]] base::Vec3f localOf(const Position& p) const;
   [[nodiscard]] Normal normalOn(const Triangle& face, const Vec3& p) const;
-  void setInto(ChainLevel& level) const;
+  void setInto(ChainLevel& level);
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 
   const CutMesh& cut_;
@@ -63,6 +70,7 @@ class ChunkChain {
   bool singlePrecision_;
   Vec3 middle_{0.0};
   std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
+  VertexIndex curveVertices_;            ///< numbers in use, see ChainLevel::curveVertex
   std::optional<reduce::Reduction> reduction_;
 };
 

@@ -24,12 +24,19 @@ bool hasArea(const std::vector<Position>& positions, const Triangle& t) {
 
 // The places of a level's vertices, in steps; none if they do not tell its triangles apart.
 std::vector<Position> placesOf(const ChainLevel& level, double step) {
-  std::vector<Position> places;
-  base::VertexWelder welder(places);
+  std::vector<Position> places, different;
+  base::VertexWelder welder(different);
+  std::vector<VertexIndex> firstAt;  // for each of `different`
   const auto place = [step](double x) { return std::round(x / step) + 0.0; };
-  for (std::size_t v = 0; v < level.positions.size(); ++v) {
+  for (VertexIndex v = 0; v < level.positions.size(); ++v) {
     const Position& p = level.positions[v];
-    if (welder.indexOf({place(p.x), place(p.y), place(p.z)}) != v) return {};
+    places.push_back({place(p.x), place(p.y), place(p.z)});
+    const VertexIndex at = welder.indexOf(places.back());
+    if (at == firstAt.size()) {
+      firstAt.push_back(v);
+    } else if (level.into[firstAt[at]] != v) {
+      return {};  // one that goes into the other is never drawn with it
+    }
   }
   for (const Triangle& t : level.triangles) {
     for (const Triangle& form : {t, changed(level, t)}) {

@@ -25,21 +25,30 @@ shading::ShadedMesh splitOf(const ChainLevel& level, double creaseAngle, base::J
 
 }  // namespace
 
-CurveNormals::CurveNormals(const ChainLevel& finest, std::size_t vertices, double creaseAngle,
+CurveNormals::CurveNormals(const std::vector<ChainLevel>& levels, double creaseAngle,
                            base::Job& job) {
-  const shading::ShadedMesh split = splitOf(finest, creaseAngle, job);
-  begin_.assign(vertices + 1, 0);
-  const auto forEachOnCurves = [&](const auto& visit) {
-    for (std::size_t n = 0; n < split.sources.size(); ++n) {
-      const VertexIndex v = finest.cutVertex[split.sources[n]];
-      if (v != ChainLevel::kNone) visit(v, split.normals[n]);
+  std::vector<std::pair<VertexIndex, Normal>> all;
+  VertexIndex numbers = 0;  // those of a level's new places are above those of the level before
+  for (const ChainLevel& level : levels) {
+    const VertexIndex known = numbers;
+    for (VertexIndex v = 0; v < level.own; ++v) {
+      const VertexIndex number = level.curveVertex[v];
+      if (number != ChainLevel::kNone) numbers = std::max(numbers, number + 1);
     }
-  };
-  forEachOnCurves([&](VertexIndex v, const Normal&) { ++begin_[v + 1]; });
+    if (numbers == known) continue;
+    const shading::ShadedMesh split = splitOf(level, creaseAngle, job);
+    for (std::size_t n = 0; n < split.sources.size(); ++n) {
+      const VertexIndex v = split.sources[n], number = level.curveVertex[v];
+      const bool isNew = v < level.own && number != ChainLevel::kNone && number >= known;
+      if (isNew) all.emplace_back(number, split.normals[n]);
+    }
+  }
+  begin_.assign(numbers + 1, 0);
+  for (const auto& [number, normal] : all) ++begin_[number + 1];
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   normals_.resize(begin_.back());
   std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-  forEachOnCurves([&](VertexIndex v, const Normal& n) { normals_[next[v]++] = n; });
+  for (const auto& [number, normal] : all) normals_[next[number]++] = normal;
 }
 
 std::size_t CurveNormals::nearest(VertexIndex v, const Vec3& face) const {
@@ -62,16 +71,17 @@ ShadedLevel shade(const ChainLevel& level, const CurveNormals& curves, double cr
   // by no triangle.
   std::vector<VertexIndex> first(level.positions.size(), ChainLevel::kNone);
   for (VertexIndex v = 0; v < level.positions.size(); ++v) {
-    if (level.cutVertex[v] == ChainLevel::kNone) continue;
+    const VertexIndex number = level.curveVertex[v];
+    if (number == ChainLevel::kNone) continue;
     first[v] = static_cast<VertexIndex>(out.sources.size());
-    for (std::size_t i = 0; i < curves.countAt(level.cutVertex[v]); ++i) {
+    for (std::size_t i = 0; i < curves.countAt(number); ++i) {
       out.sources.push_back(v);
-      out.normals.push_back(curves.at(level.cutVertex[v], i));
+      out.normals.push_back(curves.at(number, i));
     }
   }
   const auto cornerOf = [&](VertexIndex v, VertexIndex own, const Vec3& face) {
-    if (level.cutVertex[v] != ChainLevel::kNone) {
-      return first[v] + static_cast<VertexIndex>(curves.nearest(level.cutVertex[v], face));
+    if (level.curveVertex[v] != ChainLevel::kNone) {
+      return first[v] + static_cast<VertexIndex>(curves.nearest(level.curveVertex[v], face));
     }
     if (out.sources[own] == v) return own;
     VertexIndex best = plain[v];

@@ -10,15 +10,13 @@
 
 namespace tufa::chunks {
 
-/// The normals of the vertices on curves, split at the creases of LOD 0: the same for all LODs, and
-/// on both sides of a plane.
+/// The normals of the vertices on curves, split at the creases of the first LOD that has them at
+/// their places: the same for all LODs, and on both sides of a plane.
 class CurveNormals {
  public:
-  /// `finest` is LOD 0, which has all vertices of the curves of the others; `vertices` those of the
-  /// cut mesh.
-  CurveNormals(const ChainLevel& finest, std::size_t vertices, double creaseAngle, base::Job& job);
+  CurveNormals(const std::vector<ChainLevel>& levels, double creaseAngle, base::Job& job);
 
-  /// Those of a vertex of the cut mesh: one, or several on a crease.
+  /// Those of a vertex by its number in ChainLevel::curveVertex: one, or several on a crease.
   [[nodiscard]] std::size_t countAt(VertexIndex v) const { return begin_[v + 1] - begin_[v]; }
   [[nodiscard]] const Normal& at(VertexIndex v, std::size_t number) const {
     return normals_[begin_[v] + number];
@@ -27,7 +25,7 @@ class CurveNormals {
   [[nodiscard]] std::size_t nearest(VertexIndex v, const Vec3& face) const;
 
  private:
-  std::vector<std::size_t> begin_;  ///< for each vertex of the cut mesh, in `normals_`
+  std::vector<std::size_t> begin_;  ///< for each number, in `normals_`
   std::vector<Normal> normals_;
 };
 

@@ -119,7 +119,11 @@ class Splitter {
     }
     const auto follow = [&](std::size_t first) {
       ChunkSeam seam;
-      seam.vertices.push_back(local(edges[first].from));
+      const auto add = [&](VertexIndex v) {
+        seam.vertices.push_back(local(v));
+        seam.next.push_back(level_.positions[level_.into[v]]);
+      };
+      add(edges[first].from);
       for (std::size_t i = first;;) {
         isDone[i] = 1;
         const VertexIndex to = edges[i].to;
@@ -129,7 +133,7 @@ class Splitter {
           seam.closed = true;
           break;
         }
-        seam.vertices.push_back(local(to));
+        add(to);
         if (isLast) break;
         i = next->second;
       }

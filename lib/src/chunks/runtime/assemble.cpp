@@ -2,9 +2,11 @@
 #include <tufa/error.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
-#include <set>
+#include <utility>
+#include <vector>
 
 #include "base/vec3.h"
 #include "base/vertex_welder.h"
@@ -92,41 +94,76 @@ class LevelVertices {
 };
 
 /// The surface in a face between the curve of one LOD and that of a coarser one, both of one chunk
-/// and as seen from it: a polygon for each edge of the coarser one. Those of more than three
+/// and as seen from it: polygons between places that both curves have. Those of more than three
 /// corners get a vertex in the middle, as a diagonal may be an edge of the chunk already.
 class FaceFiller {
  public:
-  FaceFiller(LevelVertices& fine, LevelVertices& coarse, Weld& weld)
-      : fine_(fine), coarse_(coarse), weld_(weld) {}
+  /// `becomes`: for each vertex of the finer curve the one of the coarser curve that stands for it.
+  FaceFiller(const std::map<VertexIndex, VertexIndex>& becomes, Weld& weld)
+      : becomes_(becomes), weld_(weld) {}
 
-  void add(const std::vector<ChunkSeam>& fine, const std::vector<ChunkSeam>& coarse) {
-    std::set<VertexIndex> kept;
-    for (const ChunkSeam& seam : coarse) {
-      for (const VertexIndex v : seam.vertices) kept.insert(coarse_[v]);
+  void add(std::vector<VertexIndex> line, bool isClosed) {
+    std::vector<Bridge> bridges;
+    const auto isShared = [&](VertexIndex v) { return becomes_.at(v) == v; };
+    if (isClosed) {
+      const auto shared = std::find_if(line.begin(), line.end(), isShared);
+      std::rotate(line.begin(), shared == line.end() ? line.begin() : shared, line.end());
+      line.push_back(line.front());
     }
-    for (const ChunkSeam& seam : fine) {
-      std::vector<VertexIndex> line;
-      for (const VertexIndex v : seam.vertices) line.push_back(fine_[v]);
-      const auto isKept = [&](VertexIndex v) { return kept.contains(v); };
-      if (seam.closed) {
-        std::rotate(line.begin(), std::find_if(line.begin(), line.end(), isKept), line.end());
-        line.push_back(line.front());
-      }
-      std::vector<VertexIndex> polygon;
-      for (const VertexIndex v : line) {
-        polygon.push_back(v);
-        if (polygon.size() == 1 || !isKept(v)) continue;
-        fill(polygon);
-        polygon.assign(1, v);
-      }
+    const bool isLoop = line.front() == line.back();
+    const std::size_t last = line.size() - 1;
+    // A loop is divided in two at least.
+    const bool isDivided =
+        std::any_of(line.begin() + 1, line.begin() + std::ssize(line) - 1, isShared);
+    const std::size_t middle = isLoop && !isDivided ? middleOf(line) : 0;
+    bridges.push_back(bridgeAt(line, 0));
+    for (std::size_t i = 1; i < last; ++i) {
+      if (i == middle || isShared(line[i])) bridges.push_back(bridgeAt(line, i));
     }
+    bridges.push_back(isLoop ? Bridge{last, bridges.front().middle} : bridgeAt(line, last));
+    for (std::size_t i = 1; i < bridges.size(); ++i) fill(line, bridges[i - 1], bridges[i]);
   }
 
  private:
-  // From the last corner back along the finer curve.
-  void fill(const std::vector<VertexIndex>& p) {
+  /// From a vertex of the finer curve to the one of the coarser curve that stands for it. A vertex
+  /// on the way makes sure that it is no edge of the chunk.
+  struct Bridge {
+    std::size_t at;      ///< place on the finer curve
+    VertexIndex middle;  ///< kNone if both are one vertex
+  };
+
+  [[nodiscard]] Bridge bridgeAt(const std::vector<VertexIndex>& line, std::size_t at) {
+    const VertexIndex from = line[at], to = becomes_.at(from);
+    if (from == to) return {at, kNone};
+    // Not half way: vertices on straight lines are often there.
+    constexpr double kShare = 0.381966;
+    const Vec3 a(weld_.mesh().positions[from]), b(weld_.mesh().positions[to]);
+    const Vec3 normal = Vec3(weld_.mesh().normals[from]) + Vec3(weld_.mesh().normals[to]);
+    return {at, weld_.add(a + (b - a) * kShare, Normal(normal.unitOrX()))};
+  }
+
+  // Half way along a loop, among the vertices that do not become what the first one does.
+  [[nodiscard]] std::size_t middleOf(const std::vector<VertexIndex>& line) const {
+    std::vector<std::size_t> places;
+    for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+      if (becomes_.at(line[i]) != becomes_.at(line[0])) places.push_back(i);
+    }
+    return places.empty() ? 0 : places[places.size() / 2];
+  }
+
+  // What lies between two bridges: along the coarser curve, and back along the finer one.
+  void fill(const std::vector<VertexIndex>& line, const Bridge& from, const Bridge& to) {
+    std::vector<VertexIndex> p;
+    const auto add = [&](VertexIndex v) {
+      if (v != kNone && (p.empty() || p.back() != v)) p.push_back(v);
+    };
+    for (std::size_t i = from.at; i <= to.at; ++i) add(becomes_.at(line[i]));
+    add(to.middle);
+    for (std::size_t i = to.at + 1; i-- > from.at;) add(line[i]);
+    add(from.middle);
+    if (p.size() > 1 && p.front() == p.back()) p.pop_back();
     if (p.size() < 3) return;
-    if (p.size() == 3) return weld_.addTriangle(p[0], p[2], p[1]);
+    if (p.size() == 3) return weld_.addTriangle(p[0], p[1], p[2]);
     Vec3 middle(0.0), normal(0.0);
     for (const VertexIndex v : p) {
       middle += Vec3(weld_.mesh().positions[v]);
@@ -134,14 +171,43 @@ class FaceFiller {
     }
     const VertexIndex centre =
         weld_.add(middle / static_cast<double>(p.size()), Normal(normal.unitOrX()));
-    weld_.addTriangle(p.front(), p.back(), centre);
-    for (std::size_t i = p.size() - 1; i > 0; --i) weld_.addTriangle(p[i], p[i - 1], centre);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      weld_.addTriangle(p[i], p[(i + 1) % p.size()], centre);
+    }
   }
 
-  LevelVertices& fine_;
-  LevelVertices& coarse_;
+  const std::map<VertexIndex, VertexIndex>& becomes_;
   Weld& weld_;
 };
+
+/// What the vertices of a chunk's curves on a face at LOD `lod` become at LOD `coarse`.
+std::map<VertexIndex, VertexIndex> verticesAt(const Chunk& chunk, std::size_t lod,
+                                              std::size_t coarse, std::size_t face, Weld& weld) {
+  using Place = std::array<double, 3>;
+  const auto placeOf = [](const Position& p) { return Place{p.x, p.y, p.z}; };
+  // Level by level backwards: for each place its vertex at LOD `coarse`.
+  std::map<Place, VertexIndex> at;
+  std::map<VertexIndex, VertexIndex> becomes;
+  for (std::size_t i = coarse + 1; i-- > lod;) {
+    std::map<Place, VertexIndex> here;
+    LevelVertices vertices(chunk.levels[i], weld);
+    for (const ChunkSeam& seam : chunk.levels[i].seams[face]) {
+      for (std::size_t n = 0; n < seam.vertices.size(); ++n) {
+        const VertexIndex v = seam.vertices[n];
+        if (i < coarse && (n >= seam.next.size() || !at.contains(placeOf(seam.next[n])))) {
+          throw Error(ErrorCode::InvalidArgument,
+                      nameOf(chunk.index) + " has seams at level " + std::to_string(i) +
+                          " that do not lead to those of the next level");
+        }
+        const VertexIndex last = i == coarse ? vertices[v] : at.at(placeOf(seam.next[n]));
+        here.emplace(placeOf(chunk.levels[i].positions[v]), last);
+        if (i == lod) becomes.emplace(vertices[v], last);
+      }
+    }
+    at = std::move(here);
+  }
+  return becomes;
+}
 
 /// Adds the strip on `face` of a chunk at LOD `lod` towards a neighbour at LOD `coarse`: that to
 /// the next LOD, and what lies in the face between the curves of that and of the neighbour.
@@ -156,8 +222,14 @@ void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, st
                 nameOf(chunk.index) + " has no seams: it cannot be drawn at level " +
                     std::to_string(lod) + " beside a chunk at level " + std::to_string(coarse));
   }
-  LevelVertices fine(next, weld), line(other, weld);
-  FaceFiller(fine, line, weld).add(next.seams[face], other.seams[face]);
+  const std::map<VertexIndex, VertexIndex> becomes = verticesAt(chunk, lod + 1, coarse, face, weld);
+  FaceFiller filler(becomes, weld);
+  LevelVertices vertices(next, weld);
+  for (const ChunkSeam& seam : next.seams[face]) {
+    std::vector<VertexIndex> line;
+    for (const VertexIndex v : seam.vertices) line.push_back(vertices[v]);
+    filler.add(std::move(line), seam.closed);
+  }
 }
 
 }  // namespace
