@@ -39,25 +39,43 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
   Step steps[kLooked];
   int count = 1;
   steps[0] = {from, -1, 1, 0};
+  const auto distance2 = [&](Index t, int i) {
+    return squaredDistanceOfSegments(pq[0], pq[1], mesh(t, (i + 1) % 3), mesh(t, (i + 2) % 3));
+  };
+  const auto arrive = [&](int last, float largest2) {
+    path.count = steps[last].depth + 1;
+    path.largest2 = largest2;
+    path.triangles[static_cast<std::size_t>(path.count - 1)] = to;
+    for (int at = last, i = path.count - 2; at >= 0; at = steps[at].before, --i) {
+      path.triangles[static_cast<std::size_t>(i)] = steps[at].triangle;
+    }
+    return true;
+  };
+  if (from == to) {
+    path.count = 1;
+    path.largest2 = 0;
+    path.triangles[0] = from;
+    return true;
+  }
   for (int k = 0; k < count; ++k) {
     const Step step = steps[k];
-    if (step.triangle == to) {
-      path.count = step.depth;
-      path.largest2 = step.largest2;
-      for (int at = k, i = step.depth - 1; at >= 0; at = steps[at].before, --i) {
-        path.triangles[static_cast<std::size_t>(i)] = steps[at].triangle;
-      }
-      return true;
-    }
-    if (step.depth == OverlayPath::kMost) continue;
+    if (step.depth == OverlayPath::kMost) break;
+    Index next[3];
     for (int i = 0; i < 3; ++i) {
-      const Index next = mesh.across(step.triangle, i);
-      if (next == kNone || count == kLooked) continue;
-      const auto isNext = [&](const Step& seen) { return seen.triangle == next; };
+      next[i] = mesh.across(step.triangle, i);
+      if (next[i] != to) continue;
+      // Most ways end here: the other edges need not be looked at.
+      const float d2 = distance2(step.triangle, i);
+      if (d2 <= limit2) return arrive(k, std::max(step.largest2, d2));
+      next[i] = kNone;
+    }
+    if (step.depth + 1 == OverlayPath::kMost) continue;
+    for (int i = 0; i < 3; ++i) {
+      if (next[i] == kNone || count == kLooked) continue;
+      const auto isNext = [&](const Step& seen) { return seen.triangle == next[i]; };
       if (std::any_of(steps, steps + count, isNext)) continue;
-      const float d2 = squaredDistanceOfSegments(pq[0], pq[1], mesh(step.triangle, (i + 1) % 3),
-                                                 mesh(step.triangle, (i + 2) % 3));
-      if (d2 <= limit2) steps[count++] = {next, k, step.depth + 1, std::max(step.largest2, d2)};
+      const float d2 = distance2(step.triangle, i);
+      if (d2 <= limit2) steps[count++] = {next[i], k, step.depth + 1, std::max(step.largest2, d2)};
     }
   }
   return false;
