@@ -6,15 +6,12 @@ get_filename_component(LIBRARY ${LIBRARY} ABSOLUTE)
 set(sources ${LIBRARY}/src)
 
 # The stages of the pipeline: each sees itself and those before it. What lies in no folder sees all.
-set(stages base grid uniform octree distance intersect topology reduce refine extract lod chunks)
+set(stages base grid uniform octree intersect topology reduce refine extract lod chunks)
 set(before "")
 foreach(stage IN LISTS stages)
   list(APPEND before ${stage})
   set(sees_${stage} ${before})
 endforeach()
-# These three come side by side, but for one: topology asks intersect.
-list(REMOVE_ITEM sees_intersect distance)
-list(REMOVE_ITEM sees_topology distance)
 # Plain arrays come in and go out here: it knows of no grid.
 set(sees_reduce base reduce)
 # Methods beside dual contouring: they share its cells, and the rounding of finished meshes.

@@ -27,8 +27,7 @@ refine::AdaptiveMesh makeAdaptive(refine::SurfaceModel& model, const octree::Cut
   job.beginStage("forest", kForestEnd);
   model.buildClusters(rule, job);
   job.beginStage("cut", kAdaptiveEnd, base::Length::Unknown);
-  const auto repair = model.repair(job);
-  return refine::adapt(model, rule, {repair ? &*repair : nullptr}, job);
+  return refine::adapt(model, rule, false, job);
 }
 
 Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
@@ -46,9 +45,6 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
     refine::AdaptiveMesh adaptive = makeAdaptive(model, rule, options, job);
     report.certificate =
         refine::certificateOf(adaptive, model.affine().voxelSize(), options.keepLeaves);
-    report.intersectionsFound += adaptive.repaired.pairsFound;
-    report.movedVertices += adaptive.repaired.movedVertices;
-    report.flippedDiagonals += adaptive.repaired.flippedDiagonals;
     extracted = std::move(adaptive.extracted);
   }
   job.beginStage("finish", 1.0);

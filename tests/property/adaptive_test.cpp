@@ -157,14 +157,18 @@ TEST(Adaptive, CertificateHoldsAgainstBruteForce) {
     const double voxel = grid->voxelSize()[0];
     const Mesh uniform = uniformMesh(*grid);
     for (const double tolerance : {0.1, 0.5}) {
-      ContourOptions options;
-      options.tolerance = tolerance;
-      ContourReport report;
-      const Mesh mesh = contour(*grid, options, &report);
-      const double most = 1.005 * report.certificate->maxErrorVoxels + 0.0005;
-      EXPECT_LE(test::largestDistance(uniform, mesh, voxel) / voxel, most);
-      EXPECT_LE(test::largestDistance(mesh, uniform, voxel) / voxel, most);
-      EXPECT_LE(report.certificate->meanErrorVoxels, report.certificate->maxErrorVoxels);
+      for (const bool simplify : {true, false}) {
+        ContourOptions options;
+        options.tolerance = tolerance;
+        options.simplify = simplify;
+        ContourReport report;
+        const Mesh mesh = contour(*grid, options, &report);
+        const double most = 1.005 * report.certificate->maxErrorVoxels + 0.0005;
+        EXPECT_LE(test::largestDistance(uniform, mesh, voxel) / voxel, most);
+        EXPECT_LE(test::largestDistance(mesh, uniform, voxel) / voxel, most);
+        EXPECT_LE(report.certificate->meanErrorVoxels, report.certificate->maxErrorVoxels);
+        EXPECT_LE(report.certificate->maxErrorVoxels, tolerance);
+      }
     }
   }
 }

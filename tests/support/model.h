@@ -11,11 +11,16 @@
 #include "octree/cut.h"
 #include "octree/cut_polygons.h"
 #include "octree/cut_rule.h"
-#include "refine/measured.h"
 #include "refine/surface_model.h"
 #include "support/fields.h"
 
 namespace tufa::test {
+
+/// A cut and its mesh.
+struct MeshOfCut {
+  octree::Cut cut;
+  octree::CutMesh made;
+};
 
 /// A grid with its surface model, clusters and all.
 class ModelOf {
@@ -35,8 +40,8 @@ class ModelOf {
   [[nodiscard]] base::Job& job() { return job_; }
 
   /// The uniform mesh as a cut of level-0 cells.
-  [[nodiscard]] refine::Measured uniformCut() const {
-    refine::Measured uniform;
+  [[nodiscard]] MeshOfCut uniformCut() const {
+    MeshOfCut uniform;
     const std::size_t count = mesh().positions.size();
     uniform.cut.vertexOf.resize(count);
     std::iota(uniform.cut.vertexOf.begin(), uniform.cut.vertexOf.end(), VertexIndex{0});

@@ -110,9 +110,9 @@ struct StageTime {
 
 /// What was measured of an adaptive mesh: its distance to the uniform mesh, and counts.
 struct Certificate {
-  double maxErrorVoxels = 0;   ///< to the uniform mesh, both ways: a bound, of a cut at samples
-  double meanErrorVoxels = 0;  ///< mean over the vertices and quads of the uniform mesh
-  double maxErrorWorld = 0;    ///< maxErrorVoxels in world units
+  double maxErrorVoxels = 0;               ///< to the uniform mesh, both ways: a bound
+  double meanErrorVoxels = 0;              ///< mean over the vertices of the uniform mesh
+  double maxErrorWorld = 0;                ///< maxErrorVoxels in world units
   std::int64_t eulerCharacteristic = 0;    ///< vertices - edges + faces
   double smallestAngle = 0;                ///< of all triangles, degrees
   std::size_t trianglesUnderMinAngle = 0;  ///< with an angle below ContourOptions::minAngle

@@ -151,14 +151,13 @@ class ChainMaker {
     } else {
       job.beginStage("forest", kForestEnd);
       model.buildClusters(rule, job);
-      repair_ = model.repair(job);
     }
   }
 
   refine::AdaptiveMesh next(const Target& target) {
     if (!reduction_) {
       rule_.tolerance = target.tolerance;
-      return refine::adapt(model_, rule_, {repair_ ? &*repair_ : nullptr, drops_}, job_);
+      return refine::adapt(model_, rule_, drops_, job_);
     }
     return target.triangles > 0 ? reduction_->toCount(target.triangles, drops_)
                                 : reduction_->toTolerance(target.tolerance, drops_);
@@ -170,7 +169,6 @@ class ChainMaker {
   bool drops_;
   base::Job& job_;
   std::optional<refine::SurfaceReduction> reduction_;
-  std::optional<refine::Repair> repair_;
 };
 
 LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, ContourReport& report,

@@ -66,7 +66,8 @@ class Merger {
     for (std::uint32_t c = level.first[cell]; c < level.first[cell + 1]; ++c) {
       const Cluster& cluster = level.clusters[c];
       const Vec3 point(cluster.point[0], cluster.point[1], cluster.point[2]);
-      if (!(cluster.error <= kErrorShare * rule_.toleranceAt(middle + point) &&
+      const double tolerance = rule_.toleranceAt(middle + point);
+      if (!(tolerance > 0 && cluster.error <= kErrorShare * tolerance &&
             cluster.angle <= rule_.maxAngle)) {
         return false;
       }

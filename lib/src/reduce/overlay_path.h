@@ -10,14 +10,17 @@ namespace tufa::reduce {
 
 // How edges and faces of the reference run over the triangles of a mesh. Functions here see the
 // mesh as a type M: mesh(t, i) is the position of a triangle's corner i, mesh.vertex(t, i) its
-// vertex, and mesh.across(t, i) the triangle across the edge opposite it, or kNone.
+// vertex, and mesh.across(t, i) the triangle across the edge opposite it, or kNone. If it has a
+// function mesh.mayPass(t, from, to), ways from one triangle to another lead only over those for
+// which that is true.
 
 /// More than any squared distance.
 inline constexpr float kFar2 = 1e30f;
 
 /// A way over triangles.
 struct OverlayPath {
-  static constexpr int kMost = 8;  ///< triangles
+  static constexpr int kMost = 16;    ///< triangles
+  static constexpr int kDeepest = 8;  ///< triangles of one that is searched for
   std::array<Index, kMost> triangles;
   int count = 0;
   float largest2 = 0;  ///< the largest squared distance of the segment from an edge on the way
@@ -59,7 +62,7 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
   }
   for (int k = 0; k < count; ++k) {
     const Step step = steps[k];
-    if (step.depth == OverlayPath::kMost) break;
+    if (step.depth == OverlayPath::kDeepest) break;
     Index next[3];
     for (int i = 0; i < 3; ++i) {
       next[i] = mesh.across(step.triangle, i);
@@ -69,9 +72,12 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
       if (d2 <= limit2) return arrive(k, std::max(step.largest2, d2));
       next[i] = kNone;
     }
-    if (step.depth + 1 == OverlayPath::kMost) continue;
+    if (step.depth + 1 == OverlayPath::kDeepest) continue;
     for (int i = 0; i < 3; ++i) {
       if (next[i] == kNone || count == kLooked) continue;
+      if constexpr (requires { mesh.mayPass(next[i], from, to); }) {
+        if (!mesh.mayPass(next[i], from, to)) continue;
+      }
       const auto isNext = [&](const Step& seen) { return seen.triangle == next[i]; };
       if (std::any_of(steps, steps + count, isNext)) continue;
       const float d2 = distance2(step.triangle, i);
@@ -191,8 +197,9 @@ float pullTogether(const M& mesh, const std::array<Vec3f, 3>& face, float limit2
 /// over it, from the ways of its edges; more than the limit, at most kFar2, if there is none. The
 /// ways make a loop, which must fall together or be pulled together over vertices near the face.
 /// The distances of the corners from their owners are not in it.
-template <class M>
-float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
+/// findPath(a, b, path) finds the way from corner a to corner b, as findOverlayPath() does.
+template <class M, class FindPath>
+float overlayBound2(const M& mesh, const OwnedFace& face, float limit2, const FindPath& findPath) {
   float worst = 0;
   OverlayLoop loop;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -201,10 +208,7 @@ float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
     const bool isTurned = face.vertices[i] > face.vertices[j];
     const std::size_t a = isTurned ? j : i, b = isTurned ? i : j;
     OverlayPath path;
-    if (!findOverlayPath(mesh, {face.corners[a], face.corners[b]}, face.owners[a], face.owners[b],
-                         limit2, path)) {
-      return kFar2;
-    }
+    if (!findPath(a, b, path)) return kFar2;
     worst = std::max(worst, path.largest2);
     for (int k = 0; k + 1 < path.count; ++k) {  // the last one begins the next edge
       loop.add(path.triangles[static_cast<std::size_t>(isTurned ? path.count - 1 - k : k)]);
@@ -212,6 +216,13 @@ float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
   }
   loop.close();
   return std::max(worst, pullTogether(mesh, face.corners, limit2, loop));
+}
+template <class M>
+float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
+  return overlayBound2(mesh, face, limit2, [&](std::size_t a, std::size_t b, OverlayPath& path) {
+    return findOverlayPath(mesh, {face.corners[a], face.corners[b]}, face.owners[a], face.owners[b],
+                           limit2, path);
+  });
 }
 
 /// The squared distance of a face's farthest corner from that of its owners where it is least: a

@@ -6,6 +6,9 @@
 
 #include "base/polygons.h"
 #include "base/small_angles.h"
+#include "intersect/surface.h"
+#include "refine/cut_distance.h"
+#include "refine/rounding.h"
 #include "refine/split_cells.h"
 #include "topology/misplaced.h"
 
@@ -37,93 +40,132 @@ std::int64_t eulerCharacteristic(const Mesh& mesh) {
          static_cast<std::int64_t>(mesh.triangles.size() + mesh.quads.size());
 }
 
-// The coarsest cut found that keeps the rule.
-Measured cutAndMeasure(const uniform::SurfaceView& base, const octree::ClusterForest& forest,
-                       const octree::CutRule& rule, const Repair* repair,
-                       distance::Certifier& certifier, AdaptiveMesh& adaptive, base::Job& job) {
-  octree::CellFlags forbidden(forest);
-  for (adaptive.rounds = 1;; ++adaptive.rounds) {
-    const octree::CellFlags merged = octree::mergeCells(forest, rule, forbidden, job);
-    Measured mesh;
-    mesh.cut = octree::makeCut(forest, base.topology, merged, job);
-    mesh.made = octree::meshCut(forest, mesh.cut, base.mesh, base.affine, job);
-    // Repair comes once the tolerance holds: there is less to repair then.
-    mesh.deviation = certifier.measure(mesh.cut, mesh.made);
-    if (splitCells(forest, tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut, rule.minLevel,
-                   forbidden))
-      continue;
-    repairAndMeasure(certifier, repair, mesh, job);
-    bool split = splitCells(forest, tooCoarse(base.mesh, mesh.cut, mesh.deviation), mesh.cut,
-                            rule.minLevel, forbidden);
-    split |= splitCells(forest, mesh.meeting, mesh.cut, rule.minLevel, forbidden);
-    if (split) continue;
-    if (repair != nullptr && base.topology.openEdges == 0 &&
-        splitCells(forest, topology::findMisplaced(mesh.made.mesh, job), mesh.cut, rule.minLevel,
-                   forbidden)) {
-      continue;
+// The vertices of a cut that are not as in one before; without one, those of larger cells.
+std::vector<std::uint8_t> changedVertices(const octree::Cut& before, const octree::Cut& cut) {
+  std::vector<std::uint8_t> changed(cut.clusters.size());
+  if (before.clusters.empty()) {
+    for (std::size_t i = 0; i < changed.size(); ++i) changed[i] = cut.clusters[i].level != 0;
+    return changed;
+  }
+  for (std::size_t i = 0; i < cut.vertexOf.size(); ++i) {
+    const octree::ClusterRef& was = before.clusters[before.vertexOf[i]];
+    const octree::ClusterRef& is = cut.clusters[cut.vertexOf[i]];
+    if (was.level != is.level || was.cluster != is.cluster) changed[cut.vertexOf[i]] = 1;
+  }
+  return changed;
+}
+
+// Polygons of which each intersecting pair of a cut contains one: those at some vertices. The
+// uniform mesh is free of pairs.
+std::vector<intersect::PolygonIndex> polygonsAt(const Mesh& mesh,
+                                                const std::vector<std::uint8_t>& vertices) {
+  std::vector<intersect::PolygonIndex> polygons;
+  base::forPolygons(mesh, [&](base::PolygonIndex polygon, base::Corners v) {
+    if (std::any_of(v.begin(), v.end(), [&](VertexIndex k) { return vertices[k] != 0; })) {
+      polygons.push_back(polygon);
     }
-    adaptive.leaves = octree::collectLeaves(forest, base.topology, merged);
-    return mesh;
-  }
+  });
+  return polygons;
 }
 
-// The share of uniform vertices and quads that a mesh stands for; the others count as without
-// error.
-double presentShare(const Mesh& base, const octree::Cut& cut, const std::vector<std::uint8_t>& used,
-                    base::Job& job) {
-  const auto isUsed = [&](VertexIndex vertex) { return used[cut.vertexOf[vertex]] != 0; };
-  std::size_t count = 0;
-  if (std::all_of(used.begin(), used.end(), [](std::uint8_t is) { return is != 0; })) return 1;
-  for (std::size_t i = 0; i < base.positions.size(); ++i) {
-    job.pollCancelled(i);
-    count += isUsed(static_cast<VertexIndex>(i)) ? 1 : 0;
-  }
-  for (std::size_t i = 0; i < base.quads.size(); ++i) {
-    job.pollCancelled(i);
-    count += isUsed(base.quads[i].vertices[0]) ? 1 : 0;
-  }
-  const std::size_t all = base.positions.size() + base.quads.size();
-  return count == 0 ? 1.0 : static_cast<double>(count) / static_cast<double>(all);
+// The vertices of polygons that intersect once the mesh is finished as finishMesh() does.
+std::vector<VertexIndex> meetingVertices(const Mesh& mesh,
+                                         const std::vector<intersect::PolygonIndex>& candidates,
+                                         const grid::Affine& affine, base::Job& job) {
+  Mesh world;
+  world.positions = mesh.positions;
+  world.quads = mesh.quads;
+  world.triangles = mesh.triangles;
+  (void)takeToWorld(world, affine, job);
+  const intersect::Surface surface(world, job);
+  return intersect::verticesOf(
+      world, intersect::polygonsOf(intersect::findPairs(surface, candidates, job)));
 }
 
-AdaptiveMesh finish(const SurfaceModel& model, const octree::CutRule& rule, Measured mesh,
-                    AdaptiveMesh adaptive, base::Job& job) {
-  adaptive.largestError = mesh.deviation.largest;
-  adaptive.meanError = mesh.deviation.mean;
-  if (!mesh.deviation.coarse.empty() || !mesh.deviation.farPoints.empty()) {
-    // Cells that may not be split are off by more; what was kept from the meshes before is not in
-    // this one's worst.
-    distance::Certifier again(model.view(), model.reference(), rule, job);
-    adaptive.largestError = again.measure(mesh.cut, mesh.made, mesh.altered).worst;
+// Makes the coarsest cut found that keeps the rule.
+class Cutter {
+ public:
+  Cutter(const SurfaceModel& model, const octree::CutRule& rule, base::Job& job)
+      : model_(model),
+        forest_(model.forest()),
+        rule_(rule),
+        job_(job),
+        forbidden_(forest_),
+        distance_(model.view(), rule, job) {}
+
+  AdaptiveMesh run(bool drop) {
+    do {
+      makeNext();
+      ++adaptive_.rounds;
+    } while (split(distance_.measure(cut_, made_, changedVertices(before_, cut_))) ||
+             (model_.repairs() && (split(findMeeting()) || split(findMisplaced()))));
+    const uniform::SurfaceView base = model_.view();
+    adaptive_.leaves = octree::collectLeaves(forest_, base.topology, merged_);
+    if (drop) (void)dropComponents(base, rule_, cut_, made_, adaptive_.dropped);
+    finish();
+    return std::move(adaptive_);
   }
-  adaptive.repaired = std::move(mesh.repaired);
-  ExtractedMesh& extracted = adaptive.extracted;
-  // What is free of intersections need not be searched for them again.
-  if (!adaptive.repaired.left.empty()) extracted.candidates = std::move(mesh.candidates);
-  extracted.baseVertices = baseVerticesOf(mesh.cut);
-  extracted.baseQuads = std::move(mesh.made.quadSources);
-  extracted.baseQuads.insert(extracted.baseQuads.end(), mesh.made.triangleSources.begin(),
-                             mesh.made.triangleSources.end());
-  extracted.mesh = std::move(mesh.made.mesh);
-  const std::vector<std::uint8_t> used = removeUnused(extracted.mesh, extracted.baseVertices);
-  adaptive.meanError /= presentShare(model.mesh(), mesh.cut, used, job);
-  return adaptive;
-}
+
+ private:
+  void makeNext() {
+    const uniform::SurfaceView base = model_.view();
+    before_ = std::move(cut_);
+    merged_ = octree::mergeCells(forest_, rule_, forbidden_, job_);
+    cut_ = octree::makeCut(forest_, base.topology, merged_, job_);
+    made_ = octree::meshCut(forest_, cut_, base.mesh, base.affine, job_);
+  }
+
+  bool split(const std::vector<VertexIndex>& vertices) {
+    return splitCells(forest_, vertices, cut_, rule_.minLevel, forbidden_);
+  }
+
+  std::vector<VertexIndex> findMeeting() {
+    const std::vector<intersect::PolygonIndex> candidates =
+        polygonsAt(made_.mesh, changedVertices(searched_, cut_));
+    searched_ = cut_;
+    return meetingVertices(made_.mesh, candidates, model_.affine(), job_);
+  }
+
+  std::vector<VertexIndex> findMisplaced() {
+    if (model_.surface().topology.openEdges > 0) return {};
+    return topology::findMisplaced(made_.mesh, job_);
+  }
+
+  void finish() {
+    ExtractedMesh& extracted = adaptive_.extracted;
+    // Cells that may not be split may intersect still.
+    if (rule_.minLevel > 0 && model_.repairs()) {
+      extracted.candidates = polygonsAt(made_.mesh, changedVertices({}, cut_));
+    }
+    extracted.baseVertices = baseVerticesOf(cut_);
+    extracted.baseQuads = std::move(made_.quadSources);
+    extracted.baseQuads.insert(extracted.baseQuads.end(), made_.triangleSources.begin(),
+                               made_.triangleSources.end());
+    const Deviation deviation = distance_.total(cut_, made_.mesh);
+    adaptive_.largestError = deviation.largest;
+    adaptive_.meanError = deviation.mean;
+    extracted.mesh = std::move(made_.mesh);
+    (void)removeUnused(extracted.mesh, extracted.baseVertices);
+  }
+
+  const SurfaceModel& model_;
+  const octree::ClusterForest& forest_;
+  const octree::CutRule& rule_;
+  base::Job& job_;
+  octree::CellFlags forbidden_;
+  octree::CellFlags merged_{forest_};
+  CutDistance distance_;
+  octree::Cut cut_, before_;
+  octree::Cut searched_;  // the one in which pairs were looked for last
+  octree::CutMesh made_;
+  AdaptiveMesh adaptive_;
+};
 
 }  // namespace
 
-AdaptiveMesh adapt(const SurfaceModel& model, const octree::CutRule& rule,
-                   const AdaptOptions& options, base::Job& job) {
-  const uniform::SurfaceView base = model.view();
-  const octree::ClusterForest& forest = model.forest();
-  AdaptiveMesh adaptive;
-  distance::Certifier certifier(base, model.reference(), rule, job);
-  Measured mesh = cutAndMeasure(base, forest, rule, options.repair, certifier, adaptive, job);
-  if (options.drop) {
-    (void)dropComponents(base, rule, mesh, adaptive.dropped);
-    if (!adaptive.dropped.empty()) repairAndMeasure(certifier, options.repair, mesh, job);
-  }
-  return finish(model, rule, std::move(mesh), std::move(adaptive), job);
+AdaptiveMesh adapt(const SurfaceModel& model, const octree::CutRule& rule, bool drop,
+                   base::Job& job) {
+  return Cutter(model, rule, job).run(drop);
 }
 
 void widen(Certificate& certificate, double moved, double voxelSize) {

@@ -6,16 +6,10 @@
 #include "octree/leaves.h"
 #include "refine/drop_components.h"
 #include "refine/extracted_mesh.h"
-#include "refine/measured.h"
+#include "refine/repair/repair.h"
 #include "refine/surface_model.h"
 
 namespace tufa::refine {
-
-/// What adapt() does beside cutting.
-struct AdaptOptions {
-  const Repair* repair = nullptr;  ///< remove self-intersections; null: leave them
-  bool drop = false;  ///< leave out components smaller than the tolerance, see dropComponents()
-};
 
 /// An adaptive mesh, and how far it is from the uniform mesh.
 struct AdaptiveMesh {
@@ -24,16 +18,16 @@ struct AdaptiveMesh {
   double largestError = 0;       ///< voxels
   double meanError = 0;          ///< voxels
   int rounds = 0;                ///< meshes made and measured
-  RepairReport repaired;         ///< of the last round
   std::vector<Dropped> dropped;  ///< components that were left out
 };
 
 /// Cuts the forest, makes the mesh, measures it, splits the cells where it is off by more than the
-/// tolerance or intersects itself, and repeats that until there are none. Small changes are tried
-/// before a cell is split because of an intersection. It ends, as cells are only ever forbidden and
-/// the finest cut is the uniform mesh itself. The model must have clusters.
-[[nodiscard]] AdaptiveMesh adapt(const SurfaceModel& model, const octree::CutRule& rule,
-                                 const AdaptOptions& options, base::Job& job);
+/// tolerance or, if the model repairs, intersects itself, and repeats that until there are none. It
+/// ends, as cells are only ever forbidden and the finest cut is the uniform mesh itself. Each time
+/// only what has changed is looked at. The model must have clusters. `drop`: leave out components
+/// smaller than the tolerance, see dropComponents().
+[[nodiscard]] AdaptiveMesh adapt(const SurfaceModel& model, const octree::CutRule& rule, bool drop,
+                                 base::Job& job);
 
 /// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if
 /// they are to be kept.

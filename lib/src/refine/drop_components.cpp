@@ -5,6 +5,7 @@
 
 #include "base/box.h"
 #include "base/polygons.h"
+#include "refine/tolerance_scales.h"
 #include "topology/misplaced.h"
 
 namespace tufa::refine {
@@ -35,21 +36,21 @@ void removeWhere(const std::vector<std::uint8_t>& gone, std::vector<Polygon>& po
 
 }  // namespace
 
-double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& rule, Measured& mesh,
+double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& rule,
+                      const octree::Cut& cut, octree::CutMesh& made,
                       std::vector<Dropped>& dropped) {
-  Mesh& own = mesh.made.mesh;
+  Mesh& own = made.mesh;
   const std::vector<VertexIndex> componentOf = topology::connectedComponentsOf(own);
   std::vector<Component> components(own.positions.size());
   base::forPolygons(own, [&](base::PolygonIndex, base::Corners v) {
     components[componentOf[v[0]]].present = true;
   });
   for (std::size_t i = 0; i < base.mesh.positions.size(); ++i) {
-    Component& component = components[componentOf[mesh.cut.vertexOf[i]]];
+    Component& component = components[componentOf[cut.vertexOf[i]]];
     if (!component.present) continue;
     const Vec3 point = base.mesh.positions[i];
     component.box.add(point);
-    component.tolerance =
-        std::min(component.tolerance, distance::toleranceAt(rule, base.affine, point));
+    component.tolerance = std::min(component.tolerance, toleranceAt(rule, base.affine, point));
     ++component.baseVertices;
   }
   const auto largest = std::max_element(
@@ -71,8 +72,8 @@ double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& r
   if (!any) return next;
   std::vector<std::uint8_t> gone(own.positions.size());
   for (std::size_t i = 0; i < gone.size(); ++i) gone[i] = components[componentOf[i]].gone ? 1 : 0;
-  removeWhere(gone, own.quads, mesh.made.quadSources);
-  removeWhere(gone, own.triangles, mesh.made.triangleSources);
+  removeWhere(gone, own.quads, made.quadSources);
+  removeWhere(gone, own.triangles, made.triangleSources);
   return next;
 }
 

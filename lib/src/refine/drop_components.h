@@ -2,7 +2,10 @@
 
 #include "base/vec3.h"
 #include "octree/cluster_forest.h"
-#include "refine/measured.h"
+#include "octree/cut.h"
+#include "octree/cut_polygons.h"
+#include "octree/cut_rule.h"
+#include "uniform/surface_view.h"
 
 namespace tufa::refine {
 
@@ -19,8 +22,8 @@ struct Dropped {
 ///
 /// Returns the size in voxels of the smallest component that stayed and would go with a larger
 /// tolerance; 0 if there is none.
-double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& rule, Measured& mesh,
-                      std::vector<Dropped>& dropped);
+double dropComponents(const uniform::SurfaceView& base, const octree::CutRule& rule,
+                      const octree::Cut& cut, octree::CutMesh& made, std::vector<Dropped>& dropped);
 
 /// Removes vertices that no polygon uses; `baseVertices` goes with the positions. Returns which of
 /// the vertices were used.

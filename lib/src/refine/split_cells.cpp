@@ -14,20 +14,4 @@ bool splitCells(const octree::ClusterForest& forest, const std::vector<VertexInd
   return any;
 }
 
-std::vector<VertexIndex> tooCoarse(const Mesh& base, const octree::Cut& cut,
-                                   const distance::Deviation& deviation) {
-  std::vector<VertexIndex> vertices = deviation.coarse;
-  const std::size_t points = base.positions.size();
-  for (const std::uint64_t point : deviation.farPoints) {
-    if (point < points) {
-      vertices.push_back(cut.vertexOf[point]);
-      continue;
-    }
-    for (const VertexIndex corner : base.quads[point - points].vertices) {
-      vertices.push_back(cut.vertexOf[corner]);
-    }
-  }
-  return vertices;
-}
-
 }  // namespace tufa::refine

@@ -35,12 +35,6 @@ void SurfaceModel::settle(base::Job& job) {
 
 void SurfaceModel::buildClusters(const octree::CutRule& rule, base::Job& job) {
   forest_ = octree::buildForest(view(), rule.maxLevel, rule.boundsAngle(), job);
-  reference_.emplace(view(), forest_, job);
-}
-
-std::optional<Repair> SurfaceModel::repair(base::Job& job) const {
-  if (!repairs_) return std::nullopt;
-  return Repair{candidates_, sourceOf(surface_, job), &affine()};
 }
 
 }  // namespace tufa::refine

@@ -3,21 +3,18 @@
 #include <tufa/contour.h>
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "base/job.h"
-#include "distance/reference.h"
 #include "octree/cluster_forest.h"
 #include "octree/cut_rule.h"
-#include "refine/measured.h"
 #include "uniform/uniform_surface.h"
 
 namespace tufa::refine {
 
 /// One grid, or a box of its blocks, and what its meshes are taken from: the uniform surface
-/// without self-intersections, the clusters of all levels, and the uniform mesh as a reference for
-/// distances. Neither copied nor moved, as its parts refer to each other.
+/// without self-intersections, and the clusters of all levels. Neither copied nor moved, as its
+/// parts refer to each other.
 class SurfaceModel {
  public:
   /// Runs the stages of the uniform mesh. Throws Error as contour() does.
@@ -26,7 +23,7 @@ class SurfaceModel {
   SurfaceModel(const SurfaceModel&) = delete;
   SurfaceModel& operator=(const SurfaceModel&) = delete;
 
-  /// Builds the clusters and the reference. To be called once, before forest() and reference().
+  /// Builds the clusters. To be called once, before forest().
   void buildClusters(const octree::CutRule& rule, base::Job& job);
 
   [[nodiscard]] const uniform::UniformSurface& surface() const { return surface_; }
@@ -38,12 +35,9 @@ class SurfaceModel {
   [[nodiscard]] const std::vector<std::uint32_t>& candidates() const { return candidates_; }
   /// Whether intersections are to be repaired.
   [[nodiscard]] bool repairs() const { return repairs_; }
-  /// How meshes taken from this one are repaired; nothing if they are not to be.
-  [[nodiscard]] std::optional<Repair> repair(base::Job& job) const;
   /// What was read and found, without the times of stages.
   [[nodiscard]] const ContourReport& report() const { return report_; }
   [[nodiscard]] const octree::ClusterForest& forest() const { return forest_; }
-  [[nodiscard]] const distance::UniformReference& reference() const { return *reference_; }
   /// The uniform mesh, for a caller that needs nothing else.
   [[nodiscard]] Mesh takeMesh() { return std::move(surface_.mesh); }
 
@@ -55,7 +49,6 @@ class SurfaceModel {
   std::vector<std::uint32_t> candidates_;
   ContourReport report_;
   octree::ClusterForest forest_;
-  std::optional<distance::UniformReference> reference_;
 };
 
 }  // namespace tufa::refine

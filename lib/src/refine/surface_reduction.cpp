@@ -7,9 +7,9 @@
 
 #include "base/box.h"
 #include "base/polygons.h"
-#include "distance/certifier.h"
 #include "intersect/surface.h"
 #include "refine/rounding.h"
+#include "refine/tolerance_scales.h"
 #include "topology/misplaced.h"
 
 namespace tufa::refine {
@@ -48,21 +48,6 @@ Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
 }
 
 }  // namespace
-
-std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
-                            const octree::CutRule& rule, base::Job& job) {
-  if (!rule.scale) return {};
-  octree::CutRule one = rule;
-  one.tolerance = 1;
-  std::vector<float> scales(mesh.positions.size());
-  job.forRanges(scales.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double scale = distance::toleranceAt(one, affine, Vec3(mesh.positions[i]));
-      scales[i] = static_cast<float>(std::max(0.0, scale));
-    }
-  });
-  return scales;
-}
 
 SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutRule& rule,
                                    base::Job& job)
@@ -210,7 +195,7 @@ void SurfaceReduction::findComponents() {
     boxes[component].add(point);
     ++counts[component];
     double& scale = components_[component].scale;
-    scale = std::min(scale, std::max(0.0, distance::toleranceAt(one, model_.affine(), point)));
+    scale = std::min(scale, std::max(0.0, toleranceAt(one, model_.affine(), point)));
   }
   for (std::size_t i = 0; i < components_.size(); ++i) {
     components_[i].centre = boxes[i].centre();

@@ -15,11 +15,6 @@
 
 namespace tufa::refine {
 
-/// What the rule multiplies the tolerance with at each vertex of a mesh; none if that is 1
-/// everywhere.
-[[nodiscard]] std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
-                                          const octree::CutRule& rule, base::Job& job);
-
 /// The uniform mesh of a surface model, reduced to one tolerance after the other, see
 /// reduce/reduction.h. Rounding to single precision comes after it and moves vertices by
 /// kMostRounding at most; so the result is the same wherever in the world the grid lies.

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "refine/split_cells.h"
 #include "support/mesh_oracle.h"
 #include "support/model.h"
+#include "support/nearest_triangle.h"
 #include "unit/refine/ring.h"
 
 namespace tufa::refine {
@@ -21,12 +21,11 @@ using test_ring::ring;
 
 struct Adapted {
   test::ModelOf model{ring()};
-  std::optional<Repair> repair = model.model().repair(model.job());
 
   AdaptiveMesh cut(double tolerance) {
     octree::CutRule rule = model.rule();
     rule.tolerance = tolerance;
-    return adapt(model.model(), rule, {&*repair}, model.job());
+    return adapt(model.model(), rule, false, model.job());
   }
 };
 
@@ -39,6 +38,22 @@ TEST(Adapt, KeepsTheRuleAndTheTopology) {
     EXPECT_LT(adaptive.meanError, adaptive.largestError);
     expectRing(adaptive.extracted.mesh);
   }
+}
+
+// Cells that may not be split are measured all the same.
+TEST(Adapt, SaysHowFarCellsAreThatItMayNotSplit) {
+  Adapted ring;
+  octree::CutRule rule = ring.model.rule();
+  rule.tolerance = 0.02;
+  rule.minLevel = 2;
+  const AdaptiveMesh adaptive = adapt(ring.model.model(), rule, false, ring.model.job());
+  const Mesh& mesh = adaptive.extracted.mesh;
+  const double far = std::max(test::largestDistance(ring.model.mesh(), mesh, kVoxel),
+                              test::largestDistance(mesh, ring.model.mesh(), kVoxel));
+  EXPECT_GT(far / kVoxel, rule.tolerance);
+  EXPECT_GE(1.005 * adaptive.largestError + 0.0005, far / kVoxel);
+  EXPECT_LT(adaptive.largestError, 1.5 * far / kVoxel);
+  expectRing(mesh);
 }
 
 TEST(Adapt, CutsARestrictedOctree) {
@@ -82,18 +97,6 @@ TEST(CertificateOf, CountsLeavesByLevelAndMeasuresInTheWorld) {
   EXPECT_EQ(without.leafLevels, (std::vector<std::size_t>{2, 0, 1}));
   EXPECT_TRUE(without.leaves.empty());
   EXPECT_EQ(certificateOf(adaptive, kVoxel, true).leaves.size(), 3U);
-}
-
-TEST(TooCoarse, AreTheVerticesThatStandForWhatIsFar) {
-  Mesh base;
-  base.positions.resize(6, Position(0, 0, 0));
-  base.quads = {Quad(0, 1, 2, 3), Quad(2, 3, 4, 5)};
-  octree::Cut cut;
-  cut.vertexOf = {10, 11, 12, 13, 14, 15};
-  distance::Deviation deviation;
-  deviation.coarse = {20};
-  deviation.farPoints = {1, 6 + 1};  // a vertex, and the middle of the second quad
-  EXPECT_EQ(tooCoarse(base, cut, deviation), (std::vector<VertexIndex>{20, 11, 12, 13, 14, 15}));
 }
 
 }  // namespace

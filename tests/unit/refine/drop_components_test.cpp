@@ -16,13 +16,13 @@ struct TwoBalls {
   test::ModelOf model{test::levelSetOf(24, 0.5, [](const Vec3& p) {
     return std::min(p.length() - 8.3, (p - Vec3(17, 0, 0)).length() - 1.7);
   })};
-  Measured mesh = model.uniformCut();
+  test::MeshOfCut mesh = model.uniformCut();
   std::vector<Dropped> dropped;
 
   double drop(double tolerance) {
     octree::CutRule rule;
     rule.tolerance = tolerance;
-    return dropComponents(model.model().view(), rule, mesh, dropped);
+    return dropComponents(model.model().view(), rule, mesh.cut, mesh.made, dropped);
   }
   [[nodiscard]] std::size_t components() {
     std::vector<VertexIndex> baseVertices(mesh.made.mesh.positions.size());
@@ -80,7 +80,9 @@ TEST(DropComponents, AsksTheToleranceWhereTheyLie) {
   octree::CutRule rule;
   rule.tolerance = 100;
   rule.scale = [](const Vec3& at) { return at[0] > 10 ? 0.0 : 1.0; };
-  EXPECT_EQ(dropComponents(balls.model.model().view(), rule, balls.mesh, balls.dropped), 0)
+  EXPECT_EQ(dropComponents(balls.model.model().view(), rule, balls.mesh.cut, balls.mesh.made,
+                           balls.dropped),
+            0)
       << "no tolerance would make it go";
   EXPECT_TRUE(balls.dropped.empty());
 }

@@ -7,6 +7,7 @@
 #include "base/box.h"
 #include "base/single_precision.h"
 #include "refine/surface_reduction.h"
+#include "refine/tolerance_scales.h"
 
 namespace tufa::chunks {
 namespace {

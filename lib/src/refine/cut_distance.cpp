@@ -1,0 +1,417 @@
+#include "refine/cut_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "base/box.h"
+#include "base/huge_pages.h"
+#include "base/polygons.h"
+#include "reduce/certificate.h"
+#include "reduce/corners.h"
+#include "reduce/overlay_path.h"
+#include "reduce/reference_mesh.h"
+#include "reduce/surface.h"
+#include "refine/cut_triangles.h"
+#include "refine/tolerance_scales.h"
+
+namespace tufa::refine {
+namespace {
+
+using base::Vec3f;
+using reduce::Index;
+
+constexpr std::size_t kGrain = 4096;
+constexpr std::uint32_t kNone = octree::kNone;
+// Voxels; faces need no tighter bound, as rounding may take as much.
+constexpr float kRounding = 1e-4f;
+constexpr float kFar = std::numeric_limits<float>::max();
+
+// Marks from several threads at a time.
+void mark(std::vector<std::uint8_t>& marks, std::size_t at) {
+  std::atomic_ref<std::uint8_t>(marks[at]).store(1, std::memory_order_relaxed);
+}
+
+// Marks what shares a polygon with something marked.
+std::vector<std::uint8_t> grown(const Mesh& mesh, const std::vector<std::uint8_t>& marks,
+                                base::Job& job) {
+  std::vector<std::uint8_t> more = marks;
+  const std::size_t count = mesh.quads.size() + mesh.triangles.size();
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const base::Corners v = base::cornersOf(mesh, static_cast<base::PolygonIndex>(i));
+      if (std::none_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; })) continue;
+      for (const VertexIndex c : v) mark(more, c);
+    }
+  });
+  return more;
+}
+
+}  // namespace
+
+// One mesh.
+class CutDistance::Measure {
+ public:
+  Measure(CutDistance& all, const octree::Cut& cut, const octree::CutMesh& made)
+      : all_(all), cut_(cut), made_(made), mesh_(made.mesh) {}
+
+  std::vector<VertexIndex> run(const std::vector<std::uint8_t>& changed) {
+    findPolygons();
+    findDirty(changed);
+    collectTriangles();
+    findOwners();
+    measureFaces();
+    std::sort(coarse_.begin(), coarse_.end());
+    coarse_.erase(std::unique(coarse_.begin(), coarse_.end()), coarse_.end());
+    return std::move(coarse_);
+  }
+
+ private:
+  [[nodiscard]] const Mesh& base() const { return all_.base_.mesh; }
+
+  template <class Body>
+  void forRanges(std::size_t count, const Body& body) {
+    all_.job_.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) body(i);
+    });
+  }
+
+  // Calls body(i, list) for all i, and adds the lists up to coarse_ in their order.
+  template <class Body>
+  void collectCoarse(std::size_t count, const Body& body) {
+    std::vector<std::vector<VertexIndex>> lists((count + kGrain - 1) / kGrain);
+    all_.job_.forRanges(lists.size(), 1, [&](std::size_t first, std::size_t last) {
+      for (std::size_t list = first; list < last; ++list) {
+        const std::size_t end = std::min((list + 1) * kGrain, count);
+        for (std::size_t i = list * kGrain; i < end; ++i) body(i, lists[list]);
+      }
+    });
+    for (const auto& list : lists) coarse_.insert(coarse_.end(), list.begin(), list.end());
+  }
+
+  void findPolygons() {
+    polygonOf_.assign(base().quads.size(), kNone);
+    forRanges(mesh_.quads.size() + mesh_.triangles.size(), [&](std::size_t i) {
+      const auto polygon = static_cast<base::PolygonIndex>(i);
+      polygonOf_[made_.sourceOf(polygon)] = polygon;
+    });
+  }
+
+  // The corners of a triangle of the mesh; none if it is not there any more.
+  [[nodiscard]] base::Corners cornersOf(std::uint32_t id, Triangle& storage) const {
+    const base::PolygonIndex polygon = polygonOf_[id / 2];
+    if (polygon == kNone) return {};
+    const base::Corners v = base::cornersOf(mesh_, polygon);
+    if (id % 2 == 0) {
+      storage = {v[0], v[1], v[2]};
+    } else if (v.size() == 4) {
+      storage = {v[0], v[2], v[3]};
+    } else {
+      return {};
+    }
+    return storage.vertices;
+  }
+
+  [[nodiscard]] Triangle faceOf(std::size_t face) const {
+    const auto& v = base().quads[face / 2].vertices;
+    return face % 2 == 0 ? Triangle{v[0], v[1], v[2]} : Triangle{v[0], v[2], v[3]};
+  }
+
+  // Which uniform vertices need a new owner, which faces must be measured, and of which owners
+  // these are. An owner is one no more if its polygon has changed; a way may lead elsewhere if
+  // something has changed two polygons from its owners. Vertices without an owner are where they
+  // were: one of the triangles around them will do.
+  void findDirty(const std::vector<std::uint8_t>& changed) {
+    const std::vector<std::uint8_t> touched = grown(mesh_, changed, all_.job_);
+    const std::vector<std::uint8_t> near = grown(mesh_, touched, all_.job_);
+    const std::vector<std::uint8_t> around = grown(mesh_, near, all_.job_);
+    const std::size_t count = base().positions.size();
+    std::vector<std::uint8_t> isNear(count, 0);
+    forRanges(count, [&](std::size_t r) {
+      std::uint32_t& owner = all_.owner_[r];
+      if (owner == kNone) {
+        isNear[r] = around[cut_.vertexOf[r]];
+        return;
+      }
+      Triangle storage;
+      const base::Corners corners = cornersOf(owner, storage);
+      bool isGone = corners.empty();
+      if (isGone) isNear[r] = 1;
+      for (const VertexIndex v : corners) isGone |= touched[v] != 0, isNear[r] |= near[v];
+      if (isGone) owner = kNone;
+    });
+    isDirty_.assign(2 * base().quads.size(), 0);
+    wanted_.assign(count, 0);
+    forRanges(isDirty_.size(), [&](std::size_t face) {
+      const Triangle v = faceOf(face);
+      if (std::none_of(v.vertices.begin(), v.vertices.end(),
+                       [&](VertexIndex r) { return isNear[r] != 0; }))
+        return;
+      isDirty_[face] = 1;
+      for (const VertexIndex r : v.vertices) mark(wanted_, r);
+    });
+  }
+
+  // The triangles that ways may lead over: around the owners, found or to be found up to two
+  // polygons from a cluster, and one polygon more for what is pulled over a vertex there.
+  void collectTriangles() {
+    std::vector<std::uint8_t> marks(mesh_.positions.size());
+    forRanges(wanted_.size(), [&](std::size_t r) {
+      if (wanted_[r] == 0) return;
+      mark(marks, cut_.vertexOf[r]);
+      if (all_.owner_[r] == kNone) return;
+      Triangle storage;
+      for (const VertexIndex v : cornersOf(all_.owner_[r], storage)) mark(marks, v);
+    });
+    for (int i = 0; i < 3; ++i) marks = grown(mesh_, marks, all_.job_);
+    localOf_.resize(2 * base().quads.size());
+    const auto count = static_cast<base::PolygonIndex>(mesh_.quads.size() + mesh_.triangles.size());
+    for (base::PolygonIndex polygon = 0; polygon < count; ++polygon) {
+      const base::Corners v = base::cornersOf(mesh_, polygon);
+      if (std::none_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; })) continue;
+      const std::uint32_t id = 2 * made_.sourceOf(polygon);
+      add({v[0], v[1], v[2]}, id);
+      if (v.size() == 4) add({v[0], v[2], v[3]}, id + 1);
+    }
+    triangles_.positions.resize(mesh_.positions.size());
+    forRanges(mesh_.positions.size(),
+              [&](std::size_t i) { triangles_.positions[i] = all_.toVoxels(mesh_.positions[i]); });
+    triangles_.opposite =
+        reduce::oppositeCorners(mesh_.positions.size(), triangles_.corners, all_.job_);
+  }
+
+  void add(const Triangle& corners, std::uint32_t id) {
+    localOf_[id] = static_cast<Index>(triangles_.corners.size());
+    triangles_.corners.push_back(corners);
+    triangles_.ids.push_back(id);
+  }
+
+  // The nearest triangle around a vertex's cluster, or where that is too far, one that lies nearer
+  // around the corners of that.
+  void findOwners() {
+    cornersOf_.emplace(mesh_.positions.size(), triangles_.corners);
+    const reduce::CornersOfVertices& corners = *cornersOf_;
+    collectCoarse(wanted_.size(), [&](std::size_t r, std::vector<VertexIndex>& coarse) {
+      if (wanted_[r] == 0 || all_.owner_[r] != kNone) return;
+      const Vec3f p = all_.points_[r];
+      const float tolerance = all_.toleranceAt(r);
+      Index nearest = reduce::kNone;
+      float least = kFar;
+      const auto lookAround = [&](VertexIndex v) {
+        for (const Index c : corners.of(v)) {
+          const float d = triangles_.distance(c / 3, p);
+          if (d < least) least = d, nearest = c / 3;
+        }
+      };
+      lookAround(cut_.vertexOf[r]);
+      if (nearest == reduce::kNone) return;  // its cluster has no polygons left
+      if (least > tolerance) {
+        const Triangle first = triangles_.corners[nearest];
+        for (const VertexIndex v : first.vertices) lookAround(v);
+      }
+      all_.owner_[r] = triangles_.ids[nearest];
+      all_.distance_[r] = least;
+      if (least <= tolerance) return;
+      addLargest(triangles_.corners[nearest].vertices, coarse);
+      coarse.push_back(cut_.vertexOf[r]);
+    });
+  }
+
+  void measureFaces() {
+    collectCoarse(isDirty_.size(), [&](std::size_t face, std::vector<VertexIndex>& coarse) {
+      if (isDirty_[face] == 0) return;
+      float& bound = all_.faceBound_[face];
+      const Triangle r = faceOf(face);
+      if (isInMesh(static_cast<std::uint32_t>(face), r)) {
+        bound = 0;
+        return;
+      }
+      bound = kFar;
+      reduce::OwnedFace owned;
+      float tolerance = kFar;
+      bool isFar = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const VertexIndex v = r.vertices[i];
+        if (all_.owner_[v] == kNone) {
+          for (const VertexIndex c : r.vertices) coarse.push_back(cut_.vertexOf[c]);
+          return;
+        }
+        owned.corners[i] = all_.points_[v];
+        owned.vertices[i] = v;
+        owned.owners[i] = localOf_[all_.owner_[v]];
+        tolerance = std::min(tolerance, all_.toleranceAt(v));
+        isFar |= all_.distance_[v] > all_.toleranceAt(v);
+      }
+      if (isFar) return;
+      if (owned.hasOneOwner()) {
+        bound = 0;
+        return;
+      }
+      const float limit = std::max(tolerance, kRounding);
+      const float squared =
+          reduce::overlayBound2(triangles_, owned, limit * limit,
+                                [&](std::size_t a, std::size_t b, reduce::OverlayPath& way) {
+                                  return findWay(owned, a, b, limit * limit, way);
+                                });
+      if (squared <= limit * limit) {
+        bound = std::sqrt(squared);
+        return;
+      }
+      addOwners(owned.owners, coarse);
+    });
+  }
+
+  [[nodiscard]] bool isFine(VertexIndex r) const {
+    return cut_.clusters[cut_.vertexOf[r]].level == 0;
+  }
+
+  // Whether a uniform face is a triangle of the mesh.
+  [[nodiscard]] bool isInMesh(std::uint32_t face, const Triangle& r) const {
+    Triangle own;
+    if (!std::all_of(r.vertices.begin(), r.vertices.end(),
+                     [&](VertexIndex v) { return isFine(v); }))
+      return false;
+    for (const std::uint32_t id : {face, face ^ 1}) {
+      const base::Corners corners = cornersOf(id, own);
+      if (!corners.empty() && std::all_of(r.vertices.begin(), r.vertices.end(), [&](VertexIndex v) {
+            return std::find(corners.begin(), corners.end(), cut_.vertexOf[v]) != corners.end();
+          })) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // The way of an edge from corner a to corner b. One that is an edge of the mesh stays where it
+  // is, so that the faces do of which all edges are.
+  bool findWay(const reduce::OwnedFace& face, std::size_t a, std::size_t b, float limit2,
+               reduce::OverlayPath& way) const {
+    if (isFine(face.vertices[a]) && isFine(face.vertices[b])) {
+      const VertexIndex from = cut_.vertexOf[face.vertices[a]],
+                        to = cut_.vertexOf[face.vertices[b]];
+      const auto around = cornersOf_->of(from);
+      const auto isAtEdge = [&](Index t) { return reduce::hasVertex(triangles_, t, to); };
+      if (std::any_of(around.begin(), around.end(), [&](Index c) { return isAtEdge(c / 3); })) {
+        way.count = 1;
+        way.largest2 = 0;
+        way.triangles[0] = face.owners[a];
+        return triangles_.walkAround(from, isAtEdge, way) &&
+               triangles_.walkAround(
+                   to, [&](Index t) { return t == face.owners[b]; }, way);
+      }
+    }
+    return reduce::findOverlayPath(triangles_, {face.corners[a], face.corners[b]}, face.owners[a],
+                                   face.owners[b], limit2, way);
+  }
+
+  // The vertices of owners in the largest cells; where all are of the uniform mesh, those in larger
+  // cells around them.
+  void addOwners(const std::array<Index, 3>& owners, std::vector<VertexIndex>& coarse) const {
+    std::array<VertexIndex, 9> corners;
+    for (std::size_t i = 0; i < 9; ++i)
+      corners[i] = triangles_.corners[owners[i / 3]].vertices[i % 3];
+    const auto isLarge = [&](VertexIndex v) { return cut_.clusters[v].level > 0; };
+    if (std::any_of(corners.begin(), corners.end(), isLarge)) return addLargest(corners, coarse);
+    for (const VertexIndex v : corners) {
+      for (const Index c : cornersOf_->of(v)) {
+        for (const VertexIndex w : triangles_.corners[c / 3].vertices) {
+          if (isLarge(w)) coarse.push_back(w);
+        }
+      }
+    }
+  }
+
+  // Of some vertices those of the largest cells.
+  void addLargest(std::span<const VertexIndex> vertices, std::vector<VertexIndex>& coarse) const {
+    int level = 0;
+    for (const VertexIndex v : vertices) level = std::max(level, int{cut_.clusters[v].level});
+    for (const VertexIndex v : vertices) {
+      if (cut_.clusters[v].level == level) coarse.push_back(v);
+    }
+  }
+
+  CutDistance& all_;
+  const octree::Cut& cut_;
+  const octree::CutMesh& made_;
+  const Mesh& mesh_;
+  std::vector<base::PolygonIndex> polygonOf_;  // of each uniform quad; kNone for none
+  std::vector<std::uint8_t> isDirty_;          // of each uniform face
+  std::vector<std::uint8_t> wanted_;           // corners of these
+  CutTriangles triangles_;
+  std::optional<reduce::CornersOfVertices> cornersOf_;
+  std::vector<Index> localOf_;  // from ids to triangles_, of those that are there
+  std::vector<VertexIndex> coarse_;
+};
+
+CutDistance::CutDistance(const uniform::SurfaceView& base, const octree::CutRule& rule,
+                         base::Job& job)
+    : base_(base),
+      job_(job),
+      tolerance_(static_cast<float>(rule.tolerance)),
+      scales_(scalesOf(base.mesh, base.affine, rule, job)) {
+  const std::size_t count = base.mesh.positions.size();
+  base::Box box = base::Box::empty();
+  for (const Position& p : base.mesh.positions) box.add(Vec3(p));
+  middle_ = box.centre();
+  base::resizeLarge(points_, count, job);
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points_[i] = toVoxels(base.mesh.positions[i]);
+  });
+  owner_.assign(count, kNone);
+  distance_.assign(count, 0);
+  faceBound_.assign(2 * base.mesh.quads.size(), 0);
+}
+
+base::Vec3f CutDistance::toVoxels(const Position& p) const {
+  return Vec3f((Vec3(p) - middle_) * (1 / base_.affine.voxelSize()));
+}
+
+std::vector<VertexIndex> CutDistance::measure(const octree::Cut& cut, const octree::CutMesh& made,
+                                              const std::vector<std::uint8_t>& changed) {
+  return Measure(*this, cut, made).run(changed);
+}
+
+Deviation CutDistance::total(const octree::Cut& cut, const Mesh& mesh) const {
+  std::vector<std::uint8_t> isUsed(mesh.positions.size());
+  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners corners) {
+    for (const VertexIndex v : corners) isUsed[v] = 1;
+  });
+  const auto isPresent = [&](std::size_t r) { return isUsed[cut.vertexOf[r]] != 0; };
+  double sum = 0;
+  std::size_t count = 0;
+  float largest = 0;
+  bool isTooFar = false;
+  for (std::size_t r = 0; r < distance_.size(); ++r) {
+    if (!isPresent(r)) continue;
+    sum += static_cast<double>(distance_[r]);
+    ++count;
+    largest = std::max(largest, distance_[r]);
+    isTooFar |= distance_[r] > toleranceAt(r);
+  }
+  const float ofVertices = largest;
+  for (std::size_t face = 0; face < faceBound_.size(); ++face) {
+    if (!isPresent(base_.mesh.quads[face / 2].vertices[0])) continue;
+    largest = std::max(largest, faceBound_[face]);
+  }
+  isTooFar |= largest == kFar;
+  if (isTooFar) return measureWhole(cut, mesh, std::max(ofVertices, tolerance_));
+  return {static_cast<double>(largest), count == 0 ? 0 : sum / static_cast<double>(count)};
+}
+
+Deviation CutDistance::measureWhole(const octree::Cut& cut, const Mesh& mesh,
+                                    float expected) const {
+  const std::vector<Triangle> faces = triangulate(base_.mesh);
+  const reduce::ReferenceMesh reference(points_, faces, {}, job_);
+  std::vector<Vec3f> positions(mesh.positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = toVoxels(mesh.positions[i]);
+  reduce::Surface surface = reduce::makeSurface(positions, triangulate(mesh), job_);
+  reduce::locateAll(surface, reference, cut.vertexOf, job_);
+  const reduce::Certificate certificate = reduce::certify(surface, reference, expected, job_);
+  return {static_cast<double>(certificate.largest), static_cast<double>(certificate.mean)};
+}
+
+}  // namespace tufa::refine

@@ -1,0 +1,29 @@
+#include "refine/tolerance_scales.h"
+
+#include <algorithm>
+
+namespace tufa::refine {
+
+double toleranceAt(const octree::CutRule& rule, const grid::Affine& affine, const Vec3& point) {
+  if (!rule.scale) return rule.tolerance;
+  const Coord& origin = affine.origin();
+  return rule.toleranceAt(affine.latticePoint({point[0], point[1], point[2]}, origin) +
+                          Vec3(origin));
+}
+
+std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
+                            const octree::CutRule& rule, base::Job& job) {
+  if (!rule.scale) return {};
+  octree::CutRule one = rule;
+  one.tolerance = 1;
+  std::vector<float> scales(mesh.positions.size());
+  job.forRanges(scales.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double scale = toleranceAt(one, affine, Vec3(mesh.positions[i]));
+      scales[i] = static_cast<float>(std::max(0.0, scale));
+    }
+  });
+  return scales;
+}
+
+}  // namespace tufa::refine
