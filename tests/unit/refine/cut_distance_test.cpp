@@ -28,8 +28,7 @@ octree::CutRule ruleOf(double tolerance) {
 struct Ball {
   test::ModelOf model{test::ballOf(10.3, kVoxel)};
   test::MeshOfCut mesh = model.uniformCut();
-  std::vector<std::uint8_t> changed =
-      std::vector<std::uint8_t>(mesh.cut.clusters.size());
+  std::vector<std::uint8_t> changed = std::vector<std::uint8_t>(mesh.cut.clusters.size());
 
   /// Moves a vertex outward by so many voxels.
   void move(VertexIndex vertex, double voxels) {
@@ -125,9 +124,9 @@ TEST(CutDistance, IsABoundFromMeshToMesh) {
     std::vector<std::uint8_t> changed(cut.clusters.size());
     for (std::size_t i = 0; i < cut.vertexOf.size(); ++i) {
       const octree::ClusterRef& is = cut.clusters[cut.vertexOf[i]];
-      const octree::ClusterRef was =
-          before.clusters.empty() ? octree::ClusterRef{0, static_cast<std::uint32_t>(i)}
-                                  : before.clusters[before.vertexOf[i]];
+      const octree::ClusterRef was = before.clusters.empty()
+                                         ? octree::ClusterRef{0, static_cast<std::uint32_t>(i)}
+                                         : before.clusters[before.vertexOf[i]];
       if (was.level != is.level || was.cluster != is.cluster) changed[cut.vertexOf[i]] = 1;
     }
     isDone = !splitCells(forest, distance.measure(cut, made, changed), cut, 0, forbidden);
