@@ -58,7 +58,7 @@ struct PhaseLimits {
   float turnCosine = 0.5f;  ///< least cosine between a triangle's normal before and after
   bool clusters = false;    ///< contracts clusters first
   bool flips = true;
-  int mostValence = 16;  ///< of a new star, unless it was higher
+  int mostValence = 12;  ///< of a new star, unless it was higher: no fans of more needles
   LineMode lines = LineMode::Free;
   bool isLoose = false;    ///< edges need not end where their vertices are, see Part::edgeNear()
   bool allPlaces = false;  ///< tries the ends of an edge also where the best place is too far

@@ -64,8 +64,8 @@ bool Part::isSimpleStar(Index a, Index b) const {
 }
 
 // Compares the triangles with those before. None may turn far, unless it was a sliver or folded
-// over. Slivers may be made if the smallest angle of the star does not shrink, or as long as they
-// are few in the part.
+// over. Slivers may be made in the place of as many if the smallest angle of the star does not
+// shrink, or as long as they are few in the part.
 Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
   const float limit = limits_.leastSine2;
   float after = 1, before = 1;
@@ -100,7 +100,7 @@ Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
     newSlivers_ -= then < limit;
   }
   if (after >= limit || !isOn(Outcome::Round)) return Outcome::Done;
-  if (after >= before && (newSlivers_ <= 0 || !limits_.keepsAngle())) return Outcome::Done;
+  if (after >= before && newSlivers_ <= 0) return Outcome::Done;
   if (newSlivers_ < 0 && after >= kWorstSine2) return Outcome::Done;
   const bool isFew = static_cast<float>(sliverCount_ + newSlivers_) <=
                      limits_.sliverShare * static_cast<float>(alive_);

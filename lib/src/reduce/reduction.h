@@ -47,7 +47,7 @@ struct Options {
   float leastAngle = 10;      ///< degrees under which a triangle is a sliver
   /// Of the triangles that may become slivers nevertheless. 0: a collapse makes none but in the
   /// place of as many. Clusters do, in the first phase; later ones take those away.
-  float sliverShare = 0.045f;
+  float sliverShare = 0.08f;
   float mostTurn = 60;      ///< degrees by which a triangle's normal may turn at a time
   int phases = 8;           ///< most at one tolerance
   float firstShare = 0.5f;  ///< of the tolerance, for the first phase

@@ -28,6 +28,9 @@ constexpr double kFold = -0.766;
 constexpr double kOffNormal = 0.36;
 // Vertices nearer to each other than this, in voxels, stand for the same point of a crease.
 constexpr double kSamePoint = 0.03;
+// And than this if a face between them is turned over, as where the surface lies on a plane of
+// samples: the cells on both sides have the same crease. One of two vertices goes so far away.
+constexpr double kSameCrease = 0.15;
 // Square voxels; a smaller face that is folded over, as beside vertices that stand close together
 // on a crease, is let be: to move them off the crease would change the surface more.
 constexpr double kLeastArea = 0.02;
@@ -120,21 +123,29 @@ class PlacementGuard {
     return false;
   }
 
+  [[nodiscard]] bool isWithin(double voxels, VertexIndex a, VertexIndex b) const {
+    const double distance = voxels * surface_.affine().voxelSize();
+    return (pointOf(a) - pointOf(b)).squaredLength() < distance * distance;
+  }
+
   // Vertices of one quad that were placed at the same point of a crease, at least one of them out
   // of its cell.
   std::vector<Conflict> findCoincident() {
-    const double least = std::pow(kSamePoint * surface_.affine().voxelSize(), 2);
     const uniform::VertexSheets& sheets = surface_.sheets;
-    const auto coincide = [&](VertexIndex a, VertexIndex b) {
+    const auto isTurnedOver = [&](std::uint32_t quad) {
+      return !mesh_.normals.empty() && (isOff(2 * quad) || isOff(2 * quad + 1));
+    };
+    const auto coincide = [&](std::uint32_t quad, VertexIndex a, VertexIndex b) {
       return (sheets.isOutOfCell(a) || sheets.isOutOfCell(b)) && sheets.isSharp(a) &&
-             sheets.isSharp(b) && (pointOf(a) - pointOf(b)).squaredLength() < least;
+             sheets.isSharp(b) && isWithin(kSameCrease, a, b) &&
+             (isWithin(kSamePoint, a, b) || isTurnedOver(quad));
     };
     std::vector<Conflict> conflicts;
     const auto visit = [&](std::uint32_t quad, const auto& found) {
       const auto& v = mesh_.quads[quad].vertices;
       for (int i = 0; i < 4; ++i) {
         for (int j = i + 1; j < 4; ++j) {
-          if (coincide(v[i], v[j])) found(v[i], v[j]);
+          if (coincide(quad, v[i], v[j])) found(v[i], v[j]);
         }
       }
     };
@@ -354,10 +365,8 @@ class PlacementGuard {
 
   [[nodiscard]] bool isConflict(const Conflict& conflict) const {
     switch (conflict.kind) {
-      case Conflict::Kind::SamePoint: {
-        const double least = std::pow(kSamePoint * surface_.affine().voxelSize(), 2);
-        return (pointOf(conflict.edge[0]) - pointOf(conflict.edge[1])).squaredLength() < least;
-      }
+      case Conflict::Kind::SamePoint:
+        return isWithin(kSameCrease, conflict.edge[0], conflict.edge[1]);
       case Conflict::Kind::Fold:
         return isFold({conflict.edge[0], conflict.edge[1], conflict.parts[0]},
                       {conflict.edge[0], conflict.edge[1], conflict.parts[1]});

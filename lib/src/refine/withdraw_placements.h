@@ -24,9 +24,10 @@ struct Withdrawal {
 /// Each vertex has three places: the one at a crease that was chosen for it alone, without a look
 /// at its neighbours; the point of its QEF in its cell; its mass point. All vertices begin at the
 /// first. A conflict is an edge folded by more than 140 degrees, unless two sheets known at both of
-/// its ends are as sharp; a pair of quads that intersect; or two vertices of a quad at one point.
-/// Of all moves of its vertices towards their next places the smallest one that settles it is made,
-/// or else the smallest to such a place. Only what touches a moved vertex is looked at again.
+/// its ends are as sharp; a pair of quads that intersect; or two vertices of a quad at one point of
+/// a crease, or near each other on it with a face between them turned over. Of all moves of its
+/// vertices towards their next places the smallest one that settles it is made, or else the
+/// smallest to such a place. Only what touches a moved vertex is looked at again.
 ///
 /// It ends, as a vertex moves a bounded number of times. What is decided in a round depends on what
 /// is within two cells, and few places take more than three rounds. Pairs of vertices at their mass

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <tufa/error.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "support/mesh_oracle.h"
 #include "unit/reduce/meshes.h"
@@ -97,6 +99,29 @@ TEST(Reduction, KeepsAnAngle) {
       EXPECT_LT(kept.triangles.size(), 3 * any.triangles.size()) << asked;
     }
   }
+}
+
+// A long cylinder has the fewest triangles in strips of needles along it.
+TEST(Reduction, MakesFewSliversAndNoLongFans) {
+  const test::FineMesh cylinder = test::levelSet(60, [](double x, double y, double z) {
+    return std::max(std::hypot(x - 30, y - 30) - 8.2, std::abs(z - 30) - 26.3);
+  });
+  const auto reducedWith = [&](const Options& options) {
+    base::Job job(1, {});
+    Reduction reduction(cylinder.view(), cylinder.view(), {}, {}, options, job);
+    reduction.toTolerance(0.1f);
+    return reduction.mesh();
+  };
+  Options any;
+  any.sliverShare = 1;
+  EXPECT_GT(shareUnder(reducedWith(any), any.leastAngle), 0.2);
+  const ReducedMesh few = reducedWith({});
+  EXPECT_LT(shareUnder(few, Options().leastAngle), 0.1);
+  std::vector<int> valence(few.positions.size(), 0);
+  for (const Triangle& t : few.triangles) {
+    for (const VertexIndex v : t.vertices) ++valence[v];
+  }
+  EXPECT_LE(*std::max_element(valence.begin(), valence.end()), 12);
 }
 
 TEST(Reduction, GivesTheSameBytesForAnyThreads) {
