@@ -117,6 +117,25 @@ TEST(Adaptive, CollapsingEdgesLeavesFewerTrianglesAtTheSameTolerance) {
   }
 }
 
+TEST(Adaptive, FoldsNothing) {
+  for (const Shape kind : {Shape::Terrain, Shape::Gyroid, Shape::Bracket}) {
+    const double voxelSize = 0.03;
+    const auto grid = shape(kind, voxelSize);
+    // The rim of the terrain is sharper than 30 degrees at one edge.
+    const std::size_t most = test::foldedEdges(test::uniformMesh(*grid), voxelSize);
+    EXPECT_LE(most, 1u);
+    ContourOptions options;
+    for (const double tolerance : {0.1, 0.5, 2.0}) {
+      for (const bool simplify : {true, false}) {
+        options.tolerance = tolerance;
+        options.simplify = simplify;
+        EXPECT_LE(test::foldedEdges(contour(*grid, options), voxelSize), most)
+            << static_cast<int>(kind) << " at " << tolerance << (simplify ? "" : ", a cut");
+      }
+    }
+  }
+}
+
 TEST(Adaptive, IsTheSameForAnyNumberOfThreads) {
   for (const Shape kind : {Shape::Bracket, Shape::Gyroid, Shape::Noise}) {
     const auto grid = shape(kind, 0.05);

@@ -1,5 +1,5 @@
 // Random solids with sharp edges of any angle, at any place and turn, at three tolerances.
-// TUFA_RANDOM_SOLIDS sets how many; each costs about a second.
+// TUFA_RANDOM_SOLIDS sets how many; each costs about two seconds.
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "support/mesh_oracle.h"
 #include "support/nearest_triangle.h"
 #include "support/random_solid.h"
 #include "support/uniform_mesh.h"
@@ -21,20 +22,24 @@ namespace {
 
 constexpr double kVoxel = 0.03;
 
-void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform, double tolerance) {
-  SCOPED_TRACE("tolerance " + std::to_string(tolerance));
-  ContourOptions options;
-  options.tolerance = tolerance;
+void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform,
+                        const ContourOptions& options) {
+  SCOPED_TRACE("tolerance " + std::to_string(options.tolerance) +
+               (options.simplify ? "" : ", a cut"));
   ContourReport report;
   const Mesh mesh = contour(grid, options, &report);
   const double certified = report.certificate->maxErrorVoxels;
-  EXPECT_LE(certified, tolerance);
+  EXPECT_LE(certified, options.tolerance);
   EXPECT_EQ(report.intersectionsLeft, 0u);
 
   const CheckReport found = check(mesh);
   EXPECT_TRUE(found.watertight());
   EXPECT_EQ(found.selfIntersectingPairs, 0u);
   EXPECT_EQ(found.eulerCharacteristic, check(uniform).eulerCharacteristic);
+  // A wedge of 20 degrees folds its own edges.
+  if (test::foldedEdges(uniform, kVoxel) == 0) {
+    EXPECT_EQ(test::foldedEdges(mesh, kVoxel), 0u);
+  }
 
   const double most = 1.005 * certified + 0.0005;  // positions are in single precision
   const double reach = 3 * kVoxel;
@@ -50,7 +55,14 @@ void expectKeptPromises(unsigned seed) {
   const auto grid = voxelize(*implicit::readScene(FileBytes{text, "solid"}).field, options);
   const Mesh uniform = test::uniformMesh(*grid);
   if (uniform.positions.empty()) return;  // cut away, or outside what it was intersected with
-  for (const double tolerance : {0.1, 0.5, 2.0}) expectKeptPromises(*grid, uniform, tolerance);
+  ContourOptions asked;
+  for (const double tolerance : {0.1, 0.5, 2.0}) {
+    asked.tolerance = tolerance;
+    for (const bool simplify : {true, false}) {
+      asked.simplify = simplify;
+      expectKeptPromises(*grid, uniform, asked);
+    }
+  }
 }
 
 TEST(Solids, KeepTheirPromises) {

@@ -154,6 +154,32 @@ double area(const Mesh& mesh) {
   return sum;
 }
 
+std::size_t foldedEdges(const Mesh& mesh, double voxelSize) {
+  struct Side {
+    VertexIndex low, high;
+    Vec3 normal;
+  };
+  std::vector<Side> sides;
+  for (const Triangle& t : triangulate(mesh)) {
+    const auto [a, b, c] = t.vertices;
+    Vec3 normal = (at(mesh, b) - at(mesh, a)).cross(at(mesh, c) - at(mesh, a));
+    if (normal.length() <= 2 * 0.05 * voxelSize * voxelSize) continue;
+    normal = normal * (1 / normal.length());
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      sides.push_back({std::min(from, to), std::max(from, to), normal});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::pair(a.low, a.high) < std::pair(b.low, b.high);
+  });
+  std::size_t folds = 0;
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Side &a = sides[i - 1], &b = sides[i];
+    folds += a.low == b.low && a.high == b.high && a.normal.dot(b.normal) < -0.8660254 ? 1 : 0;
+  }
+  return folds;
+}
+
 double volume(const Mesh& mesh) {
   if (mesh.positions.empty()) return 0;
   const Vec3 origin = at(mesh, 0);

@@ -16,6 +16,7 @@
 #include "reduce/overlay_path.h"
 #include "reduce/reference_mesh.h"
 #include "reduce/surface.h"
+#include "refine/cut_folds.h"
 #include "refine/cut_triangles.h"
 #include "refine/tolerance_scales.h"
 
@@ -63,6 +64,7 @@ class CutDistance::Measure {
     findPolygons();
     findDirty(changed);
     collectTriangles();
+    splitFolds();
     findOwners();
     measureFaces();
     std::sort(coarse_.begin(), coarse_.end());
@@ -188,6 +190,18 @@ class CutDistance::Measure {
     localOf_[id] = static_cast<Index>(triangles_.corners.size());
     triangles_.corners.push_back(corners);
     triangles_.ids.push_back(id);
+  }
+
+  // Of a quad with one vertex in a larger cell, a triangle may have none.
+  void splitFolds() {
+    for (const auto& [a, b] : findFolds(triangles_, cut_, all_.base_)) {
+      std::vector<VertexIndex> corners;
+      for (const Index t : {a, b}) {
+        const base::Corners v = base::cornersOf(mesh_, polygonOf_[triangles_.ids[t] / 2]);
+        corners.insert(corners.end(), v.begin(), v.end());
+      }
+      addLargest(corners, coarse_);
+    }
   }
 
   // The nearest triangle around a vertex's cluster, or where that is too far, one that lies nearer

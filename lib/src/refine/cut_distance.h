@@ -35,7 +35,7 @@ class CutDistance {
 
   /// Measures the next mesh. `changed`: for each vertex of the cut, whether it is not as in the
   /// mesh before; for the first one, whether its cell is larger than a voxel. Returns the vertices
-  /// whose cells must be split for the tolerance, sorted.
+  /// whose cells must be split for the tolerance, or as they fold the mesh, sorted.
   [[nodiscard]] std::vector<VertexIndex> measure(const octree::Cut& cut,
                                                  const octree::CutMesh& made,
                                                  const std::vector<std::uint8_t>& changed);

@@ -76,6 +76,21 @@ TEST(CutDistance, NamesTheCellsThatAreTooFarAndMeasuresThemToo) {
   EXPECT_NEAR(distance.total(ball.mesh.cut, ball.mesh.made.mesh).largest, 0.3, 0.03);
 }
 
+TEST(CutDistance, NamesTheCellsThatFoldTheMesh) {
+  Ball ball;
+  Position& moved = ball.mesh.made.mesh.positions[100];
+  const Vec3 normal(ball.mesh.made.mesh.normals[100]);
+  const Vec3 along = normal.cross(std::abs(normal[0]) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
+  ball.mesh.cut.clusters[100].level = 1;
+  ball.changed[100] = 1;
+  const octree::CutRule rule = ruleOf(5);
+  CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+  EXPECT_TRUE(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
+  moved = Vec3(moved) + along * (2.5 * kVoxel);
+  EXPECT_EQ(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed),
+            std::vector<VertexIndex>{100});
+}
+
 TEST(CutDistance, MeasuresAgainWhatChangedOnly) {
   Ball ball;
   ball.move(100, 0.3);

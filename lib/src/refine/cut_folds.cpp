@@ -1,0 +1,111 @@
+#include "refine/cut_folds.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tufa::refine {
+namespace {
+
+using base::Vec3f;
+using reduce::Index;
+
+// Cosine of 149 degrees and area in square voxels: positions are still to be rounded.
+constexpr float kFoldCosine = -0.857f;
+constexpr float kLeastArea = 0.048f;
+// Two sheets of a smaller cosine (148 degrees) may have faces that are a fold.
+constexpr double kSharpSheets = -0.848;
+// A face within this cosine (25 degrees) of a sheet lies on it.
+constexpr double kOnSheet = 0.906;
+
+struct Fold {
+  std::array<Index, 2> triangles;
+  std::array<Vec3, 2> normals;
+  std::array<VertexIndex, 2> ends;  // of their edge
+  std::array<bool, 2> isSharp{};    // whether the surface is, at the ends
+};
+
+// Of triangles below the least area, none.
+std::vector<Vec3f> normalsOf(const CutTriangles& triangles) {
+  std::vector<Vec3f> normals(triangles.corners.size());
+  for (Index t = 0; t < normals.size(); ++t) {
+    const Vec3f a = triangles(t, 0);
+    const Vec3f normal = cross(triangles(t, 1) - a, triangles(t, 2) - a);
+    const float size = length(normal);
+    normals[t] = size > 2 * kLeastArea ? normal * (1 / size) : Vec3f();
+  }
+  return normals;
+}
+
+std::vector<Fold> foldsOf(const CutTriangles& triangles) {
+  const std::vector<Vec3f> normals = normalsOf(triangles);
+  std::vector<Fold> folds;
+  for (Index t = 0; t < normals.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const Index across = triangles.opposite[3 * t + static_cast<Index>(i)];
+      if (across == reduce::kNone || across / 3 < t) continue;
+      const Index other = across / 3;
+      if (dot(normals[t], normals[other]) >= kFoldCosine) continue;
+      folds.push_back({{t, other},
+                       {Vec3(normals[t]), Vec3(normals[other])},
+                       {triangles.vertex(t, (i + 1) % 3), triangles.vertex(t, (i + 2) % 3)}});
+    }
+  }
+  return folds;
+}
+
+// Whether the two faces of a fold lie on two sheets as sharp.
+bool haveSheets(const Fold& fold, const uniform::MeetingSheets& sheets) {
+  for (int i = 0; i < sheets.count; ++i) {
+    for (int j = 0; j < sheets.count; ++j) {
+      const Vec3 a(sheets.normals[i]), b(sheets.normals[j]);
+      if (a.dot(b) < kSharpSheets && a.dot(fold.normals[0]) > kOnSheet &&
+          b.dot(fold.normals[1]) > kOnSheet) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Looks at the uniform vertices that the ends of the edges stand for.
+void findSharp(const octree::Cut& cut, const uniform::SurfaceView& base, std::vector<Fold>& folds) {
+  struct End {
+    VertexIndex vertex;
+    std::size_t fold, end;
+  };
+  std::vector<End> ends;
+  std::vector<std::uint8_t> isEnd(cut.clusters.size());
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    for (const std::size_t end : {0, 1}) {
+      ends.push_back({folds[i].ends[end], i, end});
+      isEnd[folds[i].ends[end]] = 1;
+    }
+  }
+  std::sort(ends.begin(), ends.end(),
+            [](const End& a, const End& b) { return a.vertex < b.vertex; });
+  for (VertexIndex r = 0; r < cut.vertexOf.size(); ++r) {
+    const VertexIndex vertex = cut.vertexOf[r];
+    if (isEnd[vertex] == 0 || !base.sheets.isSharp(r)) continue;
+    const uniform::MeetingSheets sheets = base.sheets.sheets(base.mesh, r);
+    auto at = std::lower_bound(ends.begin(), ends.end(), vertex,
+                               [](const End& a, VertexIndex v) { return a.vertex < v; });
+    for (; at != ends.end() && at->vertex == vertex; ++at) {
+      folds[at->fold].isSharp[at->end] |= haveSheets(folds[at->fold], sheets);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::array<Index, 2>> findFolds(const CutTriangles& triangles, const octree::Cut& cut,
+                                            const uniform::SurfaceView& base) {
+  std::vector<Fold> folds = foldsOf(triangles);
+  if (!folds.empty()) findSharp(cut, base, folds);
+  std::vector<std::array<Index, 2>> pairs;
+  for (const Fold& fold : folds) {
+    if (!fold.isSharp[0] || !fold.isSharp[1]) pairs.push_back(fold.triangles);
+  }
+  return pairs;
+}
+
+}  // namespace tufa::refine
