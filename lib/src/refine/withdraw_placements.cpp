@@ -281,7 +281,9 @@ class PlacementGuard {
     double distance2;
   };
 
-  // Makes the smallest move that settles each conflict. Whether there was any.
+  // Makes the smallest move that settles each conflict. Whether there was any. In a crowd of more
+  // conflicts than quads, as where every other sample is inside, all vertices go to their mass
+  // points at once: what the smallest moves would come to, after many rounds.
   bool withdrawFrom(const std::vector<Conflict>& conflicts) {
     const std::vector<VertexIndex> vertices = verticesOf(conflicts);
     const auto [plain, mass] =
@@ -292,6 +294,13 @@ class PlacementGuard {
                                       vertices.begin());
     };
     std::vector<std::optional<Move>> chosen(vertices.size());
+    if (conflicts.size() > mesh_.quads.size()) {
+      for (std::size_t slot = 0; slot < vertices.size(); ++slot) {
+        if (steps_[vertices[slot]] == kAtMassPoint) continue;
+        chosen[slot] = {vertices[slot], mass[slot], kAtMassPoint, 0};
+      }
+      return apply(chosen);
+    }
     std::vector<Move> moves;
     for (const Conflict& conflict : conflicts) {
       moves.clear();

@@ -7,11 +7,14 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "grid/volume.h"
 #include "support/random_solid.h"
+#include "uniform/place_vertices.h"
 #include "uniform/uniform_surface.h"
 
 namespace tufa::refine {
@@ -56,6 +59,31 @@ TEST(WithdrawPlacements, LeavesNoFoldButOnCreases) {
     EXPECT_LE(foldsOf(surface), static_cast<int>(withdrawal.left)) << "seed " << seed;
   }
   EXPECT_GT(before, 20);
+}
+
+// Every quad of a checkerboard meets a dozen others: tried one by one, moves took 25 times as long.
+TEST(WithdrawPlacements, GoesToMassPointsAtOnceInACrowd) {
+  constexpr int kSide = 10;
+  const auto grid = openvdb::FloatGrid::create(1);
+  for (int i = 0; i < kSide * kSide * kSide; ++i) {
+    const openvdb::Coord at(i % kSide, i / kSide % kSide, i / (kSide * kSide));
+    grid->tree().setValue(at, (at[0] + at[1] + at[2]) % 2 == 0 ? 1.0f : -1.0f);
+  }
+  base::Job job(1, {});
+  uniform::UniformSurface surface =
+      uniform::makeUniformSurface(grid::openVolume(*grid, {}, job), {}, {}, job);
+  const Withdrawal withdrawal = withdrawPlacements(surface, 0, job);
+  EXPECT_GT(withdrawal.pairsFound, surface.mesh.quads.size());
+  std::vector<VertexIndex> vertices(surface.mesh.positions.size());
+  std::iota(vertices.begin(), vertices.end(), 0);
+  const std::vector<Position> mass =
+      uniform::fallbackPoints(surface.volume.blocks, surface.volume.scale, surface.topology,
+                              surface.affine(), vertices, job)
+          .mass;
+  std::size_t moved = 0;
+  for (const VertexIndex i : vertices) moved += surface.mesh.positions[i] == mass[i] ? 1 : 0;
+  EXPECT_GE(moved, withdrawal.vertices);
+  EXPECT_GT(withdrawal.vertices, vertices.size() / 2);
 }
 
 }  // namespace
