@@ -26,15 +26,20 @@ constexpr float kLeastAngleAtLines = 2;
 constexpr int kMostValenceAtLines = 40;
 // Phases end once one has removed less than this share of the triangles.
 constexpr Index kLittle = 16;
-// For a number of triangles: the first tolerance, and the factors by which it grows.
-constexpr float kFirstTolerance = 0.02f;
-constexpr float kLeastStep = 1.06f;
-constexpr float kMostStep = 1.6f;
-// Where a tolerance gave nothing it is doubled. Where that gave nothing so often, above so many
-// voxels, it is the topology or the shape that is in the way.
-constexpr float kStuckStep = 2;
-constexpr int kMostStuck = 3;
+// For a number of triangles: the first tolerance, and the factor by which it grows.
+constexpr float kFirstTolerance = 0.025f;
+constexpr float kStep = 4;
+// The least tolerance that reaches the number may be smaller by so much than one at which two
+// phases do not; it is found to 3%.
+constexpr float kReserve = 1.5f;
+constexpr int kHalvings = 6;
+// Where a tolerance above so many voxels gave little, the shape of triangles is in the way:
+// slivers, fans and turns are allowed from then on. Where that gives nothing so often, it is the
+// topology.
 constexpr float kStuckTolerance = 2;
+constexpr int kMostStuck = 2;
+constexpr int kMostValenceAtLast = 40;
+constexpr float kMostTurnAtLast = 120;
 // Voxels; at larger tolerances the first attempt lets edges end anywhere near.
 constexpr float kLooseTolerance = 4;
 // What was beyond the tolerance is held within so many tolerances and voxels.
@@ -88,7 +93,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   trees_.clear();
   for (attempt_ = 0;; ++attempt_) {
     nextTree_ = 0;
-    descendTo(tolerance);
+    descendTo(tolerance, 0);
     measure(tolerance_);
     std::vector<Index> held = certificate_.beyond;
     if (options_.faults) addFacesNear(options_.faults(mesh()), held);
@@ -138,11 +143,11 @@ void Reduction::beginLines() {
 
 // Large tolerances by way of smaller ones: most collapses are cheap there, as little surface is
 // near other surface and triangles hold few samples.
-void Reduction::descendTo(float tolerance) {
+void Reduction::descendTo(float tolerance, Index count) {
   std::vector<float> way{tolerance};
   while (way.back() * kRamp > std::max(tolerance_, kRampEnd)) way.push_back(way.back() * kRamp);
-  for (std::size_t i = way.size(); i-- > 1;) reduce(way[i], 0, kRampPhases);
-  reduce(tolerance, 0, options_.phases);
+  for (std::size_t i = way.size(); i-- > 1;) reduce(way[i], count, kRampPhases);
+  reduce(tolerance, count, options_.phases);
 }
 
 // Each phase sees other parts. The first one spends a share of the tolerance only, so that surface
@@ -161,6 +166,11 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
     const float least = std::sin(kLeastAngleAtLines * kRadians);
     limits.leastSine2 = least * least;
     limits.mostValence = kMostValenceAtLines;
+  }
+  if (!keepsShape_ && tolerance > kStuckTolerance) {
+    limits.sliverShare = 1;
+    limits.mostValence = kMostValenceAtLast;
+    limits.turnCosine = std::cos(kMostTurnAtLast * kRadians);
   }
   limits.isLoose = tolerance > kLooseTolerance && attempt_ == 0;
   limits.switchedOff = options_.switchedOff;
@@ -194,25 +204,67 @@ void Reduction::buildParts() {
   ++nextTree_;
 }
 
-// Growing tolerances, in small steps once the count is near: each is spent before the next one, so
-// the error at the count is at most a step over that of the tolerance that gives as many triangles.
+Reduction::State Reduction::state() const {
+  return {surface_, tolerance_, phaseNumber_, isReference_};
+}
+
+void Reduction::restore(const State& state) {
+  surface_ = state.surface;
+  tolerance_ = state.tolerance;
+  phaseNumber_ = state.phaseNumber;
+  isReference_ = state.isReference;
+}
+
+// Growing tolerances to the first that reaches the count, and between that one and the one before
+// by halves, each from the mesh of two tolerances ago: as toTolerance() goes. So the error at the
+// count is that of the tolerance that gives as many triangles.
 float Reduction::toCount(Index count, float mostTolerance) {
   attempt_ = 0;
-  float tolerance = std::max(tolerance_, kFirstTolerance);
-  trees_.clear(), nextTree_ = 0;
-  for (int stuck = 0;;) {
-    tolerance = std::min(tolerance, mostTolerance);
-    const Index before = triangleCount();
-    reduce(tolerance, count, options_.phases);
-    stuck = triangleCount() == before ? stuck + 1 : 0;
-    if (triangleCount() <= count + 1 || tolerance >= mostTolerance) break;
-    if (stuck == kMostStuck && tolerance > kStuckTolerance) break;
-    const float ratio =
-        static_cast<float>(triangleCount()) / static_cast<float>(std::max<Index>(count, 1));
-    tolerance *= stuck > 0 ? kStuckStep : std::clamp(std::pow(ratio, 0.4f), kLeastStep, kMostStep);
+  const auto isReached = [&] { return triangleCount() <= count + 1; };
+  const auto reduceTo = [&](float tolerance, int phases) {
+    trees_.clear(), nextTree_ = 0;
+    reduce(tolerance, count, phases);
+  };
+  if (isReached()) {
+    measure(tolerance_);
+    return tolerance_;
   }
+  State start = state(), last = start;
+  float low = tolerance_, high = std::clamp(tolerance_ * kStep, kFirstTolerance, mostTolerance);
+  for (int stuck = 0;;) {
+    const Index before = triangleCount();
+    State next = state();
+    reduceTo(high, kRampPhases);
+    stuck = triangleCount() == before ? stuck + 1 : 0;
+    if (keepsShape_ && high > kStuckTolerance && triangleCount() > before - before / kLittle) {
+      keepsShape_ = false, stuck = 0;
+    }
+    const bool isLast = high >= mostTolerance || (stuck == kMostStuck && high > kStuckTolerance);
+    if (isLast) reduceTo(high, options_.phases);
+    start = std::move(last), last = std::move(next);
+    if (isReached()) break;
+    if (isLast) {
+      measure(tolerance_);
+      return mostTolerance;
+    }
+    low = high / kReserve, high = std::min(high * kStep, mostTolerance);
+  }
+  low = std::max({low, start.tolerance, high / (kStep * kReserve)});
+  State best = state();
+  for (int i = 0; i < kHalvings && low < high; ++i) {
+    const float middle = std::sqrt(low * high);
+    restore(start);
+    trees_.clear(), nextTree_ = 0;
+    descendTo(middle, count);
+    if (!isReached()) {
+      low = middle;
+      continue;
+    }
+    best = state(), high = middle;
+  }
+  restore(best);
   measure(tolerance_);
-  return triangleCount() <= count + 1 ? tolerance : mostTolerance;
+  return tolerance_;
 }
 
 // The collapses that a phase may still make, shared among parts by their inner vertices.

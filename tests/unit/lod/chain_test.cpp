@@ -108,6 +108,27 @@ TEST_P(LodChains, KeepTheirBudgets) {
   expectEqual(chain, buildLods(*grid, options));
 }
 
+// A number of triangles costs no more error than the tolerance that gives as many.
+TEST(LodChain, SpendsNoMoreErrorOnABudgetThanATolerance) {
+  for (const Shape kind : {Shape::Torus, Shape::Terrain, Shape::Bracket}) {
+    const auto grid = shape(kind, 0.03);
+    for (const double tolerance : {0.1, 0.3, 0.9}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + " at " + std::to_string(tolerance));
+      LodOptions options;
+      options.tolerances = {tolerance};
+      const LodChain within = buildLods(*grid, options);
+      options.tolerances.clear();
+      options.triangles = {within.levels.at(0).mesh.triangleCount()};
+      const LodChain budget = buildLods(*grid, options);
+      ASSERT_EQ(budget.levels.size(), 1u) << budget.stopped;
+      EXPECT_LE(budget.levels[0].mesh.triangleCount(), options.triangles[0]);
+      EXPECT_GE(budget.levels[0].mesh.triangleCount(), options.triangles[0] * 95 / 100);
+      EXPECT_LE(budget.levels[0].certificate.maxErrorVoxels,
+                1.2 * within.levels[0].certificate.maxErrorVoxels);
+    }
+  }
+}
+
 TEST(LodChain, EndsBeforeABudgetThatCannotBeMet) {
   LodOptions options;
   options.triangles = {1000, 4};

@@ -202,6 +202,16 @@ TEST(Reduction, GivesUpACountOutOfReach) {
   EXPECT_LE(reduction.certificate().largest, 0.2f);
 }
 
+// A blade has 94 triangles without new slivers and fans.
+TEST(Reduction, TakesSliversNearTheLeastCount) {
+  test::FineMesh mesh = test::bumpySphere(4, 8, 1, 4);
+  for (Vec3f& p : mesh.positions) p = {6 * p.x, p.y, 0.1f * p.z};
+  base::Job job(1, {});
+  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  EXPECT_LT(reduction.toCount(60, 40), 40);
+  EXPECT_LE(reduction.triangleCount(), 60U);
+}
+
 // Starts from a cut, each of whose vertices stands for some of the reference's.
 TEST(Reduction, MeasuresToAReferenceThatIsNotItsInput) {
   const test::FineMesh fine = test::bumpySphere(5, 8, 0.6f, 4);
