@@ -33,6 +33,7 @@ struct OperationCounts {
   std::array<std::uint64_t, kOutcomes> collapses{};
   std::array<std::uint64_t, kOutcomes> flips{};
   std::array<std::uint64_t, kOutcomes> contractions{};  ///< of clusters
+  std::array<std::uint64_t, kOutcomes> knots{};
   std::uint64_t overQuota = 0;  ///< collapses that were left when a part's quota was spent
 
   [[nodiscard]] std::uint64_t collapsed() const { return collapses[0]; }
@@ -42,6 +43,7 @@ struct OperationCounts {
       collapses[i] += other.collapses[i];
       flips[i] += other.flips[i];
       contractions[i] += other.contractions[i];
+      knots[i] += other.knots[i];
     }
     overQuota += other.overQuota;
     return *this;

@@ -32,7 +32,7 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   loadSamples(surface);
   loadLines(surface);
   lowest_ = kBuckets;
-  contracted_ = 0;
+  done_ = 0;
   hasBoxList_ = false;
   boxList_.clear();
 }

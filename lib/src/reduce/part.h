@@ -29,7 +29,7 @@ class Part {
   /// Contracts clusters, connected vertices of one cube, each to one vertex. For meshes as fine as
   /// voxels.
   void contractClusters();
-  /// Collapses edges, the cheapest first, until none is left.
+  /// Collapses edges, the cheapest first, until none is left, and knots where that ends.
   void collapseAll();
   /// Flips edges of slivers.
   void flipAll();
@@ -96,6 +96,8 @@ class Part {
 
   // part_collapse.cpp.
   void countSlivers();
+  void proposeAll();
+  void collapseProposed();
   float solve(Index a, Index b, Vec3f& place, LocalQuadric& sum) const;
   void propose(Index a, Index b);
   Outcome tryCollapse(Index a, Index b);
@@ -113,6 +115,7 @@ class Part {
   bool solveCluster(Vec3f& place);
   [[nodiscard]] Index nearestMember() const;
   bool gatherClusterRing();
+  [[nodiscard]] bool isNarrowRing() const;
   bool fillNotches();
   /// Whether a vertex may go into a cluster.
   [[nodiscard]] bool isFree(Index v) const {
@@ -123,6 +126,14 @@ class Part {
   Outcome clusterDistanceGuard(Index nearest);
   bool clusterSamplesNear(Index t);
   void applyContraction();
+
+  // part_knot.cpp.
+  bool contractKnots();
+  bool contractKnot(Index v);
+  void gatherKnot(Index v, float radius);
+  Outcome tryKnot();
+  Outcome knotShapeGuard();
+  void applyKnot();
 
   // part_line.cpp.
   void loadLines(const Surface& surface);
@@ -167,8 +178,8 @@ class Part {
   bool isSimpleStar(Index a, Index b) const;
   Outcome trianglesGuard(Vec3f a, Vec3f b);
   [[nodiscard]] float sharpestAfter() const;
-  [[nodiscard]] bool foldGuard(Index a, Index b) const;
-  [[nodiscard]] float sharpestBefore(Index a, Index b) const;
+  [[nodiscard]] bool foldGuard(std::span<const Index> merged) const;
+  [[nodiscard]] float sharpestBefore(std::span<const Index> merged) const;
   [[nodiscard]] Vec3f outerNormal(Index corner) const;
   bool ringGuard();
   [[nodiscard]] Link linkAfterMerging(Index v) const;
@@ -197,9 +208,9 @@ class Part {
   [[nodiscard]] Index ownerAfter(Index referenceVertex) const;
 
   // part_intersect.cpp.
-  bool intersects(const NewTriangles& made, Index gone, Index gone2);
-  bool starIntersects(Index a, Index b);
-  bool passesOver(Index a, Index b);
+  bool intersects(const NewTriangles& made, bool isMerging);
+  bool starIntersects(std::span<const Index> merged);
+  bool passesOver(std::span<const Index> merged, std::span<const Index> vanishing);
   void makeBoxList();
   void renewBox(Index t);
   [[nodiscard]] bool isNarrow(Index t) const;
@@ -251,12 +262,15 @@ class Part {
   std::vector<std::pair<std::uint64_t, Index>> cubes_;
   std::vector<Index> clusterOf_;
   Index nextCluster_ = 0;
-  Index contracted_ = 0;          ///< vertices that are gone
   std::vector<Index> cluster_;    ///< at hand
   std::vector<Index> vanishing_;  ///< its triangles that are not at the ring
   float turns_[kMostRing] = {};   ///< of the spokes, rising
   int first_ = 0;                 ///< the spoke with the least turn
 
+  bool isKnot_ = false;                  ///< at hand, with more guards than a cluster
+  std::vector<std::uint8_t> wasInKnot_;  ///< vertices of knots that were tried
+
+  Index done_ = 0;                   ///< vertices that are gone
   Index now_ = 0, mergedNow_ = 0;    ///< the last stamps
   int alive_ = 0, sliverCount_ = 0;  ///< triangles
   bool hasBoxList_ = false;

@@ -116,12 +116,13 @@ void Part::gatherCluster(Index first, Index open) {
 }
 
 Outcome Part::tryContraction() {
-  if (contracted_ + cluster_.size() - 1 > limits_.quota) return Outcome::Place;
+  isKnot_ = false;
+  if (done_ + cluster_.size() - 1 > limits_.quota) return Outcome::Place;
   Vec3f exact;
   if (!solveCluster(exact)) return Outcome::Sample;
   place_ = surface_->roundedPlace(exact);
   if (!box_.hasInside(place_)) return Outcome::Place;
-  if (!gatherClusterRing()) return Outcome::Link;
+  if (!gatherClusterRing() || isNarrowRing()) return Outcome::Link;
   if (const std::size_t before = cluster_.size(); !fillNotches()) {
     return Outcome::Link;
   } else if (cluster_.size() > before) {
@@ -140,7 +141,7 @@ Outcome Part::tryContraction() {
   if (!sideGuard()) return Outcome::Side;
   sum_.moveBy(place_ - exact);
   applyContraction();
-  contracted_ += static_cast<Index>(cluster_.size() - 1);
+  done_ += static_cast<Index>(cluster_.size() - 1);
   return Outcome::Done;
 }
 
@@ -212,8 +213,11 @@ bool Part::gatherClusterRing() {
   } while (c != first);
   ring_[size_] = ring_[0];
   split_ = size_;
-  return size_ >= 3 && static_cast<Index>(size_) == atRing &&
-         std::none_of(ring_, ring_ + size_, [&](Index v) { return (flags_[v] & kNarrow) != 0; });
+  return size_ >= 3 && static_cast<Index>(size_) == atRing;
+}
+
+bool Part::isNarrowRing() const {
+  return std::any_of(ring_, ring_ + size_, [&](Index v) { return (flags_[v] & kNarrow) != 0; });
 }
 
 // Takes in vertices of the ring where it runs towards the place or back, as it may between cubes:
@@ -237,7 +241,7 @@ bool Part::fillNotches() {
       }
     }
     if (cluster_.size() == before) break;
-    if (!gatherClusterRing()) return false;
+    if (!gatherClusterRing() || isNarrowRing()) return false;
   }
   return true;
 }
@@ -261,7 +265,7 @@ Outcome Part::clusterShapeGuard() {
   return Outcome::Done;
 }
 
-// As distanceGuard(), where the reference is not rough.
+// As distanceGuard(). Clusters are left alone where the reference is rough.
 Outcome Part::clusterDistanceGuard(Index nearest) {
   taken_.clear();
   roughFaces_.clear();
@@ -281,13 +285,13 @@ Outcome Part::clusterDistanceGuard(Index nearest) {
   }
   if (!apexNear(nearest, nearest)) return Outcome::Apex;
   if (!crossingsNear()) return Outcome::Crossing;
-  return roughFaces_.empty() ? Outcome::Done : Outcome::Face;
+  return (isKnot_ ? facesNear() : roughFaces_.empty()) ? Outcome::Done : Outcome::Face;
 }
 
 // As samplesNear(); the new triangle of a sample is found by its angle.
 bool Part::clusterSamplesNear(Index t) {
   for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
-    if (reference_->isRough(sampleIds_[s])) return false;
+    if (!isKnot_ && reference_->isRough(sampleIds_[s])) return false;
     const Vec3f p = samples_[s].p - place_;
     const float* const next =
         std::upper_bound(turns_, turns_ + size_, turnOf(dot(p, frame_.x), dot(p, frame_.y)));

@@ -8,22 +8,30 @@ namespace tufa::reduce {
 
 void Part::collapseAll() {
   countSlivers();
+  proposeAll();
+  collapseProposed();
+  if (limits_.lines == LineMode::Free && contractKnots()) collapseProposed();
+}
+
+void Part::proposeAll() {
   for (Index c = 0; c < 3 * triangleCount_; ++c) {
     if (isDead(c / 3)) continue;
     const Index a = vertex_[nextCorner(c)], b = vertex_[previousCorner(c)];
     if (a < b || opposite_[c] == kNone) propose(a, b);
   }
+}
+
+void Part::collapseProposed() {
   Candidate e;
-  Index done = contracted_;
   while (pop(e)) {
     if (version_[e.a] != e.versionA || version_[e.b] != e.versionB) continue;
-    if (done >= limits_.quota) {
+    if (done_ >= limits_.quota) {
       ++counts_.overQuota;
       continue;  // until the queue is empty
     }
     const Outcome outcome = tryCollapse(e.a, e.b);
     ++counts_.collapses[static_cast<std::size_t>(outcome)];
-    done += outcome == Outcome::Done;
+    done_ += outcome == Outcome::Done;
   }
 }
 
@@ -103,11 +111,12 @@ Outcome Part::tryPlace(Index a, Index b, Vec3f place) {
   if (!box_.hasInside(place_)) return Outcome::Place;
   if (hasLines_ && !mayHold(a, b)) return Outcome::Place;
   if (const Outcome o = shapeGuard(a, b); o != Outcome::Done) return o;
-  if (isOn(Outcome::Fold) && !foldGuard(a, b)) return Outcome::Fold;
+  const Index merged[] = {a, b}, vanishing[] = {left_ / 3, right_ / 3};
+  if (isOn(Outcome::Fold) && !foldGuard(merged)) return Outcome::Fold;
   if (!ringGuard() && isOn(Outcome::Star)) return Outcome::Star;
   if (const Outcome o = distanceGuard(a, b); o != Outcome::Done) return o;
-  if (isOn(Outcome::Intersection) && starIntersects(a, b)) return Outcome::Intersection;
-  if (isOn(Outcome::Side) && (!sideGuard() || passesOver(a, b))) return Outcome::Side;
+  if (isOn(Outcome::Intersection) && starIntersects(merged)) return Outcome::Intersection;
+  if (isOn(Outcome::Side) && (!sideGuard() || passesOver(merged, vanishing))) return Outcome::Side;
   return Outcome::Done;
 }
 

@@ -217,7 +217,7 @@ struct Part::Changed {
 
   [[nodiscard]] Index vertex(Index t, int i) const {
     const Index c = 3 * t + static_cast<Index>(i), v = part.vertex_[c];
-    if (part.flip_[0] == kNone) return v == part.gone_ ? part.kept_ : v;
+    if (part.flip_[0] == kNone) return part.isMerged(v) ? part.kept_ : v;
     if (c == previousCorner(part.flip_[0])) return part.vertex_[part.flip_[1]];
     if (c == previousCorner(part.flip_[1])) return part.vertex_[part.flip_[0]];
     return v;
@@ -228,7 +228,9 @@ struct Part::Changed {
   }
   [[nodiscard]] Index across(Index t, int i) const {
     const Index c = 3 * t + static_cast<Index>(i);
-    const Index d = part.flip_[0] == kNone ? afterCollapse(part.opposite_[c]) : afterFlip(c);
+    const Index d = part.flip_[0] != kNone ? afterFlip(c)
+                    : part.isKnot_         ? afterContraction(c)
+                                           : afterCollapse(part.opposite_[c]);
     return d == kNone ? kNone : d / 3;
   }
 
@@ -239,6 +241,16 @@ struct Part::Changed {
     if (c == part.right_) return part.opposite_[previousCorner(part.right_)];
     if (c == previousCorner(part.right_)) return part.opposite_[part.right_];
     return c;
+  }
+  // At the ring's triangles, which have one merged vertex each.
+  [[nodiscard]] Index afterContraction(Index c) const {
+    const Index first = 3 * (c / 3);
+    Index corner = first;
+    while (corner < first + 3 && !part.isMerged(part.vertex_[corner])) ++corner;
+    if (corner == first + 3 || corner == c) return part.opposite_[c];
+    const int i = static_cast<int>(std::find(part.at_, part.at_ + part.size_, corner) - part.at_);
+    if (c == nextCorner(corner)) return previousCorner(part.at_[i + 1 == part.size_ ? 0 : i + 1]);
+    return nextCorner(part.at_[i == 0 ? part.size_ - 1 : i - 1]);
   }
   [[nodiscard]] Index afterFlip(Index c) const {
     for (int k = 0; k < 2; ++k) {

@@ -161,7 +161,7 @@ bool Part::flipIntersects(const Index* v) {
       made.corners[i][j] = position_[vertices[i][j]];
     }
   }
-  return intersects(made, kNone, kNone);
+  return intersects(made, false);
 }
 
 // The first triangle becomes (v0, v1, v3) at corner c and the next ones, the second (v3, v2, v0) at

@@ -67,9 +67,9 @@ Index Part::cornerVertex(Index t, std::size_t i) const {
 }
 
 // Whether one of the new triangles comes near a triangle that has no vertex in common with it and
-// stays, having neither `gone` nor `gone2`. Vertices of the new triangles have the stamp
+// stays, having none that is merged. Vertices of the new triangles have the stamp
 // ringStamp_: most triangles have none of them.
-bool Part::intersects(const NewTriangles& made, Index gone, Index gone2) {
+bool Part::intersects(const NewTriangles& made, bool isMerging) {
   if (made.count == 0) return false;
   if (!hasBoxList_) makeBoxList();
   Box3f boxes[kMostRing], whole;
@@ -84,7 +84,7 @@ bool Part::intersects(const NewTriangles& made, Index gone, Index gone2) {
     for (std::size_t j = 0; j < 3; ++j) {
       v[j] = cornerVertex(t, j);
       if (v[j] == kNone) continue;
-      if (v[j] == gone || v[j] == gone2) return false;
+      if (isMerging && isMerged(v[j])) return false;
       hasCommon |= stamp_[v[j]] == ringStamp_;
     }
     Vec3f other[3];
@@ -102,8 +102,9 @@ bool Part::intersects(const NewTriangles& made, Index gone, Index gone2) {
   });
 }
 
-bool Part::starIntersects(Index a, Index b) {
-  const unsigned atApex = flags_[a] | flags_[b];
+bool Part::starIntersects(std::span<const Index> merged) {
+  unsigned atApex = 0;
+  for (const Index v : merged) atApex |= flags_[v];
   unsigned all = atApex;
   for (int i = 0; i < size_; ++i) all |= flags_[ring_[i]];
   if ((all & kNarrow) == 0) return false;
@@ -116,26 +117,28 @@ bool Part::starIntersects(Index a, Index b) {
     Index* vertices = made.vertices[made.count++];
     vertices[0] = kNone, vertices[1] = x, vertices[2] = y;
   }
-  return intersects(made, a, b);
+  return intersects(made, true);
 }
 
 // Whether a component lies between the star as it was and as it would be: it would be passed over
 // without an intersection before or after. All triangles of such a component are inside, so one
 // point of each triangle whose box is will do: the two stars wind around it. Cost: nothing where
 // nothing is narrow, and few triangles are inside elsewhere.
-bool Part::passesOver(Index a, Index b) {
-  unsigned all = flags_[a] | flags_[b];
+bool Part::passesOver(std::span<const Index> merged, std::span<const Index> vanishing) {
+  unsigned all = 0;
+  for (const Index v : merged) all |= flags_[v];
   for (int i = 0; i < size_; ++i) all |= flags_[ring_[i]];
   if ((all & kNarrow) == 0) return false;
   if (!hasBoxList_) makeBoxList();
   Box3f whole;
-  for (const Vec3f& p : {position_[a], position_[b], place_}) whole.add(p);
+  whole.add(place_);
+  for (const Index v : merged) whole.add(position_[v]);
   for (int i = 0; i < size_; ++i) whole.add(position_[ring_[i]]);
   return boxList_.any(whole, [&](Index t, const Box3f& box) {
     if (!whole.hasInside(box.lower) || !whole.hasInside(box.upper)) return false;
     for (std::size_t j = 0; j < 3; ++j) {
       const Index v = cornerVertex(t, j);
-      if (v != kNone && (v == a || v == b || stamp_[v] == ringStamp_)) return false;
+      if (v != kNone && (isMerged(v) || stamp_[v] == ringStamp_)) return false;
     }
     Vec3f other[3];
     triangleAt(t, other);
@@ -143,12 +146,14 @@ bool Part::passesOver(Index a, Index b) {
     float winding = 0;
     for (int i = 0; i < size_; ++i) {
       const Vec3f x = position_[ring_[i]] - p, y = position_[ring_[i + 1]] - p;
-      winding += solidAngle(place_ - p, x, y) - solidAngle(position_[i < split_ ? a : b] - p, x, y);
+      winding += solidAngle(place_ - p, x, y);
     }
-    for (const Index gone : {left_ / 3, right_ / 3}) {
+    const auto without = [&](Index gone) {
       triangleAt(gone, other);
       winding -= solidAngle(other[0] - p, other[1] - p, other[2] - p);
-    }
+    };
+    for (int i = 0; i < size_; ++i) without(at_[i] / 3);
+    for (const Index gone : vanishing) without(gone);
     constexpr float kHalfTurn = 6.2831853f;  // 0 outside, 4 pi inside
     return std::abs(winding) > kHalfTurn;
   });

@@ -139,16 +139,16 @@ float Part::sharpestAfter() const {
 
 // A sharper turn than kFoldCosine passes only where the old star had one as sharp, which it has on
 // a wedge of the solid. Tiny faces count on neither side: a fold of theirs must not grow.
-bool Part::foldGuard(Index a, Index b) const {
+bool Part::foldGuard(std::span<const Index> merged) const {
   constexpr float kSlack = 0.01f;
   const float sharpest = sharpestAfter();
   if (sharpest >= kFoldCosine) return true;
-  return sharpest >= kSharpestCosine && sharpest >= sharpestBefore(a, b) - kSlack;
+  return sharpest >= kSharpestCosine && sharpest >= sharpestBefore(merged) - kSlack;
 }
 
-float Part::sharpestBefore(Index a, Index b) const {
+float Part::sharpestBefore(std::span<const Index> merged) const {
   float sharpest = 1;
-  for (const Index v : {a, b}) {
+  for (const Index v : merged) {
     Index c = corner_[v];
     do {
       const Index t = 3 * (c / 3);

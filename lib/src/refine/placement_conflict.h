@@ -12,8 +12,9 @@ namespace tufa::refine {
 struct Conflict {
   enum class Kind : std::uint8_t { SamePoint, Fold, Pair };
   Kind kind = Kind::SamePoint;
-  std::array<std::uint32_t, 2> parts{};  ///< the faces of a fold, the quads of a pair
-  std::array<VertexIndex, 2> edge{};     ///< of a fold; or the two vertices at one point
+  /// The faces of a fold; the quads of a pair; twice the quad of two vertices at one point.
+  std::array<std::uint32_t, 2> parts{};
+  std::array<VertexIndex, 2> edge{};  ///< of a fold; or the two vertices at one point
 };
 
 /// The vertices that a conflict is between.

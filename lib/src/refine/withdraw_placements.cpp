@@ -13,6 +13,7 @@
 #include "intersect/candidates.h"
 #include "intersect/surface.h"
 #include "refine/placement_conflict.h"
+#include "refine/placement_moves.h"
 #include "uniform/place_vertices.h"
 #include "uniform/quads.h"
 
@@ -34,12 +35,8 @@ constexpr double kSameCrease = 0.15;
 // Square voxels; a smaller face that is folded over, as beside vertices that stand close together
 // on a crease, is let be: to move them off the crease would change the surface more.
 constexpr double kLeastArea = 0.02;
-// Parts of the way to the next place, which are tried first.
-constexpr double kParts[] = {0.05, 0.1, 0.2, 0.4};
-// What a vertex has come to: it may take so many parts of the way to its plain point, and as many
-// from there to its mass point.
-constexpr std::uint8_t kMostParts = 6;
-constexpr std::uint8_t kAtPlain = kMostParts + 1, kAtMassPoint = 2 * kAtPlain;
+// A vertex that slides along its crease keeps so many voxels from the others of the conflict.
+constexpr double kApart = 0.1;
 // Sheets of a smaller cosine (140 degrees apart) may have faces that are a fold.
 constexpr double kSharpSheets = -0.766;
 // A face within this cosine (45 degrees) of a sheet lies on it.
@@ -55,10 +52,14 @@ struct EdgeFace {
 class PlacementGuard {
  public:
   PlacementGuard(uniform::UniformSurface& surface, double margin, base::Job& job)
-      : surface_(surface), mesh_(surface.mesh), margin_(margin), job_(job), polygons_(mesh_, job) {}
+      : surface_(surface),
+        mesh_(surface.mesh),
+        margin_(margin),
+        job_(job),
+        polygons_(mesh_, job),
+        placementMoves_(surface) {}
 
   Withdrawal run() {
-    steps_.assign(mesh_.positions.size(), 0);
     moved_.assign(mesh_.positions.size(), 0);
     beside_.assign(mesh_.positions.size(), 0);
     if (withdrawFrom(findCoincident())) {
@@ -128,13 +129,15 @@ class PlacementGuard {
     return (pointOf(a) - pointOf(b)).squaredLength() < distance * distance;
   }
 
+  // Whether one of a quad's triangles is turned over.
+  [[nodiscard]] bool isTurnedOver(std::uint32_t quad) const {
+    return !mesh_.normals.empty() && (isOff(2 * quad) || isOff(2 * quad + 1));
+  }
+
   // Vertices of one quad that were placed at the same point of a crease, at least one of them out
   // of its cell.
   std::vector<Conflict> findCoincident() {
     const uniform::VertexSheets& sheets = surface_.sheets;
-    const auto isTurnedOver = [&](std::uint32_t quad) {
-      return !mesh_.normals.empty() && (isOff(2 * quad) || isOff(2 * quad + 1));
-    };
     const auto coincide = [&](std::uint32_t quad, VertexIndex a, VertexIndex b) {
       return (sheets.isOutOfCell(a) || sheets.isOutOfCell(b)) && sheets.isSharp(a) &&
              sheets.isSharp(b) && isWithin(kSameCrease, a, b) &&
@@ -155,7 +158,7 @@ class PlacementGuard {
            return any;
          })) {
       visit(quad, [&](VertexIndex a, VertexIndex b) {
-        conflicts.push_back({Conflict::Kind::SamePoint, {}, {a, b}});
+        conflicts.push_back({Conflict::Kind::SamePoint, {quad, quad}, {a, b}});
       });
     }
     return conflicts;
@@ -273,13 +276,7 @@ class PlacementGuard {
     return out;
   }
 
-  // A place that a vertex may go to.
-  struct Move {
-    VertexIndex vertex;
-    Position to;
-    std::uint8_t step;  // places that it then has left
-    double distance2;
-  };
+  using Move = PlacementMove;
 
   // Makes the smallest move that settles each conflict. Whether there was any. In a crowd of more
   // conflicts than quads, as where every other sample is inside, all vertices go to their mass
@@ -296,8 +293,8 @@ class PlacementGuard {
     std::vector<std::optional<Move>> chosen(vertices.size());
     if (conflicts.size() > mesh_.quads.size()) {
       for (std::size_t slot = 0; slot < vertices.size(); ++slot) {
-        if (steps_[vertices[slot]] == kAtMassPoint) continue;
-        chosen[slot] = {vertices[slot], mass[slot], kAtMassPoint, 0};
+        if (placementMoves_.isAtMassPoint(vertices[slot])) continue;
+        chosen[slot] = PlacementMoves::toMassPoint(vertices[slot], mass[slot]);
       }
       return apply(chosen);
     }
@@ -307,10 +304,10 @@ class PlacementGuard {
       const Involved involved = involvedIn(conflict);
       for (int i = 0; i < involved.count; ++i) {
         const std::size_t slot = slotOf(involved.vertices[i]);
-        addMoves(involved.vertices[i], plain[slot], mass[slot], moves);
+        placementMoves_.add(involved.vertices[i], plain[slot], mass[slot], moves);
       }
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
-        return std::pair(a.distance2, a.vertex) < std::pair(b.distance2, b.vertex);
+        return std::pair(a.cost, a.vertex) < std::pair(b.cost, b.vertex);
       });
       if (const Move* move = settling(conflict, moves)) {
         std::optional<Move>& best = chosen[slotOf(move->vertex)];
@@ -337,39 +334,29 @@ class PlacementGuard {
     return vertices;
   }
 
-  // Part of the way to the next place, that place, and the mass point.
-  void addMoves(VertexIndex vertex, const Position& plain, const Position& mass,
-                std::vector<Move>& moves) const {
-    if (steps_[vertex] == kAtMassPoint) return;
-    const Vec3 at = pointOf(vertex);
-    const auto add = [&](const Vec3& to, std::uint8_t step) {
-      const double distance2 = (to - at).squaredLength();
-      if (distance2 > 0) moves.push_back({vertex, {to[0], to[1], to[2]}, step, distance2});
-    };
-    const bool isPlaced = steps_[vertex] < kAtPlain && !(plain == mesh_.positions[vertex]);
-    const std::uint8_t step = isPlaced ? steps_[vertex] : std::max(steps_[vertex], kAtPlain);
-    if (step != kAtPlain - 1 && step != kAtMassPoint - 1) {
-      const Vec3 way = Vec3(isPlaced ? plain : mass) - at;
-      for (const double share : kParts) add(at + way * share, static_cast<std::uint8_t>(step + 1));
-    }
-    if (isPlaced) add(Vec3(plain), kAtPlain);
-    add(Vec3(mass), kAtMassPoint);
-  }
-
   // The smallest move that settles a conflict, or else the smallest to a place of
   // its own.
   const Move* settling(const Conflict& conflict, const std::vector<Move>& moves) {
     for (const Move& move : moves) {
       const Position was = mesh_.positions[move.vertex];
       mesh_.positions[move.vertex] = move.to;
-      const bool settles = !isConflict(conflict);
+      const bool settles =
+          !isConflict(conflict) && (!move.isSlide || maySlide(move.vertex, conflict));
       mesh_.positions[move.vertex] = was;
       if (settles) return &move;
     }
-    const auto first = std::find_if(moves.begin(), moves.end(), [](const Move& move) {
-      return move.step == kAtPlain || move.step == kAtMassPoint;
-    });
+    const auto first = std::find_if(moves.begin(), moves.end(), PlacementMoves::isWhole);
     return first == moves.end() ? nullptr : &*first;
+  }
+
+  // Whether a vertex may stay where it has slid. Two at the same point of a crease may be in any
+  // order along it: in the wrong one a triangle is turned over.
+  [[nodiscard]] bool maySlide(VertexIndex vertex, const Conflict& conflict) const {
+    if (conflict.kind == Conflict::Kind::SamePoint && isTurnedOver(conflict.parts[0])) return false;
+    const Involved involved = involvedIn(conflict);
+    return std::none_of(
+        involved.vertices.begin(), involved.vertices.begin() + involved.count,
+        [&](VertexIndex other) { return other != vertex && isWithin(kApart, vertex, other); });
   }
 
   [[nodiscard]] bool isConflict(const Conflict& conflict) const {
@@ -389,7 +376,7 @@ class PlacementGuard {
 
   // Of several moves of a vertex the one that leaves it the fewest places is made.
   static bool leavesFewer(const Move& a, const Move& b) {
-    return std::tuple(b.step, b.distance2) < std::tuple(a.step, a.distance2);
+    return std::tuple(b.step, b.cost) < std::tuple(a.step, a.cost);
   }
 
   // Whether there was any.
@@ -399,10 +386,9 @@ class PlacementGuard {
       if (!chosen) continue;
       any = true;
       const Move& move = *chosen;
-      if (steps_[move.vertex] == 0) ++result_.vertices;
+      if (placementMoves_.note(move)) ++result_.vertices;
       mesh_.positions[move.vertex] = move.to;
-      steps_[move.vertex] = move.step;
-      if (move.step >= kAtPlain) surface_.sheets.withdraw(move.vertex);
+      if (PlacementMoves::leavesCrease(move)) surface_.sheets.withdraw(move.vertex);
       moved_[move.vertex] = 1;
     }
     return any;
@@ -423,7 +409,7 @@ class PlacementGuard {
   double margin_;
   base::Job& job_;
   intersect::Surface polygons_;
-  std::vector<std::uint8_t> steps_;     // places that each vertex has left
+  PlacementMoves placementMoves_;
   std::vector<std::uint8_t> moved_;     // vertices moved in the last round
   std::vector<std::uint32_t> touched_;  // quads of these
   std::vector<std::uint8_t> beside_;    // vertices of those

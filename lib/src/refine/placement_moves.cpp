@@ -1,0 +1,83 @@
+#include "refine/placement_moves.h"
+
+#include <algorithm>
+
+namespace tufa::refine {
+namespace {
+
+// Parts of the way to the next place, which are tried first.
+constexpr double kParts[] = {0.05, 0.1, 0.2, 0.4};
+// Voxels that a vertex may slide along its crease, and what their square counts beside other moves.
+constexpr double kSlides[] = {0.05, 0.1, 0.2, 0.3};
+constexpr double kCostOfSlide = 0.05;
+// What a vertex has come to: it may take so many parts of the way to its plain point, or slides,
+// and as many from there to its mass point.
+constexpr std::uint8_t kMostParts = 6;
+constexpr std::uint8_t kAtPlain = kMostParts + 1, kAtMassPoint = 2 * kAtPlain;
+
+}  // namespace
+
+void PlacementMoves::add(VertexIndex vertex, const Position& plain, const Position& mass,
+                         std::vector<PlacementMove>& moves) const {
+  if (isAtMassPoint(vertex)) return;
+  const Position& from = surface_.mesh.positions[vertex];
+  const Vec3 at(from);
+  const auto addTo = [&](const Vec3& to, std::uint8_t step) {
+    const double distance2 = (to - at).squaredLength();
+    if (distance2 > 0) moves.push_back({vertex, {to[0], to[1], to[2]}, step, distance2});
+  };
+  const bool isPlaced = steps_[vertex] < kAtPlain && !(plain == from);
+  if (isPlaced) addSlides(vertex, moves);
+  const std::uint8_t step = isPlaced ? steps_[vertex] : std::max(steps_[vertex], kAtPlain);
+  if (step != kAtPlain - 1 && step != kAtMassPoint - 1) {
+    const Vec3 way = Vec3(isPlaced ? plain : mass) - at;
+    for (const double share : kParts) addTo(at + way * share, static_cast<std::uint8_t>(step + 1));
+  }
+  if (isPlaced) addTo(Vec3(plain), kAtPlain);
+  addTo(Vec3(mass), kAtMassPoint);
+}
+
+void PlacementMoves::addSlides(VertexIndex vertex, std::vector<PlacementMove>& moves) const {
+  if (steps_[vertex] >= kMostParts) return;
+  const Vec3 at(surface_.mesh.positions[vertex]), along = alongCrease(vertex);
+  if (!(along.squaredLength() > 0)) return;
+  const auto step = static_cast<std::uint8_t>(steps_[vertex] + 1);
+  for (const double slide : kSlides) {
+    for (const double way : {slide, -slide}) {
+      const Vec3 to = at + along * way;
+      const double cost = kCostOfSlide * (to - at).squaredLength();
+      moves.push_back({vertex, {to[0], to[1], to[2]}, step, cost, true});
+    }
+  }
+}
+
+// One voxel along the crease that a vertex is on; 0 if it is on none, or at a corner.
+Vec3 PlacementMoves::alongCrease(VertexIndex vertex) const {
+  const uniform::MeetingSheets sheets = surface_.sheets.sheets(surface_.mesh, vertex);
+  if (sheets.count != 2) return Vec3(0);
+  Vec3 along = Vec3(sheets.normals[0]).cross(Vec3(sheets.normals[1]));
+  if (!along.normalize()) return Vec3(0);
+  return along * surface_.affine().voxelSize();
+}
+
+PlacementMove PlacementMoves::toMassPoint(VertexIndex vertex, const Position& mass) {
+  return {vertex, mass, kAtMassPoint, 0};
+}
+
+bool PlacementMoves::isAtMassPoint(VertexIndex vertex) const {
+  return steps_[vertex] == kAtMassPoint;
+}
+
+bool PlacementMoves::isWhole(const PlacementMove& move) {
+  return move.step == kAtPlain || move.step == kAtMassPoint;
+}
+
+bool PlacementMoves::leavesCrease(const PlacementMove& move) { return move.step >= kAtPlain; }
+
+bool PlacementMoves::note(const PlacementMove& move) {
+  const bool isFirst = steps_[move.vertex] == 0;
+  steps_[move.vertex] = move.step;
+  return isFirst;
+}
+
+}  // namespace tufa::refine

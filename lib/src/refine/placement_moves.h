@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "uniform/uniform_surface.h"
+
+namespace tufa::refine {
+
+/// A place that a vertex may go to.
+struct PlacementMove {
+  VertexIndex vertex;
+  Position to;
+  std::uint8_t step;  ///< places that it then has left
+  double cost;        ///< the square of the way; of a slide, less
+  bool isSlide = false;
+};
+
+/// The moves of vertices that were placed at creases: along the crease, which leaves the surface
+/// where it was; in part towards the point of the QEF, all the way, and from there on towards the
+/// mass point. Each vertex makes few of them, so withdrawals end.
+class PlacementMoves {
+ public:
+  explicit PlacementMoves(const uniform::UniformSurface& surface)
+      : surface_(surface), steps_(surface.mesh.positions.size(), 0) {}
+
+  /// Adds those that a vertex has. `plain`, `mass`: its point by the QEF and its mass point.
+  void add(VertexIndex vertex, const Position& plain, const Position& mass,
+           std::vector<PlacementMove>& moves) const;
+  /// To the mass point at once.
+  [[nodiscard]] static PlacementMove toMassPoint(VertexIndex vertex, const Position& mass);
+  [[nodiscard]] bool isAtMassPoint(VertexIndex vertex) const;
+  /// Whether a move ends at a place of its own, not somewhere on the way.
+  [[nodiscard]] static bool isWhole(const PlacementMove& move);
+  /// Whether a vertex has left the crease by a move.
+  [[nodiscard]] static bool leavesCrease(const PlacementMove& move);
+  /// Notes that a move was made. Whether it is the vertex's first.
+  bool note(const PlacementMove& move);
+
+ private:
+  [[nodiscard]] Vec3 alongCrease(VertexIndex vertex) const;
+  void addSlides(VertexIndex vertex, std::vector<PlacementMove>& moves) const;
+
+  const uniform::UniformSurface& surface_;
+  std::vector<std::uint8_t> steps_;  ///< places that each vertex has left
+};
+
+}  // namespace tufa::refine
