@@ -176,7 +176,7 @@ class ChunkBuilder {
     if (model.mesh().positions.empty()) return index;
     job_.beginStage("cut", kCutEnd);
     chunks::CutMesh cut =
-        chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, job_);
+        chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, isSingle, job_);
     chunks::partRounded(cut, model.affine(), isSingle, job_);
     chunks::keepApart(cut, model.affine(), isSingle, job_);
     // The farthest that a vertex moves to the lattice.

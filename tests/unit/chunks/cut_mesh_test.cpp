@@ -24,7 +24,8 @@ struct Cut {
   CutMesh mesh;
 
   explicit Cut(const openvdb::FloatGrid::Ptr& grid)
-      : model(grid), mesh(cutAtChunks(model.mesh(), model.model().affine(), kSize, model.job())) {}
+      : model(grid),
+        mesh(cutAtChunks(model.mesh(), model.model().affine(), kSize, true, model.job())) {}
 
   [[nodiscard]] Vec3 latticeOf(VertexIndex v) const {
     return model.model().affine().latticePoint(mesh.mesh.positions[v], Coord(0));
@@ -91,7 +92,7 @@ TEST(CutMesh, IsTheSameForAnyNumberOfThreads) {
     CutMesh out;
     job.run([&] {
       const test::ModelOf model(test::ballOf(21.3, 0.5), options);
-      out = cutAtChunks(model.mesh(), model.model().affine(), kSize, job);
+      out = cutAtChunks(model.mesh(), model.model().affine(), kSize, true, job);
     });
     return out;
   };
@@ -109,9 +110,11 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
                                  {6, 2, 1}, {6, 3, 2}, {6, 4, 3}, {6, 5, 4}, {6, 1, 5}};
   };
   std::vector<Triangle> joined = octahedron();
+  std::vector<VertexIndex> changed;
   const auto always = [](VertexIndex, VertexIndex) { return true; };
-  EXPECT_NEAR(joinNearVertices(points, 1e-3, always, joined), 1e-5, 1e-12);
+  EXPECT_NEAR(joinNearVertices(points, 1e-3, always, joined, changed), 1e-5, 1e-12);
   EXPECT_EQ(joined.size(), 8U);
+  EXPECT_EQ(changed, std::vector<VertexIndex>{4});
   Mesh mesh;
   mesh.positions.assign(points.begin(), points.end());
   mesh.triangles = joined;
@@ -119,12 +122,12 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
   EXPECT_EQ(test::inspect(mesh).nonManifoldEdges, 0U);
   std::vector<Triangle> kept = octahedron();
   const auto never = [](VertexIndex, VertexIndex) { return false; };
-  EXPECT_EQ(joinNearVertices(points, 1e-3, never, kept), 0);
+  EXPECT_EQ(joinNearVertices(points, 1e-3, never, kept, changed), 0);
   EXPECT_EQ(kept, octahedron());
   // An edge of a tetrahedron cannot go, however short.
   const std::vector<Vec3> few = {{0, 0, 0}, {1e-5, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  EXPECT_EQ(joinNearVertices(few, 1e-3, always, tetrahedron), 0);
+  EXPECT_EQ(joinNearVertices(few, 1e-3, always, tetrahedron, changed), 0);
   EXPECT_EQ(tetrahedron.size(), 4U);
 }
 
@@ -132,7 +135,15 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
 TEST(FlipCaps, TurnsTheEdgeThatAVertexLiesOn) {
   const std::vector<Vec3> points = {{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, 1e-6, 0}};
   std::vector<Triangle> triangles = {{0, 1, 2}, {1, 0, 3}};
-  flipCaps(points, 1e-4, triangles);
+  std::vector<VertexIndex> changed;
+  const std::vector<Triangle> before = triangles;
+  flipCaps(
+      points, 1e-4, [](VertexIndex v) { return v == 2; }, triangles, changed);
+  EXPECT_EQ(triangles, before);
+  EXPECT_TRUE(changed.empty());
+  flipCaps(
+      points, 1e-4, [](VertexIndex) { return false; }, triangles, changed);
+  EXPECT_EQ(changed.size(), 4U);
   ASSERT_EQ(triangles.size(), 2U);
   for (const Triangle& t : triangles) {
     const Vec3 n = (points[t.vertices[1]] - points[t.vertices[0]])

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 
+#include "base/single_precision.h"
 #include "base/vec3.h"
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
@@ -28,6 +30,8 @@ constexpr Move kMoves[] = {{5e-3, 0.9, 0.25}, {5e-4, 0.05, 0.02}, {2e-5, -2, 0}}
 // Voxels; shorter edges are collapsed once they are cut. Slivers are cut in places that single
 // precision does not tell apart.
 constexpr double kLeastEdge = 1e-3;
+// Where triangles intersect once they are rounded, these, until they do not.
+constexpr double kRoundedEdges[] = {2e-3, 4e-3, 8e-3};
 // Voxels; lower caps are flipped.
 constexpr double kLeastHeight = 1e-4;
 
@@ -37,23 +41,25 @@ using Place = std::int64_t;
 
 class Cutter {
  public:
-  Cutter(const Mesh& uniform, const grid::Affine& affine, int size, base::Job& job)
-      : uniform_(uniform), affine_(affine), size_(size), job_(job) {}
+  Cutter(const Mesh& uniform, const grid::Affine& affine, int size, bool singlePrecision,
+         base::Job& job)
+      : uniform_(uniform),
+        affine_(affine),
+        size_(size),
+        singlePrecision_(singlePrecision),
+        job_(job) {}
 
   CutMesh run() {
     load();
-    flipCaps(at_, kLeastHeight, out_.mesh.triangles);
+    flipAllCaps();
     for (int axis = 0; axis < 3; ++axis) {
       setPlaces(axis);
       for (const Move& move : kMoves) moveToPlanes(axis, move);
       cut(axis);
-      joined_ += joinNearVertices(
-                     at_, kLeastEdge,
-                     [this](VertexIndex v, VertexIndex into) { return mayGoInto(v, into); },
-                     out_.mesh.triangles) *
-                 voxelsOfStep();
-      flipCaps(at_, kLeastHeight, out_.mesh.triangles);
+      joinAll(kLeastEdge, [](VertexIndex) { return true; });
+      flipAllCaps();
     }
+    joinWhereRounded();
     out_.moved += joined_ + kLeastHeight * voxelsOfStep();
     finish();
     return std::move(out_);
@@ -150,7 +156,7 @@ class Cutter {
       if (target[v] == kStays) continue;
       before[v] = std::exchange(at_[v][axis], target[v]);
     }
-    returnIntersecting(axis, touched, before);
+    returnIntersecting(axis, before);
     for (std::size_t v = 0; v < at_.size(); ++v) {
       if (before[v] == kStays) continue;
       moved_[v] += std::abs(at_[v][axis] - before[v]) * perVoxel;
@@ -159,24 +165,101 @@ class Cutter {
     }
   }
 
+  void flipAllCaps() {
+    unlessIntersecting([this](const Stays& stays, std::vector<VertexIndex>& changed) {
+      flipCaps(at_, kLeastHeight, stays, out_.mesh.triangles, changed);
+    });
+  }
+
+  // Collapses short edges between vertices that `are` to be.
+  template <class Are>
+  void joinAll(double least, const Are& are) {
+    double longest = 0;
+    unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
+      const auto mayGo = [&](VertexIndex v, VertexIndex into) {
+        return are(v) && are(into) && !stays(v) && !stays(into) && mayGoInto(v, into);
+      };
+      longest = joinNearVertices(at_, least, mayGo, out_.mesh.triangles, changed);
+    });
+    joined_ += longest * voxelsOfStep();
+  }
+
+  // Changes triangles, but around vertices where that makes some intersect others. `change` gets
+  // what tells these, and a list for the vertices whose triangles it has changed.
+  using Stays = std::function<bool(VertexIndex)>;
+  template <class Change>
+  void unlessIntersecting(const Change& change) {
+    const std::vector<Triangle> before = out_.mesh.triangles;
+    std::vector<std::uint8_t> stays(at_.size(), 0);
+    for (bool isAny = true; isAny;) {
+      std::vector<VertexIndex> changed;
+      change([&](VertexIndex v) { return stays[v] != 0; }, changed);
+      std::vector<std::uint8_t> isChanged(at_.size(), 0);
+      for (const VertexIndex v : changed) isChanged[v] = 1;
+      isAny = false;
+      for (const intersect::PolygonPair& pair : pairsAt(at_, isChanged)) {
+        for (const std::uint32_t t : {pair.a, pair.b}) {
+          for (const VertexIndex v : out_.mesh.triangles[t].vertices) {
+            if (isChanged[v] != 0 && stays[v] == 0) stays[v] = 1, isAny = true;
+          }
+        }
+      }
+      if (isAny) out_.mesh.triangles = before;
+    }
+  }
+
+  // At triangles that were cut: those of the uniform mesh are known not to intersect.
+  void joinWhereRounded() {
+    std::vector<Vec3> rounded(at_.size());
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      const Position world =
+          affine_.toWorld(affine_.position(affine_.origin(), at_[v][0], at_[v][1], at_[v][2]));
+      rounded[v] = Vec3(singlePrecision_ ? base::toSingle(world) : world);
+    }
+    std::vector<std::uint8_t> isNew(at_.size(), 0);
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      isNew[v] = v >= uniform_.positions.size() || moved_[v] > 0 ? 1 : 0;
+    }
+    for (const double least : kRoundedEdges) {
+      const std::vector<intersect::PolygonPair> pairs = pairsAt(rounded, isNew);
+      if (pairs.empty()) return;
+      std::vector<std::uint8_t> isMeeting(at_.size(), 0);
+      for (const intersect::PolygonPair& pair : pairs) {
+        for (const std::uint32_t t : {pair.a, pair.b}) {
+          for (const VertexIndex v : out_.mesh.triangles[t].vertices) isMeeting[v] = 1;
+        }
+      }
+      joinAll(least, [&](VertexIndex v) { return isMeeting[v] != 0; });
+    }
+  }
+
+  // Pairs of which one triangle has a marked vertex.
+  [[nodiscard]] std::vector<intersect::PolygonPair> pairsAt(
+      const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marks) const {
+    std::vector<std::uint32_t> touched;
+    for (std::uint32_t t = 0; t < out_.mesh.triangles.size(); ++t) {
+      const auto& v = out_.mesh.triangles[t].vertices;
+      if (marks[v[0]] != 0 || marks[v[1]] != 0 || marks[v[2]] != 0) touched.push_back(t);
+    }
+    if (touched.empty()) return {};
+    Mesh mesh;
+    mesh.triangles = out_.mesh.triangles;
+    mesh.positions.assign(points.begin(), points.end());
+    return intersect::findPairs(intersect::Surface(mesh, job_), touched, job_);
+  }
+
   // Puts vertices back whose move makes some of the triangles intersect others: where sheets nearly
   // touch, moves as small as these do. `before`: their coordinates, infinite for those not moved.
-  void returnIntersecting(int axis, const std::vector<std::uint32_t>& touched,
-                          const std::vector<double>& before) {
-    if (touched.empty()) return;
-    Mesh moved;
-    moved.triangles = out_.mesh.triangles;
-    moved.positions.resize(at_.size());
-    for (std::size_t v = 0; v < at_.size(); ++v) moved.positions[v] = at_[v];
+  void returnIntersecting(int axis, const std::vector<double>& before) {
+    std::vector<std::uint8_t> isMoved(at_.size(), 0);
+    for (std::size_t v = 0; v < at_.size(); ++v) isMoved[v] = std::isinf(before[v]) ? 0 : 1;
     for (bool isAny = true; isAny;) {
       isAny = false;
-      const intersect::Surface surface(moved, job_);
-      for (const intersect::PolygonPair& pair : intersect::findPairs(surface, touched, job_)) {
+      for (const intersect::PolygonPair& pair : pairsAt(at_, isMoved)) {
         for (const std::uint32_t t : {pair.a, pair.b}) {
-          for (const VertexIndex v : moved.triangles[t].vertices) {
+          for (const VertexIndex v : out_.mesh.triangles[t].vertices) {
             if (std::isinf(before[v]) || at_[v][axis] == before[v]) continue;
             at_[v][axis] = before[v];
-            moved.positions[v] = at_[v];
             isAny = true;
           }
         }
@@ -355,6 +438,7 @@ class Cutter {
   const Mesh& uniform_;
   const grid::Affine& affine_;
   std::int64_t size_;
+  bool singlePrecision_;
   base::Job& job_;
   CutMesh out_;
   std::vector<Vec3> at_;  ///< lattice points, counted from the origin of positions
@@ -366,8 +450,9 @@ class Cutter {
 
 }  // namespace
 
-CutMesh cutAtChunks(const Mesh& uniform, const grid::Affine& affine, int size, base::Job& job) {
-  return Cutter(uniform, affine, size, job).run();
+CutMesh cutAtChunks(const Mesh& uniform, const grid::Affine& affine, int size, bool singlePrecision,
+                    base::Job& job) {
+  return Cutter(uniform, affine, size, singlePrecision, job).run();
 }
 
 }  // namespace tufa::chunks

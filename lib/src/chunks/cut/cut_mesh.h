@@ -38,8 +38,9 @@ struct CutMesh {
 ///
 /// Vertices within half a hundredth of a voxel of a plane are moved to it unless that turns a
 /// triangle: flat faces of parts often lie in such planes but for rounding, and would be shredded.
-/// Cost: linear, some 100 ns a triangle.
+/// Short edges that are cut where single precision, if positions are to be written in it, does not
+/// tell their vertices apart are collapsed. Cost: linear, some 100 ns a triangle.
 [[nodiscard]] CutMesh cutAtChunks(const Mesh& uniform, const grid::Affine& affine, int size,
-                                  base::Job& job);
+                                  bool singlePrecision, base::Job& job);
 
 }  // namespace tufa::chunks

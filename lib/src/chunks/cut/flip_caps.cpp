@@ -16,8 +16,10 @@ std::uint64_t keyOf(VertexIndex from, VertexIndex to) { return std::uint64_t{fro
 
 class CapFlipper {
  public:
-  CapFlipper(const std::vector<Vec3>& points, double height, std::vector<Triangle>& triangles)
-      : points_(points), height_(height), triangles_(triangles) {}
+  CapFlipper(const std::vector<Vec3>& points, double height,
+             const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
+             std::vector<VertexIndex>& changed)
+      : points_(points), height_(height), stays_(stays), triangles_(triangles), changed_(changed) {}
 
   // Whether there were any.
   bool pass() {
@@ -77,6 +79,7 @@ class CapFlipper {
     for (const VertexIndex v : triangles_[other].vertices) {
       if (v != p && v != q) s = v;
     }
+    if (stays_(p) || stays_(q) || stays_(r) || stays_(s)) return false;
     if (s == r || heightOver(p, q, s) < kHigher * height_ || behind_.contains(keyOf(r, s)) ||
         behind_.contains(keyOf(s, r))) {
       return false;
@@ -87,19 +90,24 @@ class CapFlipper {
     triangles_[other] = {r, s, q};
     note(t);
     note(other);
+    changed_.insert(changed_.end(), {p, q, r, s});
     return true;
   }
 
   const std::vector<Vec3>& points_;
   double height_;
+  const std::function<bool(VertexIndex)>& stays_;
   std::vector<Triangle>& triangles_;
+  std::vector<VertexIndex>& changed_;
   std::unordered_map<std::uint64_t, std::uint32_t> behind_;  ///< the triangle left of an edge
 };
 
 }  // namespace
 
-void flipCaps(const std::vector<Vec3>& points, double height, std::vector<Triangle>& triangles) {
-  CapFlipper flipper(points, height, triangles);
+void flipCaps(const std::vector<Vec3>& points, double height,
+              const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
+              std::vector<VertexIndex>& changed) {
+  CapFlipper flipper(points, height, stays, triangles, changed);
   for (int i = 0; i < kMostPasses && flipper.pass(); ++i) {
   }
 }

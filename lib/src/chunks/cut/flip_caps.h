@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <functional>
 #include <vector>
 
 #include "base/vec3.h"
@@ -9,7 +10,11 @@ namespace tufa::chunks {
 
 /// Flips the longest edges of caps: triangles with a vertex nearer than `height` to the edge
 /// opposite it, between its ends. Vertices in a row along a crease make such triangles, which
-/// rounding turns over. The surface moves by `height` at most.
-void flipCaps(const std::vector<Vec3>& points, double height, std::vector<Triangle>& triangles);
+/// rounding turns over. The surface moves by `height` at most. Triangles with a vertex that
+/// `stays` are left as they are; adds the vertices of both triangles of each edge flipped to
+/// `changed`.
+void flipCaps(const std::vector<Vec3>& points, double height,
+              const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
+              std::vector<VertexIndex>& changed);
 
 }  // namespace tufa::chunks

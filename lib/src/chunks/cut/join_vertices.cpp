@@ -18,8 +18,12 @@ class Joiner {
  public:
   Joiner(const std::vector<Vec3>& points, double least,
          const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
-         std::vector<Triangle>& triangles)
-      : points_(points), least_(least), mayGoInto_(mayGoInto), triangles_(triangles) {}
+         std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed)
+      : points_(points),
+        least_(least),
+        mayGoInto_(mayGoInto),
+        triangles_(triangles),
+        changed_(changed) {}
 
   double run() {
     std::vector<Edge> edges;
@@ -41,6 +45,7 @@ class Joiner {
       longest = std::max(longest, (points_[a] - points_[b]).length());
       join(a, b);
       into.emplace(b, a);
+      changed_.push_back(a);
     }
     std::erase_if(triangles_, [](const Triangle& t) { return has(t, kGone); });
     return longest;
@@ -109,6 +114,7 @@ class Joiner {
   double least_;
   const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto_;
   std::vector<Triangle>& triangles_;
+  std::vector<VertexIndex>& changed_;
   std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around_;
 };
 
@@ -116,8 +122,8 @@ class Joiner {
 
 double joinNearVertices(const std::vector<Vec3>& points, double least,
                         const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
-                        std::vector<Triangle>& triangles) {
-  return Joiner(points, least, mayGoInto, triangles).run();
+                        std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed) {
+  return Joiner(points, least, mayGoInto, triangles, changed).run();
 }
 
 }  // namespace tufa::chunks
