@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kWorstSine2 = 3e-4f;   // squared sine of 1 degree: no new sliver is as sharp
 constexpr float kNoNormal = 0.001f;    // of 1.8 degrees: the normal of such a sliver says little
+constexpr float kFoldFace2 = 0.01f;    // of faces of 0.05 square voxels, whose folds show
 constexpr float kLeastLength = 1e-6f;  // of a cross product, in squared voxels: no area at all
 
 }  // namespace
@@ -138,7 +139,7 @@ float Part::sharpestAfter() const {
 }
 
 // A sharper turn than kFoldCosine passes only where the old star had one as sharp, which it has on
-// a wedge of the solid. Tiny faces count on neither side: a fold of theirs must not grow.
+// a wedge of the solid. Small faces do not count there: a fold of theirs must not grow.
 bool Part::foldGuard(std::span<const Index> merged) const {
   constexpr float kSlack = 0.01f;
   const float sharpest = sharpestAfter();
@@ -154,10 +155,10 @@ float Part::sharpestBefore(std::span<const Index> merged) const {
       const Index t = 3 * (c / 3);
       const Vec3f p = position_[vertex_[t]];
       const Vec3f own = cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p);
-      if (squaredLength(own) > kTinyFace2) {
+      if (squaredLength(own) > kFoldFace2) {
         for (const Index edge : {c, nextCorner(c)}) {
           const Vec3f outer = outerNormal(edge);
-          if (squaredLength(outer) > kTinyFace2) {
+          if (squaredLength(outer) > kFoldFace2) {
             sharpest = std::min(sharpest, dot(unit(own), unit(outer)));
           }
         }
