@@ -86,6 +86,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   if (lines == LineMode::Alone) beginLines();
   if (tolerance < kLeastTolerance) return;
   lines_ = lines;
+  keepsShape_ = true;
   const std::vector<float> scales = reference_.scales();
   const float toleranceBefore = tolerance_;
   std::optional<Surface> before;
@@ -220,6 +221,7 @@ void Reduction::restore(const State& state) {
 // count is that of the tolerance that gives as many triangles.
 float Reduction::toCount(Index count, float mostTolerance) {
   attempt_ = 0;
+  keepsShape_ = true;
   const auto isReached = [&] { return triangleCount() <= count + 1; };
   const auto reduceTo = [&](float tolerance, int phases) {
     trees_.clear(), nextTree_ = 0;
@@ -230,7 +232,8 @@ float Reduction::toCount(Index count, float mostTolerance) {
     return tolerance_;
   }
   State start = state(), last = start;
-  float low = tolerance_, high = std::clamp(tolerance_ * kStep, kFirstTolerance, mostTolerance);
+  float low = tolerance_,
+        high = std::min(std::max(tolerance_ * kStep, kFirstTolerance), mostTolerance);
   for (int stuck = 0;;) {
     const Index before = triangleCount();
     State next = state();

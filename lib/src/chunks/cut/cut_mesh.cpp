@@ -11,6 +11,7 @@
 #include "base/vec3.h"
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
+#include "chunks/cut/name_planes.h"
 #include "intersect/surface.h"
 
 namespace tufa::chunks {
@@ -30,14 +31,10 @@ constexpr Move kMoves[] = {{5e-3, 0.9, 0.25}, {5e-4, 0.05, 0.02}, {2e-5, -2, 0}}
 // Voxels; shorter edges are collapsed once they are cut. Slivers are cut in places that single
 // precision does not tell apart.
 constexpr double kLeastEdge = 1e-3;
-// Where triangles intersect once they are rounded, these, until they do not.
+// Where triangles intersect once they are rounded, edges shorter than these, one after the other.
 constexpr double kRoundedEdges[] = {2e-3, 4e-3, 8e-3};
 // Voxels; lower caps are flipped.
 constexpr double kLeastHeight = 1e-4;
-
-// Where a coordinate lies among the planes across an axis: 2n on plane n, 2n + 1 between planes n
-// and n + 1.
-using Place = std::int64_t;
 
 class Cutter {
  public:
@@ -171,21 +168,22 @@ class Cutter {
     });
   }
 
-  // Collapses short edges between vertices that `are` to be.
-  template <class Are>
-  void joinAll(double least, const Are& are) {
+  // Collapses short edges, those of which both ends `isWanted`.
+  template <class IsWanted>
+  void joinAll(double least, const IsWanted& isWanted) {
     double longest = 0;
     unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
       const auto mayGo = [&](VertexIndex v, VertexIndex into) {
-        return are(v) && are(into) && !stays(v) && !stays(into) && mayGoInto(v, into);
+        return isWanted(v) && isWanted(into) && !stays(v) && !stays(into) && mayGoInto(v, into);
       };
       longest = joinNearVertices(at_, least, mayGo, out_.mesh.triangles, changed);
     });
     joined_ += longest * voxelsOfStep();
   }
 
-  // Changes triangles, but around vertices where that makes some intersect others. `change` gets
-  // what tells these, and a list for the vertices whose triangles it has changed.
+  // Makes a change to the triangles, except around vertices where it would make some of them
+  // intersect. `change` is told which vertices these are, and lists those whose triangles it has
+  // changed.
   using Stays = std::function<bool(VertexIndex)>;
   template <class Change>
   void unlessIntersecting(const Change& change) {
@@ -208,7 +206,8 @@ class Cutter {
     }
   }
 
-  // At triangles that were cut: those of the uniform mesh are known not to intersect.
+  // Where triangles that were cut intersect once they are rounded, collapses their short edges.
+  // Those of the uniform mesh are known not to.
   void joinWhereRounded() {
     std::vector<Vec3> rounded(at_.size());
     for (std::size_t v = 0; v < at_.size(); ++v) {
@@ -340,7 +339,7 @@ class Cutter {
     const double x = coordinateOf(axis, plane / 2);
     const double share = (x - at_[a][axis]) / (at_[b][axis] - at_[a][axis]);
     Vec3 p = at_[a] + (at_[b] - at_[a]) * share;
-    std::array<Place, 3> place{};
+    PlacesAmongPlanes place{};
     for (int i = 0; i < 3; ++i) {
       p[i] = std::clamp(p[i], std::min(at_[a][i], at_[b][i]), std::max(at_[a][i], at_[b][i]));
       if (i == axis) p[i] = x;
@@ -380,7 +379,7 @@ class Cutter {
         out_.chunkOf[t] = static_cast<std::uint32_t>(found - out_.chunks.begin());
       }
     });
-    namePlanes();
+    namePlanes(place_, out_);
   }
 
   [[nodiscard]] Coord chunkAt(const Triangle& t) const {
@@ -398,43 +397,6 @@ class Cutter {
     return chunk;
   }
 
-  // Those with chunks on both sides at the vertex: a flat face in a plane is all on one side.
-  void namePlanes() {
-    struct Range {
-      std::int32_t least = std::numeric_limits<std::int32_t>::max();
-      std::int32_t greatest = std::numeric_limits<std::int32_t>::min();
-    };
-    std::vector<std::array<Range, 3>> around(at_.size());
-    for (std::size_t t = 0; t < out_.chunkOf.size(); ++t) {
-      const Coord& chunk = out_.chunks[out_.chunkOf[t]];
-      for (const VertexIndex v : out_.mesh.triangles[t].vertices) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          Range& range = around[v][axis];
-          const std::int32_t at = chunk[static_cast<int>(axis)];
-          range.greatest = std::max(range.greatest, at);
-          range.least = std::min(range.least, at);
-        }
-      }
-    }
-    constexpr std::array<std::uint32_t, 3> kNone = {ChunkPlane::kNone, ChunkPlane::kNone,
-                                                    ChunkPlane::kNone};
-    out_.planesOf.assign(at_.size(), kNone);
-    std::unordered_map<std::int64_t, std::uint32_t> numbers;
-    for (std::size_t v = 0; v < at_.size(); ++v) {
-      std::size_t count = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const Place place = placeAt(static_cast<VertexIndex>(v), axis);
-        const Range& range = around[v][static_cast<std::size_t>(axis)];
-        if ((place & 1) != 0 || range.least >= range.greatest) continue;
-        const std::int64_t n = place / 2;
-        const auto [found, isNew] =
-            numbers.emplace(3 * n + axis, static_cast<std::uint32_t>(out_.planes.size()));
-        if (isNew) out_.planes.push_back({axis, static_cast<std::int32_t>(n)});
-        out_.planesOf[v][count++] = found->second;
-      }
-    }
-  }
-
   const Mesh& uniform_;
   const grid::Affine& affine_;
   std::int64_t size_;
@@ -442,7 +404,7 @@ class Cutter {
   base::Job& job_;
   CutMesh out_;
   std::vector<Vec3> at_;  ///< lattice points, counted from the origin of positions
-  std::vector<std::array<Place, 3>> place_;
+  std::vector<PlacesAmongPlanes> place_;
   double joined_ = 0;          ///< the longest edges that were collapsed, voxels
   std::vector<double> moved_;  ///< how far each vertex was moved to planes, voxels
   std::unordered_map<std::uint64_t, VertexIndex> cuts_;
