@@ -130,8 +130,9 @@ TEST_F(ChunksCommand, CancelledRunsLeaveTheFirstResult) {
   makeChunks("--quiet");
   int cancelled = 0;
   for (int milliseconds = 5; milliseconds <= 400; milliseconds += milliseconds / 4 + 5) {
-    const std::string before =
-        "timeout --preserve-status -s INT " + std::to_string(milliseconds * 1e-3) + " ";
+    // Otherwise it signals its group as well, and a second interrupt ends the command at once.
+    const std::string before = "timeout --foreground --preserve-status -s INT " +
+                               std::to_string(milliseconds * 1e-3) + " ";
     const int exitCode = run(second, "", before).exitCode;
     if (exitCode == 0) {
       EXPECT_EQ(contents(), replaced);
