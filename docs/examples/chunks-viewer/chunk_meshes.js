@@ -31,20 +31,20 @@ export class ChunkMeshes {
     this.index = index;
     this.url = url;
     this.loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
-    this.levels = new Map(); // "chunk/level" -> null while it is on its way
+    this.levels = index.chunks.map(() => []); // of each chunk by level; null while on its way
     this.queue = [];
     this.loading = 0;
   }
 
   /// Whether the mesh is here; if not, it is asked for.
   has(chunk, level) {
-    const key = `${chunk}/${level}`;
-    if (!this.levels.has(key)) {
-      this.levels.set(key, null);
-      this.queue.push([chunk, level, key]);
+    const levels = this.levels[chunk];
+    if (levels[level] === undefined) {
+      levels[level] = null;
+      this.queue.push([chunk, level]);
       this.pump();
     }
-    return this.levels.get(key) !== null;
+    return levels[level] !== null;
   }
 
   /// Meshes that are on their way.
@@ -54,16 +54,16 @@ export class ChunkMeshes {
 
   /// Forgets the wishes that no load has begun for.
   forgetQueue() {
-    for (const [, , key] of this.queue) this.levels.delete(key);
+    for (const [chunk, level] of this.queue) this.levels[chunk][level] = undefined;
     this.queue = [];
   }
 
   pump() {
     while (this.loading < kParallelLoads && this.queue.length > 0) {
-      const [chunk, level, key] = this.queue.shift();
+      const [chunk, level] = this.queue.shift();
       ++this.loading;
       this.load(chunk, level)
-        .then((parts) => this.levels.set(key, parts))
+        .then((parts) => (this.levels[chunk][level] = parts))
         .catch((error) => {
           this.failure = error;
           console.error(error);
@@ -95,7 +95,7 @@ export class ChunkMeshes {
   /// What to draw of a chunk at a level: its interior, and for each face the strip that the mask
   /// says. Groups 0, 1 and 2 are the interior, the regular strips and those to coarser chunks.
   geometry(chunk, level, mask) {
-    const { attributes, parts } = this.levels.get(`${chunk}/${level}`);
+    const { attributes, parts } = this.levels[chunk][level];
     const geometry = new THREE.BufferGeometry();
     if (!attributes) return geometry;
     const isCoarser = (face) => (mask >> face) & 1;
