@@ -36,7 +36,9 @@ class Viewer {
     document.body.prepend(this.renderer.domElement);
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(kBackground);
-    this.scene.add(new THREE.HemisphereLight("#ffffff", "#50483c", 1.6));
+    const sky = new THREE.HemisphereLight("#ffffff", "#50483c", 1.6);
+    sky.position.set(0, 0, 1);
+    this.scene.add(sky);
     const sun = new THREE.DirectionalLight("#fff4dc", 2.2);
     sun.position.set(-3, -2, 4);
     this.scene.add(sun);
