@@ -1,13 +1,14 @@
-// node look.mjs VIEWER CHUNKS TUFA CHROMIUM FOLDER: opens a folder of chunks in the viewer, looks
-// down onto the ground from some places, and fails if the background shows through, or if the levels
-// are others than the command's. Leaves pictures in FOLDER.
+// node look.mjs VIEWER CHUNKS PART TUFA CHROMIUM FOLDER: opens two folders of chunks in the viewer, a
+// part and the ground, goes from one to the other, looks down onto the ground from some places, and
+// fails if the background shows through, or if the levels are others than the command's. Leaves
+// pictures in FOLDER.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { createRequire } from "node:module";
-import { join } from "node:path";
+import { basename, join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [viewer, chunks, tufa, chromium, folder] = process.argv.slice(2);
+const [viewer, chunks, part, tufa, chromium, folder] = process.argv.slice(2);
 const puppeteer = createRequire(join(viewer, "package.json"))("puppeteer-core");
 const { serve } = await import(pathToFileURL(join(viewer, "server.mjs")));
 
@@ -15,7 +16,7 @@ const kWidth = 1280;
 const kHeight = 720;
 const kErrorSlider = 1.6; // 3 pixels: so much that cracks could not be missed
 
-const server = await serve(chunks, 0);
+const server = await serve([chunks, part], 0);
 const browser = await puppeteer.launch({
   executablePath: chromium,
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
@@ -68,10 +69,25 @@ async function countLoud(page) {
 
 try {
   const page = await browser.newPage();
+  const address = `http://127.0.0.1:${server.address().port}/`;
+  const names = [basename(chunks), basename(part)];
+  await page.goto(`${address}?scene=none`);
+  await page.waitForFunction("document.getElementById('figures').textContent.includes('404')");
+
   const faults = [];
   page.on("pageerror", (error) => faults.push(error.message));
   page.on("requestfailed", (request) => faults.push(request.url()));
-  await page.goto(`http://127.0.0.1:${server.address().port}/`);
+  await page.goto(`${address}?${new URLSearchParams({ scene: names[1] })}`);
+  await page.waitForFunction("window.viewer", { timeout: 60000 });
+  await settle(page);
+  await page.screenshot({ path: join(folder, "part.png") });
+  // The names are shown as they are, whatever they hold.
+  const options = await page.$$eval("#scene > option", (all) => all.map((one) => one.innerText));
+  assert.deepEqual(options, names);
+  assert.equal(await page.$eval("#scene", (menu) => menu.value), names[1]);
+  assert.equal(await page.$("#scene > option > *"), null);
+
+  await Promise.all([page.waitForNavigation(), page.select("#scene", names[0])]);
   await page.waitForFunction("window.viewer", { timeout: 60000 });
   const pixelError = await page.evaluate((value) => {
     const slider = document.getElementById("error");
@@ -80,6 +96,7 @@ try {
     return viewer.pixelError;
   }, kErrorSlider);
   await settle(page);
+  await page.screenshot({ path: join(folder, "start.png") });
   const index = await page.evaluate("viewer.index");
   assert.ok(index.chunks.length >= 1000, `${index.chunks.length} chunks`);
   console.log(`${index.chunks.length} chunks`);

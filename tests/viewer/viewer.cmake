@@ -1,6 +1,6 @@
 # cmake -DTUFA=COMMAND -DVIEWER=docs/examples/chunks-viewer -DFOLDER=FOLDER -P viewer.cmake: makes a
-# terrain of over a thousand chunks and looks at it with the viewer in headless Chromium. Says
-# "skipped" where there is no Chromium, or npm cannot bring what the viewer needs.
+# terrain of over a thousand chunks and a part, and looks at them with the viewer in headless
+# Chromium. Says "skipped" where there is no Chromium, or npm cannot bring what the viewer needs.
 cmake_minimum_required(VERSION 3.25)
 
 find_program(NODE node)
@@ -32,6 +32,11 @@ execute_process(COMMAND ${TUFA} make terrain --voxel 0.007 -o ${FOLDER}/terrain.
 execute_process(COMMAND ${TUFA} chunks ${FOLDER}/terrain.vdb -o ${FOLDER}/terrain --chunk 16
     --levels 4 --tolerance 0.1 --factor 2.5 --quiet
   COMMAND_ERROR_IS_FATAL ANY)
+set(part "${FOLDER}/<i>part & co") # a name that has to be shown as text
+execute_process(COMMAND ${TUFA} make bracket --voxel 0.02 -o ${FOLDER}/bracket.vdb
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${TUFA} chunks ${FOLDER}/bracket.vdb -o ${part} --chunk 16 --quiet
+  COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${NODE} ${CMAKE_CURRENT_LIST_DIR}/look.mjs ${viewer} ${FOLDER}/terrain
-    ${TUFA} ${CHROMIUM} ${FOLDER}
+    ${part} ${TUFA} ${CHROMIUM} ${FOLDER}
   COMMAND_ERROR_IS_FATAL ANY)

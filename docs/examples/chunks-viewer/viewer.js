@@ -1,23 +1,23 @@
 import * as THREE from "three";
 import { ChunkMeshes } from "./chunk_meshes.js";
+import { kColours } from "./colours.js";
 import { FlyCamera } from "./fly_camera.js";
+import { FrameTime } from "./frame_time.js";
 import { boxOf, selectLods, transitionMask } from "./lods.js";
 
-const kUrl = "chunks/";
 const kBackground = "#ff00ff"; // loud: a crack in the ground cannot hide
 const kWireBackground = "#15191e";
-const kColours = ["#3f8f5f", "#c2a83e", "#4f86c6", "#cf6a3c", "#8a8f98", "#5fb3a8", "#a3502e"];
-
-const byId = (id) => document.getElementById(id);
 
 /// Draws all chunks of an index, each at a level of its own.
-class Viewer {
-  constructor(index) {
+export class Viewer {
+  constructor(index, url) {
     this.index = index;
-    this.meshes = new ChunkMeshes(index, kUrl);
+    this.meshes = new ChunkMeshes(index, url);
     this.pixelError = 1;
     this.drawn = null; // levels on the screen
     this.options = { wireframe: false, strips: false, freeze: false, masks: true };
+    this.updateTime = new FrameTime();
+    this.renderTime = new FrameTime();
     this.makeScene();
     this.placeCamera();
     this.objects = index.chunks.map(() => {
@@ -84,6 +84,10 @@ class Viewer {
   /// Draws at new levels once all their meshes are here: what is on the screen always fits
   /// together.
   update() {
+    this.updateTime.of(() => this.chooseLevels());
+  }
+
+  chooseLevels() {
     if (this.options.freeze && this.drawn) return;
     // To begin with, the coarsest level: little to load.
     const wanted = this.drawn
@@ -94,7 +98,10 @@ class Viewer {
     wanted.forEach((level, chunk) => (missing += this.meshes.has(chunk, level) ? 0 : 1));
     this.missing = missing;
     const isNew = !this.drawn || wanted.some((level, chunk) => level !== this.drawn[chunk]);
-    if (missing === 0 && isNew) this.show(wanted);
+    if (missing > 0 || !isNew) return;
+    const isFirst = !this.drawn;
+    this.show(wanted);
+    if (isFirst) this.chooseLevels(); // what is wanted in truth is asked for at once
   }
 
   show(lods) {
@@ -120,9 +127,7 @@ class Viewer {
   }
 
   render() {
-    const start = performance.now();
-    this.renderer.render(this.scene, this.camera);
-    this.renderMilliseconds = performance.now() - start;
+    this.renderTime.of(() => this.renderer.render(this.scene, this.camera));
   }
 
   /// Whether what the camera asks for is on the screen.
@@ -143,52 +148,14 @@ class Viewer {
     const levels = this.index.tolerances_voxels.map(
       (_, level) => this.drawn?.filter((lod) => lod === level).length ?? 0,
     );
+    const update = this.updateTime.milliseconds.toFixed(2);
+    const draw = this.renderTime.milliseconds.toFixed(1);
     return (
       `${this.index.chunks.length.toLocaleString("en")} chunks, at level 0, 1, ...: ${levels.join(", ")}\n` +
       `${triangles.toLocaleString("en")} triangles in ${render.calls.toLocaleString("en")} draw calls\n` +
-      `${frameMilliseconds.toFixed(1)} ms a frame, ${this.renderMilliseconds.toFixed(1)} ms of it here\n` +
+      `${frameMilliseconds.toFixed(1)} ms a frame, of it here ${update} for levels, ${draw} to draw\n` +
       (this.meshes.failure?.message ??
         (this.missing ? `${this.missing} meshes on their way` : "all meshes here"))
     );
   }
 }
-
-function connectPanel(viewer) {
-  for (const option of ["wireframe", "strips", "freeze"]) {
-    byId(option).addEventListener("change", (event) => viewer.set(option, event.target.checked));
-  }
-  const showError = () => {
-    viewer.pixelError = Number((2 ** Number(byId("error").value)).toPrecision(3));
-    byId("errorText").textContent = `${viewer.pixelError} pixels of error`;
-  };
-  byId("error").addEventListener("input", showError);
-  showError();
-  // As text: chunks.json may hold anything.
-  viewer.index.tolerances_voxels.forEach((tolerance, level) => {
-    const swatch = document.createElement("span");
-    swatch.className = "swatch";
-    swatch.style.background = kColours[level % kColours.length];
-    byId("legend").append(swatch, `${level}: ${tolerance}`);
-  });
-}
-
-const response = await fetch(`${kUrl}chunks.json`);
-const index = await response.json();
-if (index.tufa_chunks !== 1) throw new Error(`chunks.json of version ${index.tufa_chunks}`);
-const viewer = new Viewer(index);
-connectPanel(viewer);
-let before = performance.now();
-let frame = 0;
-let shown = 0;
-viewer.renderer.setAnimationLoop((now) => {
-  const elapsed = Math.max(0, now - before);
-  before = now;
-  frame += (elapsed - frame) / 10;
-  viewer.fly.move(Math.min(elapsed, 100) / 1000);
-  viewer.update();
-  viewer.render();
-  if (now - shown < 250) return;
-  shown = now;
-  byId("figures").textContent = viewer.figures(frame);
-});
-window.viewer = viewer; // for the console
