@@ -1,5 +1,5 @@
 import { FrameTime } from "./frame_time.js";
-import { connectPanel, offerScenes, showFigures } from "./panel.js";
+import { connectPanel, offerScenes, panelBox, showFigures } from "./panel.js";
 import { Viewer } from "./viewer.js";
 
 async function load(url) {
@@ -39,6 +39,7 @@ function run(viewer) {
 try {
   const viewer = await openScene();
   connectPanel(viewer);
+  viewer.seeAll(panelBox());
   run(viewer);
   window.viewer = viewer; // for the console
 } catch (error) {

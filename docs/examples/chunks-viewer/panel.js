@@ -40,3 +40,6 @@ export function offerScenes(names, shown) {
 export function showFigures(text) {
   byId("figures").textContent = text;
 }
+
+/// The panel's place in the window.
+export const panelBox = () => byId("panel").getBoundingClientRect();

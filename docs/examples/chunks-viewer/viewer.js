@@ -4,9 +4,11 @@ import { kColours } from "./colours.js";
 import { FlyCamera } from "./fly_camera.js";
 import { FrameTime } from "./frame_time.js";
 import { boxOf, selectLods, transitionMask } from "./lods.js";
+import { startEye } from "./start_view.js";
 
 const kBackground = "#ff00ff"; // loud: a crack in the ground cannot hide
 const kWireBackground = "#15191e";
+const kStartDirection = new THREE.Vector3(0.4, -1, 0.8); // from what is seen to the eye
 
 /// Draws all chunks of an index, each at a level of its own.
 export class Viewer {
@@ -19,7 +21,7 @@ export class Viewer {
     this.updateTime = new FrameTime();
     this.renderTime = new FrameTime();
     this.makeScene();
-    this.placeCamera();
+    this.makeCamera();
     this.objects = index.chunks.map(() => {
       const object = new THREE.Mesh(new THREE.BufferGeometry());
       object.visible = false;
@@ -53,20 +55,39 @@ export class Viewer {
     return this.camera.position.toArray().map((x, axis) => x + this.index.origin[axis]);
   }
 
-  placeCamera() {
-    const box = new THREE.Box3();
-    for (const { min, max } of this.index.chunks.map(boxOf)) {
-      box.expandByPoint(new THREE.Vector3(...min)).expandByPoint(new THREE.Vector3(...max));
-    }
-    box.translate(new THREE.Vector3(...this.index.origin).negate());
-    const size = box.getSize(new THREE.Vector3()).length();
-    this.camera = new THREE.PerspectiveCamera(45, 1, size / 20000, size * 4);
-    this.fly = new FlyCamera(this.camera, this.renderer.domElement, size / 20);
-    const centre = box.getCenter(new THREE.Vector3());
-    // All of it in sight, from above.
-    const back = new THREE.Vector3(0.4, -1, 0.8).normalize().multiplyScalar(1.15 * size);
-    this.camera.position.copy(centre).add(back);
-    this.camera.lookAt(centre);
+  /// The corners of all chunks' boxes, counted from the origin.
+  corners() {
+    const { origin, chunks } = this.index;
+    return chunks.map(boxOf).flatMap((box) =>
+      [0, 1, 2, 3, 4, 5, 6, 7].map((corner) =>
+        origin.map((x, axis) => ((corner >> axis) & 1 ? box.max : box.min)[axis] - x),
+      ),
+    );
+  }
+
+  makeCamera() {
+    const box = new THREE.Box3().setFromPoints(
+      this.corners().map((corner) => new THREE.Vector3(...corner)),
+    );
+    this.size = box.getSize(new THREE.Vector3()).length();
+    this.camera = new THREE.PerspectiveCamera(45, 1, this.size / 20000, this.size * 4);
+    this.fly = new FlyCamera(this.camera, this.renderer.domElement, this.size / 20);
+  }
+
+  /// All of it in sight, from above, beside or below the panel.
+  seeAll(panel) {
+    const { camera } = this;
+    const corners = this.corners();
+    camera.lookAt(camera.position.clone().sub(kStartDirection));
+    camera.updateMatrix();
+    const axes = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()];
+    camera.matrix.extractBasis(...axes);
+    const tangent = Math.tan((camera.fov / 360) * Math.PI);
+    const window = { width: innerWidth, height: innerHeight, panel };
+    const eye = startEye(corners, axes.map((axis) => axis.toArray()), tangent, window);
+    camera.position.set(...eye);
+    camera.far = 4 * this.size + camera.position.distanceTo(new THREE.Vector3(...corners[0]));
+    camera.updateProjectionMatrix();
   }
 
   resize() {
