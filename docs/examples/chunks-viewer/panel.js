@@ -4,7 +4,7 @@ const byId = (id) => document.getElementById(id);
 
 /// Connects the panel's switches and its slider with a viewer, and explains the colours.
 export function connectPanel(viewer) {
-  for (const option of ["wireframe", "strips", "freeze"]) {
+  for (const option of ["wireframe", "strips", "freeze", "loud"]) {
     byId(option).addEventListener("change", (event) => viewer.set(option, event.target.checked));
   }
   const showError = () => {

@@ -6,8 +6,8 @@ import { FrameTime } from "./frame_time.js";
 import { boxOf, selectLods, transitionMask } from "./lods.js";
 import { startEye } from "./start_view.js";
 
-const kBackground = "#ff00ff"; // loud: a crack in the ground cannot hide
-const kWireBackground = "#15191e";
+const kLoudBackground = "#ff00ff"; // a crack in the ground cannot hide
+const kQuietBackground = "#8f9aa5"; // pale and dark wires are seen before it
 const kStartDirection = new THREE.Vector3(0.4, -1, 0.8); // from what is seen to the eye
 
 /// Draws all chunks of an index, each at a level of its own.
@@ -17,7 +17,7 @@ export class Viewer {
     this.meshes = new ChunkMeshes(index, url);
     this.pixelError = 1;
     this.drawn = null; // levels on the screen
-    this.options = { wireframe: false, strips: false, freeze: false, masks: true };
+    this.options = { wireframe: false, strips: false, freeze: false, loud: true, masks: true };
     this.updateTime = new FrameTime();
     this.renderTime = new FrameTime();
     this.makeScene();
@@ -37,7 +37,7 @@ export class Viewer {
     this.renderer.setPixelRatio(devicePixelRatio);
     document.body.prepend(this.renderer.domElement);
     this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color(kBackground);
+    this.scene.background = new THREE.Color(kLoudBackground);
     const sky = new THREE.HemisphereLight("#ffffff", "#50483c", 1.6);
     sky.position.set(0, 0, 1);
     this.scene.add(sky);
@@ -143,7 +143,8 @@ export class Viewer {
   set(option, value) {
     this.options[option] = value;
     for (const material of this.materials.flat()) material.wireframe = this.options.wireframe;
-    this.scene.background.set(this.options.wireframe ? kWireBackground : kBackground);
+    const loud = this.options.loud && !this.options.wireframe;
+    this.scene.background.set(loud ? kLoudBackground : kQuietBackground);
     if (this.drawn) this.show(this.drawn);
   }
 
