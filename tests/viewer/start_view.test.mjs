@@ -45,6 +45,7 @@ for (const [name, size] of Object.entries(things)) {
     const beside = left > kPanel.right;
     const below = top > kPanel.bottom;
     if (width >= 600) assert.ok(beside || below, `${what}: not behind the panel`);
+    if (name === "part" && width > 2 * height) assert.ok(beside, `${what}: where it is largest`);
     // It reaches from one margin to the other across or upright.
     const free = [[beside ? kPanel.right : 0, width], [below ? kPanel.bottom : 0, height]];
     const room = free.map(([begin, end]) => end - begin);
