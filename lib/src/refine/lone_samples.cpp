@@ -2,15 +2,24 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace tufa::refine {
 namespace {
 
 constexpr std::uint8_t kThree = 3;
 constexpr std::size_t kCorners = 8;
-constexpr std::size_t kSides = 6;
+constexpr std::size_t kSides = std::tuple_size_v<LoneComponent>;
+// Voxels between a lifted component and the sheet that it was lifted over.
+constexpr double kLifted = 0.1;
+// What lies deeper below the sheets of a crease, in voxels, was not made by it.
+constexpr double kDeepest = 0.75;
+// A lifted component has at most this share of the size of the box around its sample.
+constexpr double kShare = 0.5;
 
 // The quads of which all vertices have three quads, as the six around a single sample do.
 std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
@@ -32,15 +41,125 @@ std::vector<std::uint32_t> findCandidates(const Mesh& mesh, base::Job& job) {
   return candidates;
 }
 
-// Connected components of six such quads; each lists its quads in the order of the mesh.
-std::vector<std::array<std::uint32_t, kSides>> findLoneComponents(const Mesh& mesh,
-                                                                  base::Job& job) {
+// Six times the volume of quads whose corners are at `at(vertex)`.
+template <class At>
+double volumeOf(const Mesh& mesh, const LoneComponent& component, const At& at) {
+  const Vec3 origin = at(mesh.quads[component[0]].vertices[0]);
+  double volume = 0;
+  for (const std::uint32_t quad : component) {
+    const auto& v = mesh.quads[quad].vertices;
+    const Vec3 p = at(v[0]) - origin, q = at(v[2]) - origin;
+    volume += p.dot((at(v[1]) - origin).cross(q)) + p.dot(q.cross(at(v[3]) - origin));
+  }
+  return volume;
+}
+
+// Rising.
+std::vector<VertexIndex> verticesOf(const Mesh& mesh, const LoneComponent& component) {
+  std::vector<VertexIndex> vertices;
+  for (const std::uint32_t quad : component) {
+    const auto& v = mesh.quads[quad].vertices;
+    vertices.insert(vertices.end(), v.begin(), v.end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+// The mass points of all components' vertices.
+class MassPoints {
+ public:
+  MassPoints(const Mesh& mesh, const std::vector<LoneComponent>& components, const Source& source) {
+    for (const LoneComponent& component : components) {
+      const std::vector<VertexIndex> own = verticesOf(mesh, component);
+      vertices_.insert(vertices_.end(), own.begin(), own.end());
+    }
+    std::sort(vertices_.begin(), vertices_.end());
+    if (!vertices_.empty()) points_ = source.massPoints(vertices_);
+  }
+  [[nodiscard]] Position operator()(VertexIndex vertex) const {
+    const auto found = std::lower_bound(vertices_.begin(), vertices_.end(), vertex);
+    return points_[static_cast<std::size_t>(found - vertices_.begin())];
+  }
+
+ private:
+  std::vector<VertexIndex> vertices_;
+  std::vector<Position> points_;
+};
+
+// The vertices on creases, to be found by their places.
+class CreaseVertices {
+ public:
+  CreaseVertices(const Mesh& mesh, const uniform::VertexSheets& sheets, double voxelSize)
+      : mesh_(mesh), cell_(kDeepest * voxelSize) {
+    for (VertexIndex v = 0; v < mesh.positions.size(); ++v) {
+      if (sheets.kind(v) == uniform::VertexSheets::Kind::Meeting) {
+        vertices_.push_back({cellOf(mesh.positions[v]), v});
+      }
+    }
+    std::sort(vertices_.begin(), vertices_.end());
+  }
+  // The nearest one within kDeepest; none: the number of vertices.
+  [[nodiscard]] VertexIndex nearestTo(const Vec3& point) const {
+    auto best = static_cast<VertexIndex>(mesh_.positions.size());
+    double nearest = cell_ * cell_;
+    const Cell middle = cellOf(point);
+    for (int i = 0; i < 27; ++i) {
+      const Cell cell{middle[0] + i / 9 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i % 3 - 1};
+      auto at =
+          std::lower_bound(vertices_.begin(), vertices_.end(), std::pair(cell, VertexIndex{0}));
+      for (; at != vertices_.end() && at->first == cell; ++at) {
+        const double away = (Vec3(mesh_.positions[at->second]) - point).squaredLength();
+        if (away < nearest) nearest = away, best = at->second;
+      }
+    }
+    return best;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  [[nodiscard]] Cell cellOf(const Vec3& point) const {
+    Cell cell;
+    for (std::size_t i = 0; i < 3; ++i) {
+      cell[i] = static_cast<std::int64_t>(std::floor(point[i] / cell_));
+    }
+    return cell;
+  }
+  const Mesh& mesh_;
+  double cell_;
+  std::vector<std::pair<Cell, VertexIndex>> vertices_;
+};
+
+// The shortest way along the normal of one of a crease's sheets on which a box passes that sheet;
+// `side` is 1 for solid and -1 for a bubble, which is on the sheets' other side. 0 if the box is
+// past one already, or too far behind all.
+Vec3 wayOut(const uniform::MeetingSheets& meeting, const Vec3& crease, double side,
+            const std::vector<Position>& box, double voxelSize) {
+  Vec3 way(0);
+  double least = (kDeepest + kLifted) * voxelSize;
+  for (int i = 0; i < meeting.count; ++i) {
+    const Vec3 normal = Vec3(meeting.normals[i]) * side;
+    double lowest = least;
+    for (const Position& corner : box) {
+      lowest = std::min(lowest, normal.dot(Vec3(corner) - crease));
+    }
+    const double length = kLifted * voxelSize - lowest;
+    if (length <= 0) return Vec3(0);
+    if (length < least) least = length, way = normal * length;
+  }
+  return way;
+}
+
+}  // namespace
+
+// Connected components of six such quads.
+std::vector<LoneComponent> findLoneComponents(const Mesh& mesh, base::Job& job) {
   const std::vector<std::uint32_t> candidates = findCandidates(mesh, job);
   std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around;
   for (const std::uint32_t quad : candidates) {
     for (const VertexIndex vertex : mesh.quads[quad].vertices) around[vertex].push_back(quad);
   }
-  std::vector<std::array<std::uint32_t, kSides>> components;
+  std::vector<LoneComponent> components;
   std::vector<std::uint32_t> component;
   for (const std::uint32_t first : candidates) {
     component = {first};
@@ -61,54 +180,49 @@ std::vector<std::array<std::uint32_t, kSides>> findLoneComponents(const Mesh& me
   return components;
 }
 
-// Six times the volume of quads whose corners are at `at(vertex)`.
-template <class At>
-double volumeOf(const Mesh& mesh, const std::array<std::uint32_t, kSides>& component,
-                const At& at) {
-  const Vec3 origin = at(mesh.quads[component[0]].vertices[0]);
-  double volume = 0;
-  for (const std::uint32_t quad : component) {
-    const auto& v = mesh.quads[quad].vertices;
-    const Vec3 p = at(v[0]) - origin, q = at(v[2]) - origin;
-    volume += p.dot((at(v[1]) - origin).cross(q)) + p.dot(q.cross(at(v[3]) - origin));
-  }
-  return volume;
-}
-
-}  // namespace
-
-std::size_t unfoldLoneComponents(Mesh& mesh, const Source& source, base::Job& job) {
-  const auto components = findLoneComponents(mesh, job);
-  std::vector<VertexIndex> vertices;
-  for (const auto& component : components) {
-    for (const std::uint32_t quad : component) {
-      const auto& v = mesh.quads[quad].vertices;
-      vertices.insert(vertices.end(), v.begin(), v.end());
-    }
-  }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  if (vertices.empty()) return 0;
-  const std::vector<Position> fallbacks = source.massPoints(vertices);
-  const auto fallbackOf = [&](VertexIndex vertex) {
-    const auto found = std::lower_bound(vertices.begin(), vertices.end(), vertex);
-    return fallbacks[static_cast<std::size_t>(found - vertices.begin())];
-  };
+std::size_t unfoldLoneComponents(Mesh& mesh, const std::vector<LoneComponent>& components,
+                                 const Source& source) {
+  const MassPoints massPoint(mesh, components, source);
   std::size_t moved = 0;
-  for (const auto& component : components) {
+  for (const LoneComponent& component : components) {
     const double is =
         volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(mesh.positions[v]); });
-    const double box =
-        volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(fallbackOf(v)); });
+    const double box = volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(massPoint(v)); });
     if (is * box > 0) continue;
-    for (const std::uint32_t quad : component) {
-      for (const VertexIndex vertex : mesh.quads[quad].vertices) {
-        mesh.positions[vertex] = fallbackOf(vertex);
-      }
-    }
+    for (const VertexIndex v : verticesOf(mesh, component)) mesh.positions[v] = massPoint(v);
     moved += kCorners;
   }
   return moved;
+}
+
+std::size_t liftLoneComponents(Mesh& mesh, uniform::VertexSheets& sheets,
+                               const std::vector<LoneComponent>& components, const Source& source) {
+  if (components.empty() || sheets.sharpCount() == 0) return 0;
+  const CreaseVertices creases(mesh, sheets, source.voxelSize);
+  const MassPoints massPoint(mesh, components, source);
+  std::vector<std::pair<VertexIndex, Position>> moves;
+  for (const LoneComponent& component : components) {
+    const std::vector<VertexIndex> vertices = verticesOf(mesh, component);
+    Vec3 middle(0);
+    for (const VertexIndex v : vertices) middle += Vec3(massPoint(v)) * (1.0 / kCorners);
+    const VertexIndex crease = creases.nearestTo(middle);
+    if (crease == mesh.positions.size()) continue;
+    std::vector<Position> box;
+    for (const VertexIndex v : vertices) {
+      box.push_back(middle + (Vec3(massPoint(v)) - middle) * kShare);
+    }
+    const double volume =
+        volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(massPoint(v)); });
+    const Vec3 way = wayOut(sheets.sheets(mesh, crease), mesh.positions[crease],
+                            volume < 0 ? -1.0 : 1.0, box, source.voxelSize);
+    if (way == Vec3(0)) continue;
+    for (std::size_t i = 0; i < kCorners; ++i) moves.push_back({vertices[i], Vec3(box[i]) + way});
+  }
+  for (const auto& [vertex, place] : moves) {
+    mesh.positions[vertex] = place;
+    sheets.moveOffCrease(vertex);
+  }
+  return moves.size();
 }
 
 }  // namespace tufa::refine

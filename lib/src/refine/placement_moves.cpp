@@ -30,8 +30,11 @@ void PlacementMoves::add(VertexIndex vertex, const Position& plain, const Positi
   if (isPlaced) addSlides(vertex, moves);
   const std::uint8_t step = isPlaced ? steps_[vertex] : std::max(steps_[vertex], kAtPlain);
   if (step != kAtPlain - 1 && step != kAtMassPoint - 1) {
-    const Vec3 way = Vec3(isPlaced ? plain : mass) - at;
-    for (const double share : kParts) addTo(at + way * share, static_cast<std::uint8_t>(step + 1));
+    for (const double share : kParts) {
+      const auto next = static_cast<std::uint8_t>(step + 1);
+      if (isPlaced) addTo(at + (Vec3(plain) - at) * share, next);
+      addTo(at + (Vec3(mass) - at) * share, next);
+    }
   }
   if (isPlaced) addTo(Vec3(plain), kAtPlain);
   addTo(Vec3(mass), kAtMassPoint);

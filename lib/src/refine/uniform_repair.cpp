@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "refine/lone_samples.h"
+#include "refine/order_along_creases.h"
 #include "refine/rounding.h"
 #include "refine/withdraw_placements.h"
 #include "topology/misplaced.h"
@@ -22,12 +23,16 @@ class UniformRepair {
       : surface_(surface), mesh_(surface.mesh), report_(report), job_(job) {}
 
   std::vector<std::uint32_t> run() {
-    report_.movedVertices = unfoldLoneComponents(mesh_, sourceOf(surface_, job_), job_);
+    const std::vector<LoneComponent> lone = findLoneComponents(mesh_, job_);
+    const Source own = sourceOf(surface_, job_);
+    report_.movedVertices = unfoldLoneComponents(mesh_, lone, own);
+    report_.movedVertices += liftLoneComponents(mesh_, surface_.sheets, lone, own);
     // Rounding may move both polygons of a pair. Flat faces on lattice planes lie a thousandth of a
     // voxel off their samples: a larger margin than is needed makes all their quads candidates.
     const double margin =
         2 * std::min(kMostRounding * surface_.affine().leastHeight(),
                      largestRounding(surface_.volume.blocks, surface_.volume.transform));
+    report_.movedVertices += orderAlongCreases(surface_, job_);
     Withdrawal withdrawn = withdrawPlacements(surface_, margin, job_);
     candidates_ = std::move(withdrawn.candidates);
     report_.intersectionsFound = withdrawn.pairsFound;

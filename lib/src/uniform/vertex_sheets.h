@@ -56,6 +56,12 @@ class VertexSheets {
     if (isSharp(vertex)) kinds_[vertex] = Kind::Unknown;
     meeting_.erase(vertex);
   }
+  /// The vertex has left its cell for a place on no crease.
+  void moveOffCrease(VertexIndex vertex) {
+    outOfCell_[vertex] = 1;
+    kinds_[vertex] = Kind::Near;
+    meeting_.erase(vertex);
+  }
   /// The sheets of a vertex; count 0 if they are unknown.
   [[nodiscard]] MeetingSheets sheets(const Mesh& mesh, VertexIndex vertex) const;
   /// Number of vertices on creases and corners.

@@ -220,7 +220,7 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   Mesh mesh = good;
   const refine::Source source = sourceOf(good);
   base::Job job(0, {});
-  EXPECT_EQ(refine::unfoldLoneComponents(mesh, source, job), 0U);
+  EXPECT_EQ(refine::unfoldLoneComponents(mesh, refine::findLoneComponents(mesh, job), source), 0U);
   // One of them mirrored at a plane through it.
   std::size_t mirrored = 0;
   for (Position& p : mesh.positions) {
@@ -230,7 +230,7 @@ TEST(LonePieces, AreTurnedTheRightWayOut) {
   }
   ASSERT_EQ(mirrored, 8U);
   EXPECT_FALSE(check(mesh).outward);
-  EXPECT_EQ(refine::unfoldLoneComponents(mesh, source, job), 8U);
+  EXPECT_EQ(refine::unfoldLoneComponents(mesh, refine::findLoneComponents(mesh, job), source), 8U);
   EXPECT_EQ(mesh.positions, good.positions);
 }
 

@@ -1,0 +1,139 @@
+// What is done along acute edges before placements are accepted.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <tufa/contour.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "grid/volume.h"
+#include "refine/lone_samples.h"
+#include "refine/order_along_creases.h"
+#include "refine/uniform_repair.h"
+#include "refine/withdraw_placements.h"
+#include "uniform/uniform_surface.h"
+
+namespace tufa::refine {
+namespace {
+
+// The edge of a wedge: two planes through a point, about the direction in which it points.
+struct Wedge {
+  Wedge(double degrees, const Vec3& tip, const Vec3& pointing, const Vec3& along) : point(tip) {
+    const Vec3 crease = along.unitOrX();
+    const Vec3 ahead = (pointing - crease * pointing.dot(crease)).unitOrX();
+    const Vec3 aside = crease.cross(ahead);
+    const double half = degrees / 2 * 3.14159265358979 / 180;
+    normals = {ahead * std::sin(half) + aside * std::cos(half),
+               ahead * std::sin(half) - aside * std::cos(half)};
+  }
+  // Voxels; negative inside.
+  [[nodiscard]] double distance(const Vec3& p) const {
+    return std::max(normals[0].dot(p - point), normals[1].dot(p - point));
+  }
+  [[nodiscard]] double offCrease(const Vec3& p) const {
+    return std::max(std::abs(normals[0].dot(p - point)), std::abs(normals[1].dot(p - point)));
+  }
+  Vec3 point;
+  std::array<Vec3, 2> normals;
+};
+
+openvdb::FloatGrid::Ptr makeGrid(const Wedge& wedge, int size) {
+  const auto grid = openvdb::FloatGrid::create(3);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  for (int x = 0; x < size; ++x) {
+    for (int y = 0; y < size; ++y) {
+      for (int z = 0; z < size; ++z) {
+        const double d = wedge.distance(Vec3(x, y, z));
+        grid->tree().setValue(openvdb::Coord(x, y, z),
+                              static_cast<float>(std::clamp(d, -3.0, 3.0)));
+      }
+    }
+  }
+  return grid;
+}
+
+uniform::UniformSurface makeSurface(const openvdb::GridBase& grid, base::Job& job) {
+  return uniform::makeUniformSurface(grid::openVolume(grid, {}, job), {}, {}, job);
+}
+
+Vec3 pointOf(const uniform::UniformSurface& surface, VertexIndex v) {
+  return Vec3(surface.mesh.positions[v]) + Vec3(surface.affine().origin());
+}
+
+int countOnCrease(const uniform::UniformSurface& surface, const Wedge& wedge) {
+  int count = 0;
+  for (VertexIndex v = 0; v < surface.mesh.positions.size(); ++v) {
+    count += wedge.offCrease(pointOf(surface, v)) < 0.02 ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(OrderAlongCreases, KeepsVerticesOnTheirCreaseAndInTheirPlaces) {
+  int withOrder = 0, without = 0;
+  std::size_t moved = 0;
+  for (int seed = 0; seed < 6; ++seed) {
+    const Wedge wedge(50 + 5 * seed, {20.3, 20.1 + 0.13 * seed, 20.4}, {1, 0.3 * seed, 0.2},
+                      {0.3, 0.2 * seed, 1});
+    const auto grid = makeGrid(wedge, 40);
+    base::Job job(1, {});
+    uniform::UniformSurface plain = makeSurface(*grid, job);
+    uniform::UniformSurface ordered = makeSurface(*grid, job);
+    const int before = countOnCrease(ordered, wedge);
+    moved += orderAlongCreases(ordered, job);
+    // All slides are along the crease.
+    EXPECT_EQ(countOnCrease(ordered, wedge), before) << seed;
+    EXPECT_EQ(orderAlongCreases(ordered, job), 0U) << seed;
+    (void)withdrawPlacements(plain, 0, job);
+    (void)withdrawPlacements(ordered, 0, job);
+    without += countOnCrease(plain, wedge);
+    withOrder += countOnCrease(ordered, wedge);
+  }
+  EXPECT_GT(moved, 20U);
+  EXPECT_GT(withOrder, without);
+}
+
+// A sample by a twentieth of a voxel inside, none of whose neighbours is: the solid reaches it, the
+// lattice does not.
+TEST(LoneSamples, GiveWayToTheCreaseThatTheyAreOn) {
+  const Vec3 ahead = Vec3(1, 1, 0).unitOrX(), aside = Vec3(-1, 1, 0).unitOrX();
+  const Vec3 along = ahead * 0.05 + aside * 0.4 + Vec3(0, 0, 1);
+  const Vec3 sample(20, 20, 20);
+  const Wedge wedge(50, sample + ahead * 0.1, ahead, along);
+  ASSERT_LT(wedge.distance(sample), -0.02);
+  const auto grid = makeGrid(wedge, 40);
+  base::Job job(1, {});
+  uniform::UniformSurface surface = makeSurface(*grid, job);
+  const std::vector<LoneComponent> lone = findLoneComponents(surface.mesh, job);
+  ASSERT_GE(lone.size(), 1U);
+  std::vector<bool> isLone(surface.mesh.positions.size());
+  for (const LoneComponent& component : lone) {
+    for (const std::uint32_t quad : component) {
+      for (const VertexIndex v : surface.mesh.quads[quad].vertices) isLone[v] = true;
+    }
+  }
+  EXPECT_EQ(liftLoneComponents(surface.mesh, surface.sheets, lone, sourceOf(surface, job)),
+            8 * lone.size());
+  for (VertexIndex v = 0; v < isLone.size(); ++v) {
+    const double off = wedge.distance(pointOf(surface, v));
+    if (isLone[v]) {
+      EXPECT_NEAR(off, 0.3, 0.201);
+    }
+  }
+  ContourReport report;
+  (void)repairUniform(surface, report, job);
+  EXPECT_EQ(report.intersectionsLeft, 0U);
+  double deepest = 0;
+  for (VertexIndex v = 0; v < isLone.size(); ++v) {
+    const Vec3 at = pointOf(surface, v);
+    const bool isAtBorder =
+        std::max({at[0], at[1], at[2]}) > 36 || std::min({at[0], at[1], at[2]}) < 3;
+    if (!isAtBorder) deepest = std::min(deepest, wedge.distance(at));
+  }
+  EXPECT_GT(deepest, -0.05);
+}
+
+}  // namespace
+}  // namespace tufa::refine
