@@ -59,8 +59,9 @@ struct WriteOptions {
   std::string name = "mesh";  ///< of the object inside formats that name objects (.obj, .glb)
   /// .glb, .obj and .usda: where the normals of two faces at an edge differ by more than this
   /// angle, each side keeps a normal of its own. In .glb, which has one normal a vertex, the
-  /// vertices there become several at one position. Degrees, 0 to 180; 180, or a mesh without
-  /// normals, splits none.
+  /// vertices there become several at one position. A normal that is more than half this angle off
+  /// the faces around it gives way to theirs. Degrees, 0 to 180; 180, or a mesh without normals,
+  /// splits and changes none.
   double creaseAngle = 40;
   UpAxis up = UpAxis::Y;  ///< .glb, .usda and .3mf: of the volume
   double scale = 1;       ///< .glb, .usda and .3mf: metres in a world unit; above 0

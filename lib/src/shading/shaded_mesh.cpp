@@ -24,6 +24,7 @@ class CreaseSplitter {
       : mesh_(mesh),
         triangles_(triangulate(mesh)),
         leastCosine_(creaseAngle < 180 ? std::cos(creaseAngle * kPi / 180) : -2),
+        leastAgreement_(creaseAngle < 180 ? std::cos(creaseAngle / 2 * kPi / 180) : -2),
         job_(job) {}
 
   ShadedMesh split() {
@@ -46,8 +47,9 @@ class CreaseSplitter {
       for (std::size_t i = begin_[v]; i < begin_[v + 1]; ++i) out.indices[corners_[i]] += first[v];
       for (VertexIndex n = first[v]; n < first[v + 1]; ++n) {
         out.sources[n] = static_cast<VertexIndex>(v);
+        const Normal ofFaces = normalOfPiece(v, n, out.indices);
         const bool whole = first[v + 1] - first[v] == 1 && !mesh_.normals.empty();
-        out.normals[n] = whole ? mesh_.normals[v] : normalOfPiece(v, n, out.indices);
+        out.normals[n] = whole && agrees(v, ofFaces) ? mesh_.normals[v] : ofFaces;
       }
     });
     return out;
@@ -120,6 +122,14 @@ class CreaseSplitter {
     return n.dot(m) >= leastCosine_ || n == Vec3(0) || m == Vec3(0);
   }
 
+  /// Whether the mesh's own normal of a vertex is one of the faces around it. Less than a voxel
+  /// beside a crease the gradient of the samples, from which it comes, is bent towards the other
+  /// side.
+  [[nodiscard]] bool agrees(std::size_t v, const Normal& ofFaces) const {
+    const Vec3 faces(ofFaces);
+    return faces == Vec3(0) || Vec3(mesh_.normals[v]).dot(faces) >= leastAgreement_;
+  }
+
   /// Numbers the groups around a vertex from 0, in the order of their first corners; returns their
   /// number and leaves each corner's in star.labels.
   VertexIndex labelPieces(std::size_t v, Star& star) const {
@@ -176,7 +186,7 @@ class CreaseSplitter {
 
   const Mesh& mesh_;
   std::vector<Triangle> triangles_;
-  double leastCosine_;
+  double leastCosine_, leastAgreement_;
   base::Job& job_;
   std::vector<Vec3> normals_;         ///< of faces; zero for those without area
   std::vector<VertexIndex> begin_;    ///< of each vertex's corners

@@ -14,7 +14,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/job.h"
 #include "base/vec3.h"
+#include "shading/shaded_mesh.h"
 #include "support/scratch_folder.h"
 
 namespace tufa {
@@ -175,6 +177,25 @@ TEST(Shading, IsTrueOnFlatFacesOfGlbAndObj) {
   EXPECT_GT(before, 0.3);
   EXPECT_LT(glb, 0.005);
   EXPECT_LT(obj, 0.005);
+}
+
+// A normal that is bent by a crease nearby, as a gradient across it is.
+TEST(Shading, FollowsTheFacesWhereANormalIsBent) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const auto tilted = [](double degrees) {
+    return Normal(Vec3(std::sin(degrees / kDegrees), 0, std::cos(degrees / kDegrees)));
+  };
+  base::Job job(1, {});
+  for (const double degrees : {0.0, 15.0, 25.0, 60.0}) {
+    mesh.normals.assign(4, tilted(0));
+    mesh.normals[1] = tilted(degrees);
+    const shading::ShadedMesh split = shading::splitAtCreases(mesh, 40, job);
+    ASSERT_EQ(split.sources, (std::vector<VertexIndex>{0, 1, 2, 3}));
+    EXPECT_NEAR(split.normals[1].x, degrees < 20 ? mesh.normals[1].x : 0, 1e-6) << degrees;
+    EXPECT_EQ(shading::splitAtCreases(mesh, 180, job).normals[1].x, mesh.normals[1].x) << degrees;
+  }
 }
 
 }  // namespace
