@@ -26,7 +26,7 @@ struct Roof {
     for (const double x : {0.0, 1.0, 2.0}) {
       for (const double y : {-1.0, 0.0, 1.0}) {
         level.positions.emplace_back(x, y, 1 - std::abs(y));
-        level.normals.emplace_back(0.0F, 0.0F, 1.0F);
+        level.normals.emplace_back(eave(y));
       }
     }
     for (const VertexIndex v : {0U, 1U, 3U, 4U}) {
@@ -39,6 +39,9 @@ struct Roof {
     level.isEnd.assign(9, 0);
     level.into = {0, 1, 2, 3, 4, 5, 6, 7, 8};
   }
+
+  // Within ten degrees of the faces at the eaves, and straight up on the ridge.
+  static Normal eave(double y) { return Normal(Vec3(0, 0.6 * y, y == 0 ? 1 : 0.8)); }
 
   [[nodiscard]] ShadedLevel shaded(double creaseAngle) {
     const CurveNormals curves({level}, creaseAngle, job);
@@ -56,7 +59,8 @@ TEST(ShadedLevel, HasANormalForEachSideOfACrease) {
       const VertexIndex v = shaded.triangles[t].vertices[i];
       EXPECT_EQ(shaded.sources[v], roof.level.triangles[t].vertices[i]);
       const bool isOnRidge = shaded.sources[v] % 3 == 1;
-      const Normal expected(0, !isOnRidge ? 0 : (isLeft ? -half : half), isOnRidge ? half : 1);
+      const Normal expected =
+          isOnRidge ? Normal(0, isLeft ? -half : half, half) : Roof::eave(isLeft ? -1 : 1);
       EXPECT_NEAR(shaded.normals[v].y, expected.y, 1e-6F) << t;
       EXPECT_NEAR(shaded.normals[v].z, expected.z, 1e-6F) << t;
     }
@@ -68,7 +72,9 @@ TEST(ShadedLevel, KeepsOneNormalWhereNoneAreSplit) {
   Roof roof;
   const ShadedLevel shaded = roof.shaded(180);
   for (const Triangle& t : shaded.triangles) {
-    for (const VertexIndex v : t.vertices) EXPECT_EQ(shaded.normals[v], Normal(0, 0, 1));
+    for (const VertexIndex v : t.vertices) {
+      EXPECT_EQ(shaded.normals[v], roof.level.normals[shaded.sources[v]]);
+    }
   }
 }
 
