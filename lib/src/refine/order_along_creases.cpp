@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <tuple>
+#include <utility>
 #include <vector>
 
-#include "base/parallel.h"
 #include "uniform/quads.h"
 
 namespace tufa::refine {
@@ -34,8 +35,12 @@ struct Order {
   Vec3 along;
 };
 
-bool operator<(const Order& a, const Order& b) {
+bool isBefore(const Order& a, const Order& b) {
   return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+}
+// Whatever the order in which threads have found them.
+bool isBeforeInAll(const Order& a, const Order& b) {
+  return std::tuple(a.first, a.second, a.along) < std::tuple(b.first, b.second, b.along);
 }
 
 // The quad's vertices on one crease, and which way it runs.
@@ -59,7 +64,7 @@ class CreaseOrder {
     if (orders_.empty()) return 0;
     findBetweenSheets();
     nameVertices();
-    for (int round = 0; round < kMostRounds && push(); ++round) {
+    for (int round = 0; round < kMostRounds && push(round == 0); ++round) {
     }
     return apply();
   }
@@ -80,48 +85,32 @@ class CreaseOrder {
 
   // The crease that most of the quad's vertices are on; corners are on it if it leads there.
   [[nodiscard]] QuadAtCrease atCrease(const Quad& quad) const {
+    std::array<Vec3, 4> points, directions;
+    std::array<bool, 4> isKnown{}, isCorner{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const VertexIndex v = quad.vertices[i];
+      isKnown[i] = isSharp(v);
+      if (!isKnown[i]) continue;
+      points[i] = pointOf(v);
+      directions[i] = directionOf(v);
+      isCorner[i] = directions[i] == Vec3(0);
+    }
     QuadAtCrease best;
-    for (int i = 0; i < 4; ++i) {
-      if (!isSharp(quad.vertices[i])) continue;
-      const Vec3 along = directionOf(quad.vertices[i]);
-      if (!(along.squaredLength() > 0)) continue;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!isKnown[i] || isCorner[i]) continue;
       QuadAtCrease at;
-      at.along = along;
-      for (int k = 0; k < 4; ++k) {
-        const VertexIndex v = quad.vertices[k];
-        if (!isSharp(v)) continue;
-        const Vec3 other = directionOf(v);
-        const bool isCorner = !(other.squaredLength() > 0);
-        if (!isCorner && std::abs(other.dot(along)) < kSameDirection) continue;
-        const Vec3 way = pointOf(v) - pointOf(quad.vertices[i]);
-        if ((way - along * way.dot(along)).squaredLength() > kSameLine * kSameLine) continue;
+      at.along = directions[i];
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (!isKnown[k]) continue;
+        if (!isCorner[k] && std::abs(directions[k].dot(at.along)) < kSameDirection) continue;
+        const Vec3 way = points[k] - points[i];
+        if ((way - at.along * way.dot(at.along)).squaredLength() > kSameLine * kSameLine) continue;
         at.isOn[k] = true;
         ++at.count;
       }
       if (at.count > best.count) best = at;
     }
     return best;
-  }
-
-  template <class Visit>
-  void forQuadsAtCreases(const Visit& visit) {
-    std::mutex mutex;
-    std::vector<Order> all;
-    job_.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
-      std::vector<Order> found;
-      for (std::size_t q = begin; q < end; ++q) {
-        const auto& v = mesh_.quads[q].vertices;
-        if (std::count_if(v.begin(), v.end(), [&](VertexIndex x) { return isSharp(x); }) < 2) {
-          continue;
-        }
-        const QuadAtCrease at = atCrease(mesh_.quads[q]);
-        if (at.count >= 2) visit(mesh_.quads[q], at, found);
-      }
-      const std::scoped_lock lock(mutex);
-      all.insert(all.end(), found.begin(), found.end());
-    });
-    orders_.insert(orders_.end(), all.begin(), all.end());
-    base::parallelSort(orders_.begin(), orders_.end(), std::less<>());
   }
 
   // The normal of the sheet of the crease at vertex `on` that vertex `off` lies on; 0 if it is on
@@ -141,26 +130,49 @@ class CreaseOrder {
     return found;
   }
 
-  // Edges of a quad on a sheet that lie on the crease.
+  // All quads at creases: those on a sheet give orders, those between two sheets are kept.
   void findAtSheets() {
-    forQuadsAtCreases([&](const Quad& quad, const QuadAtCrease& at, std::vector<Order>& found) {
-      if (at.count == 4) return;
-      for (int i = 0; i < 4; ++i) {
-        const int next = (i + 1) % 4, third = (i + 2) % 4, last = (i + 3) % 4;
-        if (!at.isOn[i] || !at.isOn[next]) continue;
-        const VertexIndex a = quad.vertices[i], b = quad.vertices[next];
-        const VertexIndex on = directionOf(a).squaredLength() > 0 ? a : b;
-        if (!(directionOf(on).squaredLength() > 0)) continue;
-        const VertexIndex off = quad.vertices[at.isOn[last] ? third : last];
-        const Vec3 normal = sheetOf(on, off);
-        if (normal == Vec3(0)) continue;
-        Vec3 inward = pointOf(off) - pointOf(on);
-        inward -= at.along * inward.dot(at.along);
-        const double way = inward.cross(normal).dot(at.along);
-        if (std::abs(way) < 0.05) continue;
-        found.push_back({a, b, at.along * (way > 0 ? 1.0 : -1.0)});
+    std::mutex mutex;
+    job_.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      std::vector<Order> found;
+      std::vector<VertexIndex> between;
+      for (std::size_t q = begin; q < end; ++q) {
+        const auto& v = mesh_.quads[q].vertices;
+        if (std::count_if(v.begin(), v.end(), [&](VertexIndex x) { return isSharp(x); }) < 2) {
+          continue;
+        }
+        const QuadAtCrease at = atCrease(mesh_.quads[q]);
+        if (at.count == 4) {
+          between.push_back(static_cast<VertexIndex>(q));
+        } else if (at.count >= 2) {
+          addAtSheet(mesh_.quads[q], at, found);
+        }
       }
+      const std::scoped_lock lock(mutex);
+      orders_.insert(orders_.end(), found.begin(), found.end());
+      between_.insert(between_.end(), between.begin(), between.end());
     });
+    std::sort(orders_.begin(), orders_.end(), isBeforeInAll);
+    std::sort(between_.begin(), between_.end());
+  }
+
+  // The edges of a quad on a sheet that lie on the crease.
+  void addAtSheet(const Quad& quad, const QuadAtCrease& at, std::vector<Order>& found) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t next = (i + 1) % 4, third = (i + 2) % 4, last = (i + 3) % 4;
+      if (!at.isOn[i] || !at.isOn[next]) continue;
+      const VertexIndex a = quad.vertices[i], b = quad.vertices[next];
+      const VertexIndex on = directionOf(a) == Vec3(0) ? b : a;
+      if (directionOf(on) == Vec3(0)) continue;
+      const VertexIndex off = quad.vertices[at.isOn[last] ? third : last];
+      const Vec3 normal = sheetOf(on, off);
+      if (normal == Vec3(0)) continue;
+      Vec3 inward = pointOf(off) - pointOf(on);
+      inward -= at.along * inward.dot(at.along);
+      const double way = inward.cross(normal).dot(at.along);
+      if (std::abs(way) < 0.05) continue;
+      found.push_back({a, b, at.along * (way > 0 ? 1.0 : -1.0)});
+    }
   }
 
   // Where two quads disagree, neither is believed.
@@ -168,7 +180,8 @@ class CreaseOrder {
     std::vector<Order> kept;
     for (const Order& order : orders_) {
       const auto contradicts = [&](VertexIndex first, VertexIndex second, double sign) {
-        auto at = std::lower_bound(orders_.begin(), orders_.end(), Order{first, second, Vec3(0)});
+        auto at = std::lower_bound(orders_.begin(), orders_.end(), Order{first, second, Vec3(0)},
+                                   isBefore);
         for (; at != orders_.end() && at->first == first && at->second == second; ++at) {
           if (sign * at->along.dot(order.along) < 0) return true;
         }
@@ -185,7 +198,7 @@ class CreaseOrder {
   [[nodiscard]] const Order* orderOf(VertexIndex a, VertexIndex b) const {
     for (const auto& [first, second] : {std::pair(a, b), std::pair(b, a)}) {
       const Order key{first, second, Vec3(0)};
-      const auto at = std::lower_bound(orders_.begin(), orders_.end(), key);
+      const auto at = std::lower_bound(orders_.begin(), orders_.end(), key, isBefore);
       if (at != orders_.end() && at->first == first && at->second == second) return &*at;
     }
     return nullptr;
@@ -193,26 +206,27 @@ class CreaseOrder {
 
   // Quads with all vertices on the crease, between a side on one sheet and a side on the other.
   void findBetweenSheets() {
-    forQuadsAtCreases([&](const Quad& quad, const QuadAtCrease& at, std::vector<Order>& found) {
-      if (at.count < 4) return;
+    std::vector<Order> found;
+    for (const VertexIndex q : between_) {
+      const Quad& quad = mesh_.quads[q];
       std::array<const Order*, 4> known{};
-      for (int i = 0; i < 4; ++i) {
-        known[static_cast<std::size_t>(i)] = orderOf(quad.vertices[i], quad.vertices[(i + 1) % 4]);
+      for (std::size_t i = 0; i < 4; ++i) {
+        known[i] = orderOf(quad.vertices[i], quad.vertices[(i + 1) % 4]);
       }
-      const int side = known[0] != nullptr || known[2] != nullptr ? 0 : 1;
-      const auto s = static_cast<std::size_t>(side);
-      if (known[1 - s] != nullptr || known[3 - s] != nullptr) return;
-      const Order* const order = known[s] != nullptr ? known[s] : known[s + 2];
-      if (order == nullptr) return;
+      const std::size_t side = known[0] != nullptr || known[2] != nullptr ? 0 : 1;
+      if (known[1 - side] != nullptr || known[3 - side] != nullptr) continue;
+      const Order* const order = known[side] != nullptr ? known[side] : known[side + 2];
+      if (order == nullptr) continue;
       // a - b is the side with the order, d - c the other one.
-      const int first = known[s] != nullptr ? side : side + 2;
+      const std::size_t first = known[side] != nullptr ? side : side + 2;
       VertexIndex a = quad.vertices[first], b = quad.vertices[(first + 1) % 4];
       VertexIndex c = quad.vertices[(first + 2) % 4], d = quad.vertices[(first + 3) % 4];
       if (order->first != a) std::swap(a, b), std::swap(c, d);
       found.push_back({d, c, order->along});
       found.push_back({a, c, order->along});
       found.push_back({d, b, order->along});
-    });
+    }
+    orders_.insert(orders_.end(), found.begin(), found.end());
   }
 
   void nameVertices() {
@@ -224,6 +238,8 @@ class CreaseOrder {
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
     for (const VertexIndex v : vertices_) directions_.push_back(directionOf(v));
     slides_.assign(vertices_.size(), 0);
+    up_ = down_ = slides_;
+    hasMoved_.assign(vertices_.size(), 0);
     for (Order& order : orders_) {
       order.first = nameOf(order.first);
       order.second = nameOf(order.second);
@@ -238,11 +254,13 @@ class CreaseOrder {
   }
 
   // Both vertices of an order that does not hold give way by half of what is missing, all at once.
-  // Whether any did.
-  bool push() {
-    std::vector<double> up(slides_.size(), 0), down(slides_.size(), 0);
+  // After the first round only orders of vertices that have moved are looked at. Whether any moved.
+  bool push(bool isFirst) {
+    std::fill(up_.begin(), up_.end(), 0);
+    std::fill(down_.begin(), down_.end(), 0);
     bool any = false;
     for (const Order& order : orders_) {
+      if (!isFirst && hasMoved_[order.first] == 0 && hasMoved_[order.second] == 0) continue;
       const double missing =
           kApart - (placeOf(order.second) - placeOf(order.first)).dot(order.along);
       if (missing < kSlack) continue;
@@ -250,7 +268,7 @@ class CreaseOrder {
       const double forth = directions_[order.second].dot(order.along);
       const double share = back != 0 && forth != 0 ? missing / 2 : missing;
       const auto pushOne = [&](VertexIndex name, double way) {
-        double& most = way > 0 ? up[name] : down[name];
+        double& most = way > 0 ? up_[name] : down_[name];
         if (way != 0) most = std::max(most, share);
       };
       pushOne(order.first, -back);
@@ -259,8 +277,10 @@ class CreaseOrder {
     }
     if (!any) return false;
     for (std::size_t i = 0; i < slides_.size(); ++i) {
-      const double way = up[i] > 0 && down[i] > 0 ? (up[i] - down[i]) / 2 : up[i] - down[i];
+      if (up_[i] == 0 && down_[i] == 0) continue;
+      const double way = up_[i] > 0 && down_[i] > 0 ? (up_[i] - down_[i]) / 2 : up_[i] - down_[i];
       slides_[i] = std::clamp(slides_[i] + way, -kFarthest, kFarthest);
+      hasMoved_[i] = 1;
     }
     return true;
   }
@@ -285,10 +305,13 @@ class CreaseOrder {
   Mesh& mesh_;
   double voxelSize_;
   base::Job& job_;
-  std::vector<Order> orders_;  // of vertices of the mesh, then of those below
+  std::vector<Order> orders_;         // of vertices of the mesh, then of those below
+  std::vector<VertexIndex> between_;  // quads
   std::vector<VertexIndex> vertices_;
-  std::vector<Vec3> directions_;  // of each vertex's crease; 0 at corners, which stay
-  std::vector<double> slides_;    // voxels along it
+  std::vector<Vec3> directions_;   // of each vertex's crease; 0 at corners, which stay
+  std::vector<double> slides_;     // voxels along it
+  std::vector<double> up_, down_;  // what a round pushes it
+  std::vector<std::uint8_t> hasMoved_;
 };
 
 }  // namespace
