@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <tuple>
 #include <utility>
@@ -13,7 +14,8 @@
 namespace tufa::refine {
 namespace {
 
-// Voxels between two vertices on a crease, one after the other.
+// Voxels between two vertices on a crease, one after the other: just more than what
+// withdrawPlacements() takes for the same point.
 constexpr double kApart = 0.16;
 // Voxels that a vertex may slide in all, as creases bend.
 constexpr double kFarthest = 0.75;
@@ -28,6 +30,9 @@ constexpr double kSameLine = 0.15;
 // degrees (25) of the sheet's.
 constexpr double kOnSheet = 0.25;
 constexpr double kSameNormal = 0.9;
+// A vertex that is nearer to the crease than this, in voxels, does not tell on which side of it the
+// sheet lies.
+constexpr double kAside = 0.05;
 
 // Along a direction of length 1, one vertex comes before another.
 struct Order {
@@ -65,6 +70,7 @@ class CreaseOrder {
     findBetweenSheets();
     nameVertices();
     for (int round = 0; round < kMostRounds && push(round == 0); ++round) {
+      job_.checkCancelled(0, 1);
     }
     return apply();
   }
@@ -135,7 +141,7 @@ class CreaseOrder {
     std::mutex mutex;
     job_.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
       std::vector<Order> found;
-      std::vector<VertexIndex> between;
+      std::vector<std::uint32_t> between;
       for (std::size_t q = begin; q < end; ++q) {
         const auto& v = mesh_.quads[q].vertices;
         if (std::count_if(v.begin(), v.end(), [&](VertexIndex x) { return isSharp(x); }) < 2) {
@@ -143,7 +149,7 @@ class CreaseOrder {
         }
         const QuadAtCrease at = atCrease(mesh_.quads[q]);
         if (at.count == 4) {
-          between.push_back(static_cast<VertexIndex>(q));
+          between.push_back(static_cast<std::uint32_t>(q));
         } else if (at.count >= 2) {
           addAtSheet(mesh_.quads[q], at, found);
         }
@@ -170,7 +176,7 @@ class CreaseOrder {
       Vec3 inward = pointOf(off) - pointOf(on);
       inward -= at.along * inward.dot(at.along);
       const double way = inward.cross(normal).dot(at.along);
-      if (std::abs(way) < 0.05) continue;
+      if (std::abs(way) < kAside) continue;
       found.push_back({a, b, at.along * (way > 0 ? 1.0 : -1.0)});
     }
   }
@@ -207,7 +213,7 @@ class CreaseOrder {
   // Quads with all vertices on the crease, between a side on one sheet and a side on the other.
   void findBetweenSheets() {
     std::vector<Order> found;
-    for (const VertexIndex q : between_) {
+    for (const std::uint32_t q : between_) {
       const Quad& quad = mesh_.quads[q];
       std::array<const Order*, 4> known{};
       for (std::size_t i = 0; i < 4; ++i) {
@@ -305,8 +311,8 @@ class CreaseOrder {
   Mesh& mesh_;
   double voxelSize_;
   base::Job& job_;
-  std::vector<Order> orders_;         // of vertices of the mesh, then of those below
-  std::vector<VertexIndex> between_;  // quads
+  std::vector<Order> orders_;           // of vertices of the mesh, then of those below
+  std::vector<std::uint32_t> between_;  // quads
   std::vector<VertexIndex> vertices_;
   std::vector<Vec3> directions_;   // of each vertex's crease; 0 at corners, which stay
   std::vector<double> slides_;     // voxels along it

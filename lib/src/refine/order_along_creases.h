@@ -8,7 +8,7 @@
 namespace tufa::refine {
 
 /// Slides vertices along their creases until they are in the order in which the surface passes
-/// them, a tenth of a voxel apart. Returns how many have moved.
+/// them, 0.16 voxels apart. Returns how many have moved.
 ///
 /// Each cell places its vertex for itself, at the point of the crease nearest to its own crossings.
 /// Along an acute edge several cells lie beside the same stretch of the crease, and their points

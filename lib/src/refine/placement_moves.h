@@ -17,8 +17,8 @@ struct PlacementMove {
 };
 
 /// The moves of vertices that were placed at creases: along the crease, which leaves the surface
-/// where it was; in part towards the point of the QEF, all the way, and from there on towards the
-/// mass point. Each vertex makes few of them, so withdrawals end.
+/// where it was; part of the way to the point of the QEF or to the mass point; and all of it. Each
+/// vertex makes few of them, so withdrawals end.
 class PlacementMoves {
  public:
   explicit PlacementMoves(const uniform::UniformSurface& surface)

@@ -122,9 +122,9 @@ class CreaseSplitter {
     return n.dot(m) >= leastCosine_ || n == Vec3(0) || m == Vec3(0);
   }
 
-  /// Whether the mesh's own normal of a vertex is one of the faces around it. Less than a voxel
-  /// beside a crease the gradient of the samples, from which it comes, is bent towards the other
-  /// side.
+  /// Whether the mesh's own normal of a vertex is near that of the faces around it. Less than a
+  /// voxel beside a crease the gradient of the samples, from which it comes, is bent towards the
+  /// other side.
   [[nodiscard]] bool agrees(std::size_t v, const Normal& ofFaces) const {
     const Vec3 faces(ofFaces);
     return faces == Vec3(0) || Vec3(mesh_.normals[v]).dot(faces) >= leastAgreement_;
