@@ -86,8 +86,8 @@ class Measure {
         expected_(expected),
         regions_(regions),
         owner_(s.owner),
-        opposite_(oppositeCorners(s.position.size(), s.triangles, job)),
-        corners_(s.position.size(), s.triangles) {}
+        corners_(s.position.size(), s.triangles),
+        opposite_(oppositeCorners(s.triangles, corners_, job)) {}
 
   void vertices(std::size_t begin, std::size_t end, Measured& measured) const {
     for (std::size_t r = begin; r < end; ++r) {
@@ -276,8 +276,8 @@ class Measure {
   float expected_;
   RegionMaxima& regions_;
   std::vector<Index> owner_;
-  std::vector<Index> opposite_;
   CornersOfVertices corners_;
+  std::vector<Index> opposite_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 
 #include "reduce/star.h"
 
@@ -166,21 +167,37 @@ class Neighbourhood {
 }  // namespace
 
 void markNarrow(Surface& surface, const Partition& partition, float reach, base::Job& job) {
-  std::vector<List> lists(partition.size());
-  for (Index t = 0; t < surface.triangles.size(); ++t) {
+  const auto boxAbout = [&](Index t) {
     const Vec3f p[3] = {surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2)};
     Box3f box = boxOf(p);
     box.growBy(reach);
-    const Index own = partition.partOf(surface.triangles[t].vertices[0]);
-    if (partition.box(own).hasInside(box.lower) && partition.box(own).hasInside(box.upper)) {
-      lists[own].push_back(t);
-    } else {
-      partition.forPartsAt(box, [&](Index part) { lists[part].push_back(t); });
+    return box;
+  };
+  // Most triangles are far inside the part of a corner.
+  constexpr std::size_t kGrain = 16384;
+  const std::size_t count = surface.triangles.size();
+  std::vector<Index> partAround(count);
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (Index t = static_cast<Index>(begin); t < end; ++t) {
+      const Index part = partition.partOf(surface.triangles[t].vertices[0]);
+      const Box3f box = boxAbout(t), &all = partition.box(part);
+      partAround[t] = all.hasInside(box.lower) && all.hasInside(box.upper) ? part : kNone;
     }
+  });
+  const base::Groups inner = base::groupBy(
+      count, partition.size(), [&](Index t) { return partAround[t]; }, [](Index, Index) {}, job);
+  std::vector<List> lists(partition.size());
+  for (Index t = 0; t < count; ++t) {
+    if (partAround[t] != kNone) continue;
+    partition.forPartsAt(boxAbout(t), [&](Index part) { lists[part].push_back(t); });
   }
   job.forRanges(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
+    List all;
     for (std::size_t p = begin; p < end; ++p) {
-      Neighbourhood(surface, reach).look(lists[p], partition.box(static_cast<Index>(p)));
+      all.clear();
+      std::merge(inner.members.begin() + inner.first[p], inner.members.begin() + inner.first[p + 1],
+                 lists[p].begin(), lists[p].end(), std::back_inserter(all));
+      Neighbourhood(surface, reach).look(all, partition.box(static_cast<Index>(p)));
     }
   });
 }

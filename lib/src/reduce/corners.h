@@ -19,11 +19,6 @@ inline constexpr Index kNone = ~Index{0};
 [[nodiscard]] inline Index nextCorner(Index c) { return c % 3 == 2 ? c - 2 : c + 1; }
 [[nodiscard]] inline Index previousCorner(Index c) { return c % 3 == 0 ? c + 2 : c - 1; }
 
-/// For every corner the corner across its edge, or kNone at a border.
-[[nodiscard]] std::vector<Index> oppositeCorners(std::size_t vertexCount,
-                                                 std::span<const Triangle> triangles,
-                                                 base::Job& job);
-
 /// For each vertex the corners at it, in rising order.
 struct CornersOfVertices {
   CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles);
@@ -33,5 +28,9 @@ struct CornersOfVertices {
   std::vector<Index> first;
   std::vector<Index> corners;
 };
+
+/// For every corner the corner across its edge, or kNone at a border.
+[[nodiscard]] std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
+                                                 const CornersOfVertices& corners, base::Job& job);
 
 }  // namespace tufa::reduce

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <utility>
+
+#include "base/parallel.h"
 
 namespace tufa::reduce {
 namespace {
@@ -14,39 +17,51 @@ Box3f everywhere() {
 }
 
 const Box3f kEverywhere = everywhere();
+constexpr std::size_t kGrain = 16384;
+
+// Runs both, at the same time where there is enough to do.
+template <class First, class Second>
+void both(Index items, const First& first, const Second& second) {
+  constexpr Index kEnough = 1 << 16;
+  if (items >= kEnough) return base::runBoth(first, second);
+  first();
+  second();
+}
 
 }  // namespace
 
 void Partition::build(const Surface& surface, Index most, float share, base::Job& job) {
-  begin(surface);
-  nodes_.clear();
-  split(0, static_cast<Index>(items_.size()), kEverywhere, most, share);
+  begin(surface, job);
+  Tree tree = split(0, static_cast<Index>(items_.size()), kEverywhere, most, share);
+  nodes_ = std::move(tree.nodes);
+  boxes_ = std::move(tree.boxes);
+  ranges_.insert(ranges_.end(), tree.ends.begin(), tree.ends.end());
   finish(surface, job);
 }
 
 void Partition::build(const Surface& surface, const std::vector<Node>& tree, base::Job& job) {
-  begin(surface);
+  begin(surface, job);
   nodes_ = tree;
+  const std::size_t parts = nodes_.size() / 2 + 1;
+  boxes_.resize(parts), ranges_.resize(parts + 1);
   splitAlong(0, 0, static_cast<Index>(items_.size()), kEverywhere);
   finish(surface, job);
 }
 
-void Partition::begin(const Surface& surface) {
+void Partition::begin(const Surface& surface, base::Job& job) {
   items_.resize(surface.position.size());
-  for (Index i = 0; i < items_.size(); ++i) items_[i] = {surface.position[i], i};
-  boxes_.clear(), ranges_.assign(1, 0);
+  job.forRanges(items_.size(), kGrain, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      items_[i] = {surface.position[i], static_cast<Index>(i)};
+    }
+  });
+  ranges_.assign(1, 0);
 }
 
 void Partition::finish(const Surface& surface, base::Job& job) {
   numberVertices(job);
-  shareTriangles(surface);
-  shareSamples(surface);
-}
-
-Index Partition::addPart(Index end, const Box3f& box) {
-  boxes_.push_back(box);
-  ranges_.push_back(end);
-  return static_cast<Index>(boxes_.size() - 1);
+  shareTriangles(surface, job);
+  shareSamples(surface, job);
 }
 
 // Items below a plane go first; the end of them. Those on it are the upper side's, but may not
@@ -66,10 +81,10 @@ float Partition::planeBelow(float least, int axis, Index begin, Index end) const
   return middle > most ? middle : least;
 }
 
-Index Partition::split(Index begin, Index end, const Box3f& box, Index most, float share) {
-  const Index me = static_cast<Index>(nodes_.size());
-  nodes_.push_back({-1, 0, 0, 0});
-  if (end - begin <= most) return nodes_[me].low = addPart(end, box), me;
+Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, Index most,
+                                 float share) {
+  const Tree part{{{-1, 0, 0, 0}}, {box}, {end}};
+  if (end - begin <= most) return part;
   Box3f bounds;
   for (Index i = begin; i < end; ++i) bounds.add(items_[i].p);
   const Vec3f d = bounds.upper - bounds.lower;
@@ -81,26 +96,45 @@ Index Partition::split(Index begin, Index end, const Box3f& box, Index most, flo
   });
   const float least = middle->p[axis];  // of the upper side
   const Index cut = moveBelow(begin, end, axis, least);
-  if (cut == begin) return nodes_[me].low = addPart(end, box), me;
+  if (cut == begin) return part;
   const float plane = planeBelow(least, axis, begin, cut);
-  Box3f low = box, high = box;
-  low.upper[axis] = plane, high.lower[axis] = plane;
-  const Index l = split(begin, cut, low, most, share), h = split(cut, end, high, most, share);
-  nodes_[me] = {axis, plane, l, h};
-  return me;
+  Box3f lower = box, upper = box;
+  lower.upper[axis] = plane, upper.lower[axis] = plane;
+  Tree low, high;
+  both(
+      end - begin, [&] { low = split(begin, cut, lower, most, share); },
+      [&] { high = split(cut, end, upper, most, share); });
+  Tree all{{{axis, plane, 0, 0}}, {}, {}};
+  all.nodes[0].low = all.add(low);
+  all.nodes[0].high = all.add(high);
+  return all;
+}
+
+// Returns where its root is now.
+Index Partition::Tree::add(const Tree& other) {
+  const auto root = static_cast<Index>(nodes.size()), parts = static_cast<Index>(boxes.size());
+  for (Node node : other.nodes) {
+    node.low += node.axis < 0 ? parts : root;
+    node.high += node.axis < 0 ? 0 : root;
+    nodes.push_back(node);
+  }
+  boxes.insert(boxes.end(), other.boxes.begin(), other.boxes.end());
+  ends.insert(ends.end(), other.ends.begin(), other.ends.end());
+  return root;
 }
 
 void Partition::splitAlong(Index node, Index begin, Index end, const Box3f& box) {
   const Node n = nodes_[node];
   if (n.axis < 0) {
-    nodes_[node].low = addPart(end, box);
+    boxes_[n.low] = box, ranges_[n.low + 1] = end;
     return;
   }
   const Index cut = moveBelow(begin, end, n.axis, n.at);
   Box3f low = box, high = box;
   low.upper[n.axis] = n.at, high.lower[n.axis] = n.at;
-  splitAlong(n.low, begin, cut, low);
-  splitAlong(n.high, cut, end, high);
+  both(
+      end - begin, [&] { splitAlong(n.low, begin, cut, low); },
+      [&] { splitAlong(n.high, cut, end, high); });
 }
 
 void Partition::numberVertices(base::Job& job) {
@@ -119,57 +153,48 @@ void Partition::numberVertices(base::Job& job) {
   });
 }
 
-void Partition::shareTriangles(const Surface& surface) {
+void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   const std::size_t parts = size(), count = surface.triangles.size();
-  inner_.assign(surface.position.size(), 1);
-  for (Index v = 0; v < inner_.size(); ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
-  triangleFirst_.assign(parts + 1, 0), foreignFirst_.assign(parts + 1, 0);
+  inner_.resize(surface.position.size());
+  job.forRanges(inner_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
+  });
   partOfTriangle_.resize(count), localTriangle_.resize(count);
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& v = surface.triangles[t].vertices;
+      const Index part = partOf_[v[0]];
+      const bool isOwned = part == partOf_[v[1]] && part == partOf_[v[2]];
+      partOfTriangle_[t] = isOwned ? part : kNone;
+      if (isOwned) continue;
+      for (const Index i : v) {  // some are of several such triangles
+        std::atomic_ref<std::uint8_t>(inner_[i]).store(0, std::memory_order_relaxed);
+      }
+    }
+  });
+  triangles_ = base::groupBy(
+      count, parts, [&](Index t) { return partOfTriangle_[t]; },
+      [&](Index t, Index at) { localTriangle_[t] = at; }, job);
   std::vector<std::array<Index, 2>> across;
   for (Index t = 0; t < count; ++t) {
-    const auto& v = surface.triangles[t].vertices;
-    const Index b = partOf_[v[0]];
-    const bool owned = b == partOf_[v[1]] && b == partOf_[v[2]];
-    partOfTriangle_[t] = owned ? b : kNone;
-    if (owned) {
-      localTriangle_[t] = triangleFirst_[b + 1]++;
-      continue;
-    }
+    if (partOfTriangle_[t] != kNone) continue;
     Box3f box;
-    for (const Index i : v) inner_[i] = 0, box.add(surface.position[i]);
-    forPartsAt(box, [&](Index k) { across.push_back({k, t}), ++foreignFirst_[k + 1]; });
+    for (const Index i : surface.triangles[t].vertices) box.add(surface.position[i]);
+    forPartsAt(box, [&](Index part) { across.push_back({part, t}); });
   }
-  for (std::size_t b = 0; b < parts; ++b) {
-    triangleFirst_[b + 1] += triangleFirst_[b], foreignFirst_[b + 1] += foreignFirst_[b];
-  }
-  triangles_.resize(triangleFirst_[parts]), foreign_.resize(across.size());
-  for (Index t = 0; t < count; ++t) {
-    if (const Index b = partOfTriangle_[t]; b != kNone) {
-      triangles_[triangleFirst_[b] + localTriangle_[t]] = t;
-    }
-  }
-  std::vector<Index> at(foreignFirst_.begin(), foreignFirst_.end());
-  for (const auto& [b, t] : across) foreign_[at[b]++] = t;
+  foreign_ = base::groupBy(
+      across.size(), parts, [&](Index i) { return across[i][0]; }, [](Index, Index) {}, job);
+  for (Index& member : foreign_.members) member = across[member][1];
 }
 
-void Partition::shareSamples(const Surface& surface) {
-  sampleFirst_.assign(size() + 1, 0);
-  const auto partOfSample = [&](Index r) {
-    return surface.owner[r] == kNone ? kNone : partOfTriangle_[surface.owner[r]];
-  };
-  for (Index r = 0; r < surface.owner.size(); ++r) {
-    if (const Index b = partOfSample(r); b != kNone) ++sampleFirst_[b + 1];
-  }
-  for (std::size_t b = 0; b < size(); ++b) sampleFirst_[b + 1] += sampleFirst_[b];
-  samples_.resize(sampleFirst_.back());
-  std::vector<Index> at(sampleFirst_.begin(), sampleFirst_.end());
-  localSample_.assign(surface.owner.size(), kNone);
-  for (Index r = 0; r < surface.owner.size(); ++r) {
-    const Index b = partOfSample(r);
-    if (b == kNone) continue;
-    localSample_[r] = at[b] - sampleFirst_[b];
-    samples_[at[b]++] = r;
-  }
+void Partition::shareSamples(const Surface& surface, base::Job& job) {
+  localSample_.resize(surface.owner.size());
+  samples_ = base::groupBy(
+      surface.owner.size(), size(),
+      [&](Index r) {
+        return surface.owner[r] == kNone ? kNone : partOfTriangle_[surface.owner[r]];
+      },
+      [&](Index r, Index at) { localSample_[r] = at; }, job);
 }
 
 }  // namespace tufa::reduce

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "base/group.h"
 #include "base/job.h"
 #include "reduce/box3f.h"
 #include "reduce/surface.h"
@@ -39,18 +40,18 @@ class Partition {
   [[nodiscard]] std::span<const Index> vertices(Index p) const { return of(vertices_, ranges_, p); }
   /// Triangles with all corners in a part.
   [[nodiscard]] std::span<const Index> triangles(Index p) const {
-    return of(triangles_, triangleFirst_, p);
+    return of(triangles_.members, triangles_.first, p);
   }
   /// Triangles of several parts that reach into the box of a part.
   [[nodiscard]] std::span<const Index> foreign(Index p) const {
-    return of(foreign_, foreignFirst_, p);
+    return of(foreign_.members, foreign_.first, p);
   }
   /// Reference vertices whose owners are triangles of a part.
   [[nodiscard]] std::span<const Index> samples(Index p) const {
-    return of(samples_, sampleFirst_, p);
+    return of(samples_.members, samples_.first, p);
   }
   [[nodiscard]] Index partOf(Index vertex) const { return partOf_[vertex]; }
-  /// Numbers in their part. For a reference vertex kNone if its owner is in no part.
+  /// Numbers in their part. That of a reference vertex means nothing if its owner is in none.
   [[nodiscard]] Index localVertex(Index vertex) const { return localVertex_[vertex]; }
   [[nodiscard]] Index localTriangle(Index triangle) const { return localTriangle_[triangle]; }
   [[nodiscard]] Index localSample(Index sample) const { return localSample_[sample]; }
@@ -75,24 +76,29 @@ class Partition {
                                    Index part) {
     return {all.data() + first[part], all.data() + first[part + 1]};
   }
-  void begin(const Surface& surface);
+  /// A part of the tree, with its own parts, by their numbers in it.
+  struct Tree {
+    std::vector<Node> nodes;
+    std::vector<Box3f> boxes;
+    std::vector<Index> ends;  ///< of the items of each part
+    Index add(const Tree& other);
+  };
+  void begin(const Surface& surface, base::Job& job);
   void finish(const Surface& surface, base::Job& job);
-  [[nodiscard]] Index addPart(Index end, const Box3f& box);
   [[nodiscard]] Index moveBelow(Index begin, Index end, int axis, float plane);
   [[nodiscard]] float planeBelow(float least, int axis, Index begin, Index end) const;
-  Index split(Index begin, Index end, const Box3f& box, Index most, float share);
+  [[nodiscard]] Tree split(Index begin, Index end, const Box3f& box, Index most, float share);
   void splitAlong(Index node, Index begin, Index end, const Box3f& box);
   void numberVertices(base::Job& job);
-  void shareTriangles(const Surface& surface);
-  void shareSamples(const Surface& surface);
+  void shareTriangles(const Surface& surface, base::Job& job);
+  void shareSamples(const Surface& surface, base::Job& job);
 
   std::vector<Item> items_;
   std::vector<Node> nodes_;
   std::vector<Box3f> boxes_;
   std::vector<Index> vertices_, ranges_, partOf_, localVertex_;
-  std::vector<Index> triangles_, triangleFirst_, partOfTriangle_, localTriangle_;
-  std::vector<Index> foreign_, foreignFirst_;
-  std::vector<Index> samples_, sampleFirst_, localSample_;
+  std::vector<Index> partOfTriangle_, localTriangle_, localSample_;
+  base::Groups triangles_, foreign_, samples_;
   std::vector<std::uint8_t> inner_;
 };
 

@@ -71,8 +71,11 @@ Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> 
                      std::vector<float> scales, Options options, base::Job& job)
     : options_(std::move(options)),
       job_(job),
-      reference_(reference.positions, reference.triangles, std::move(scales), job),
       surface_(makeSurface(input.positions, input.triangles, job)),
+      reference_(standsFor.empty()
+                     ? ReferenceMesh(surface_, std::move(scales), job)
+                     : ReferenceMesh(makeSurface(reference.positions, reference.triangles, job),
+                                     std::move(scales), job)),
       isReference_(standsFor.empty()) {
   surface_.rounded = options_.rounded;
   locateAll(surface_, reference_, standsFor, job);

@@ -151,8 +151,8 @@ class Reduction {
 
   Options options_;
   base::Job& job_;
-  ReferenceMesh reference_;
   Surface surface_;
+  ReferenceMesh reference_;
   Partition partition_;
   std::mutex partsMutex_;
   std::vector<std::unique_ptr<Part>> parts_;  ///< as many as threads have been at work

@@ -1,58 +1,32 @@
 #include "reduce/reference_mesh.h"
 
-#include "reduce/star.h"
-
 #include <utility>
+
+#include "base/huge_pages.h"
 
 namespace tufa::reduce {
 namespace {
-
 constexpr std::size_t kGrain = 16384;
-constexpr float kRoughCosine = 0.65f;
-
-}  // namespace
-
-ReferenceMesh::ReferenceMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
-                             std::vector<float> scales, base::Job& job)
-    : positions_(positions.begin(), positions.end()),
-      faces_(triangles.size()),
-      cornerOf_(positions.size(), kNone),
-      rough_(positions.size(), 0),
-      scales_(std::move(scales)) {
-  const std::vector<Index> opposite = oppositeCorners(positions.size(), triangles, job);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      faces_[t].vertex[i] = triangles[t].vertices[i];
-      faces_[t].opposite[i] = opposite[3 * t + i];
-      cornerOf_[faces_[t].vertex[i]] = static_cast<Index>(3 * t + i);
-    }
-  }
-  markRough(job);
 }
 
-void ReferenceMesh::markRough(base::Job& job) {
-  std::vector<Vec3f> normals(faces_.size());
+ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job)
+    : positions_(input.position),
+      cornerOf_(input.position.size(), kNone),
+      rough_(input.position.size(), 0),
+      scales_(std::move(scales)) {
+  const CornersOfVertices corners(positions_.size(), input.triangles);
+  const std::vector<Index> opposite = oppositeCorners(input.triangles, corners, job);
+  base::resizeLarge(faces_, input.triangles.size(), job);
   job.forRanges(faces_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto p = cornersOf(static_cast<Index>(f));
-      normals[f] = unit(cross(p[1] - p[0], p[2] - p[0]));
+    for (std::size_t t = begin; t < end; ++t) {
+      faces_[t].vertex = input.triangles[t].vertices;
+      for (std::size_t i = 0; i < 3; ++i) faces_[t].opposite[i] = opposite[3 * t + i];
     }
   });
   job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    constexpr int kMost = 64;
-    Vec3f normalsAround[kMost];
-    for (std::size_t v = begin; v < end; ++v) {
-      int n = 0;
-      const Index first = cornerOf_[v];
-      if (first == kNone) continue;
-      Index c = first;
-      do {
-        normalsAround[n++] = normals[c / 3];
-        c = around(c);
-      } while (c != first && c != kNone && n < kMost);
-      float leastCosine;
-      static_cast<void>(commonAxis(normalsAround, n, leastCosine));
-      rough_[v] = c == kNone || leastCosine < kRoughCosine ? kRough : 0;
+    for (Index v = static_cast<Index>(begin); v < end; ++v) {
+      if (!corners.of(v).empty()) cornerOf_[v] = corners.of(v).back();
+      rough_[v] = (input.flags[v] & (kSteep | kBorder)) != 0 ? kRough : 0;
     }
   });
 }

@@ -8,6 +8,7 @@
 
 #include "base/job.h"
 #include "reduce/corners.h"
+#include "reduce/surface.h"
 #include "reduce/triangles.h"
 
 namespace tufa::reduce {
@@ -21,9 +22,9 @@ class ReferenceMesh {
     std::array<Index, 3> opposite;  ///< the corner across the edge opposite each corner, or kNone
   };
 
-  /// `scales`: see scaleAt(); one for each position, or none.
-  ReferenceMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
-                std::vector<float> scales, base::Job& job);
+  /// The mesh of a surface as makeSurface() gives it. `scales`: see scaleAt(); one for each vertex,
+  /// or none.
+  ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job);
 
   [[nodiscard]] std::span<const Vec3f> positions() const { return positions_; }
   [[nodiscard]] std::span<const Face> faces() const { return faces_; }
@@ -191,8 +192,6 @@ class ReferenceMesh {
   static constexpr float kBeside = 1e-4f;  ///< voxels from a section, for an edge along it
   static constexpr int kMostSteps = 2000;
   static constexpr std::uint8_t kRough = 1, kHeld = 2;
-
-  void markRough(base::Job& job);
 
   std::vector<Vec3f> positions_;
   std::vector<Face> faces_;

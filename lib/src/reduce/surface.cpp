@@ -4,12 +4,15 @@
 #include <limits>
 #include <utility>
 
+#include "base/huge_pages.h"
+#include "reduce/reference_mesh.h"
 #include "reduce/star.h"
 
 namespace tufa::reduce {
 namespace {
 
 constexpr std::size_t kGrain = 16384;
+constexpr float kSteepCosine = 0.65f;
 constexpr float kFar = std::numeric_limits<float>::max();
 
 // Vertices are marked from several threads at a time.
@@ -22,6 +25,7 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
   Vec3f normals[kMost];
   const auto vertexAt = [&](Index c) { return s.triangles[c / 3].vertices[c % 3]; };
   int n = 0;
+  bool isSteep = false;
   Index sum = 0;  // each neighbour once as start and once as end of the link, unless it is open
   const Vec3f p = s.position[v];
   for (const Index c : corners.of(v)) {
@@ -29,13 +33,17 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
     sum += a - b;
     const Vec3f normal = cross(s.position[a] - p, s.position[b] - p);
     const float l = length(normal);
-    if (!(l > 0)) continue;
+    if (!(l > 0)) {
+      isSteep = true;
+      continue;
+    }
     s.quadric[v].addPlane(normal * (1 / l), l / 6);
     if (n < kMost) normals[n++] = normal * (1 / l);
   }
   if (sum != 0) setFlag(s.flags[v], kBorder);
   float leastCosine = -1;
   if (n > 0) s.axis[v] = commonAxis(normals, n, leastCosine);
+  if (isSteep || leastCosine < kSteepCosine) setFlag(s.flags[v], kSteep);
   if (leastCosine >= kLeastCosine) return;
   s.axis[v] = {};
   setFlag(s.flags[v], kNarrow);
@@ -93,8 +101,8 @@ Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> 
   s.triangles.assign(triangles.begin(), triangles.end());
   s.source.resize(count);
   for (Index i = 0; i < count; ++i) s.source[i] = i;
-  s.quadric.assign(count, {});
-  s.axis.assign(count, {});
+  base::resizeLarge(s.quadric, count, job);
+  base::resizeLarge(s.axis, count, job);
   s.flags.assign(count, 0);
   const CornersOfVertices corners(count, s.triangles);
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {

@@ -10,14 +10,17 @@
 #include "reduce/corners.h"
 #include "reduce/lines.h"
 #include "reduce/local_quadric.h"
-#include "reduce/reference_mesh.h"
 
 namespace tufa::reduce {
 
 enum VertexFlag : std::uint8_t {
   kNarrow = 1,  ///< other surface is near: intersections are tested explicitly
   kBorder = 2,  ///< on an open border: stays
+  /// In the input a triangle turned by more than 49 degrees from the common axis, or had no area.
+  kSteep = 4,
 };
+
+class ReferenceMesh;
 
 /// The mesh between phases: arrays without gaps.
 struct Surface {
@@ -68,8 +71,8 @@ struct Surface {
   }
 };
 
-/// A surface of these positions and triangles, with quadrics, axes and border flags. Vertices
-/// without an axis, and those beside them, are narrow.
+/// A surface of these positions and triangles, with quadrics, axes, and flags of borders and steep
+/// stars. Vertices without an axis, and those beside them, are narrow.
 [[nodiscard]] Surface makeSurface(std::span<const Vec3f> positions,
                                   std::span<const Triangle> triangles, base::Job& job);
 

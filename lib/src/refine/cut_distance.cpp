@@ -182,8 +182,8 @@ class CutDistance::Measure {
     triangles_.positions.resize(mesh_.positions.size());
     forRanges(mesh_.positions.size(),
               [&](std::size_t i) { triangles_.positions[i] = all_.toVoxels(mesh_.positions[i]); });
-    triangles_.opposite =
-        reduce::oppositeCorners(mesh_.positions.size(), triangles_.corners, all_.job_);
+    cornersOf_.emplace(mesh_.positions.size(), triangles_.corners);
+    triangles_.opposite = reduce::oppositeCorners(triangles_.corners, *cornersOf_, all_.job_);
   }
 
   void add(const Triangle& corners, std::uint32_t id) {
@@ -207,7 +207,6 @@ class CutDistance::Measure {
   // The nearest triangle around a vertex's cluster, or where that is too far, one that lies nearer
   // around the corners of that.
   void findOwners() {
-    cornersOf_.emplace(mesh_.positions.size(), triangles_.corners);
     const reduce::CornersOfVertices& corners = *cornersOf_;
     collectCoarse(wanted_.size(), [&](std::size_t r, std::vector<VertexIndex>& coarse) {
       if (wanted_[r] == 0 || all_.owner_[r] != kNone) return;
@@ -419,7 +418,7 @@ Deviation CutDistance::total(const octree::Cut& cut, const Mesh& mesh) const {
 Deviation CutDistance::measureWhole(const octree::Cut& cut, const Mesh& mesh,
                                     float expected) const {
   const std::vector<Triangle> faces = triangulate(base_.mesh);
-  const reduce::ReferenceMesh reference(points_, faces, {}, job_);
+  const reduce::ReferenceMesh reference(reduce::makeSurface(points_, faces, job_), {}, job_);
   std::vector<Vec3f> positions(mesh.positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = toVoxels(mesh.positions[i]);
   reduce::Surface surface = reduce::makeSurface(positions, triangulate(mesh), job_);

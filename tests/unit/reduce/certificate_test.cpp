@@ -35,7 +35,7 @@ std::vector<Index> nearestVertices(const test::FineMesh& mesh, const test::FineM
 
 Certificate certified(const test::FineMesh& mesh, const test::FineMesh& reference, float expected) {
   base::Job job(1, {});
-  const ReferenceMesh to(reference.positions, reference.triangles, {}, job);
+  const ReferenceMesh to(makeSurface(reference.positions, reference.triangles, job), {}, job);
   Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
   locateAll(surface, to, nearestVertices(mesh, reference), job);
   return certify(surface, to, expected, job);

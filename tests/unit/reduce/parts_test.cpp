@@ -148,7 +148,7 @@ class ReferenceMeshTest : public testing::Test {
  protected:
   base::Job job{1, {}};
   test::FineMesh mesh = test::subdivided(test::box(8, 8, 8), 4);
-  ReferenceMesh reference{mesh.positions, mesh.triangles, {}, job};
+  ReferenceMesh reference{makeSurface(mesh.positions, mesh.triangles, job), {}, job};
 
   // A face at the vertex nearest to p.
   Index faceAt(Vec3f p) const {
@@ -232,7 +232,7 @@ TEST(Partition, CutsBetweenVertices) {
 TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   const test::FineMesh mesh = test::bumpySphere(5, 20, 1, 1);
   base::Job job(1, {});
-  const ReferenceMesh reference(mesh.positions, mesh.triangles, {}, job);
+  const ReferenceMesh reference(makeSurface(mesh.positions, mesh.triangles, job), {}, job);
   Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
   locateAll(surface, reference, {}, job);
   Partition partition;
@@ -259,11 +259,48 @@ TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   EXPECT_GT(samples, mesh.positions.size() / 2);
 }
 
+std::vector<std::vector<Index>> verticesOf(const Partition& partition) {
+  std::vector<std::vector<Index>> all;
+  for (Index p = 0; p < partition.size(); ++p) {
+    all.emplace_back(partition.vertices(p).begin(), partition.vertices(p).end());
+  }
+  return all;
+}
+
+// Also where an object has held a larger surface before. As large as several threads share.
+TEST(Partition, IsTheSameAlongItsOwnTreeAndForAnyThreads) {
+  const test::FineMesh large = test::subdivided(test::box(160, 120, 80), 7);
+  const test::FineMesh small = test::bumpySphere(5, 20, 1, 1);
+  ASSERT_GT(large.positions.size(), 1U << 16);
+  std::vector<std::vector<std::vector<Index>>> found;
+  for (const int threads : {1, 2}) {
+    base::Job job(threads, {});
+    job.run([&] {
+      Partition partition;
+      for (const test::FineMesh* mesh : {&large, &small}) {
+        const Surface surface = makeSurface(mesh->positions, mesh->triangles, job);
+        partition.build(surface, 500, 0.5f, job);
+        found.push_back(verticesOf(partition));
+        const std::vector<Partition::Node> tree = partition.tree();
+        partition.build(surface, tree, job);
+        found.push_back(verticesOf(partition));
+      }
+    });
+  }
+  ASSERT_EQ(found.size(), 8U);
+  for (const std::size_t i : {0U, 2U}) {
+    std::size_t count = 0;
+    for (const auto& vertices : found[i]) count += vertices.size();
+    EXPECT_EQ(count, (i == 0 ? large : small).positions.size());
+    for (const std::size_t other : {1U, 4U, 5U}) EXPECT_EQ(found[i], found[i + other]);
+  }
+}
+
 // Marks of a plate of this thickness.
 std::size_t marksOfPlate(float thickness, float reach) {
   test::FineMesh mesh = test::subdivided(test::box(16, 16, thickness), 5);
   base::Job job(1, {});
-  const ReferenceMesh reference(mesh.positions, mesh.triangles, {}, job);
+  const ReferenceMesh reference(makeSurface(mesh.positions, mesh.triangles, job), {}, job);
   Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
   locateAll(surface, reference, {}, job);
   Partition partition;
@@ -291,7 +328,7 @@ TEST(Sections, StartAtAVertexInWhateverFaceIsGiven) {
   test::FineMesh ball = test::subdivided(test::octahedron(8), 3);
   for (Vec3f& p : ball.positions) p = unit(p) * 8;
   base::Job job(1, {});
-  const ReferenceMesh reference(ball.positions, ball.triangles, {}, job);
+  const ReferenceMesh reference(makeSurface(ball.positions, ball.triangles, job), {}, job);
   for (Index v = 0; v < ball.positions.size(); ++v) {
     const Vec3f from = ball.positions[v];
     reference.allAround(v, [&](Index towards) {
