@@ -17,15 +17,29 @@ cmake --build --preset fuzz --parallel "$(tools/jobs.sh)"
 
 export LSAN_OPTIONS=suppressions=tests/lsan.supp:print_suppressions=0
 [ $# -gt 0 ] || set -- $(ls tests/fuzz/corpus)
-for target in "$@"; do
-  found=build/fuzz/corpus/$target
+
+run() {
+  found=build/fuzz/corpus/$1
   mkdir -p "$found" build/fuzz/broken
-  log=build/fuzz/$target.log
-  build/fuzz/bin/fuzz_"$target" -seed=1 -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=60 \
-    -print_final_stats=1 -artifact_prefix=build/fuzz/broken/"$target"- \
-    "$found" tests/fuzz/corpus/"$target" >"$log" 2>&1 || {
+  log=build/fuzz/$1.log
+  build/fuzz/bin/fuzz_"$1" -seed=1 -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=60 \
+    -print_final_stats=1 -artifact_prefix=build/fuzz/broken/"$1"- \
+    "$found" tests/fuzz/corpus/"$1" >"$log" 2>&1 || {
     tail -n 40 "$log" >&2
-    exit 1
+    return 1
   }
-  printf '%s: %s executions\n' "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")"
+  printf '%s: %s executions\n' "$1" "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")"
+}
+
+# As many targets at a time as there are cores.
+while [ $# -gt 0 ]; do
+  running=
+  for _ in $(seq "$(nproc)"); do
+    [ $# -gt 0 ] || break
+    run "$1" &
+    running="$running $!"
+    shift
+  done
+  for target in $running; do wait "$target" || failed=1; done
+  [ -z "${failed-}" ] || exit 1
 done
