@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "reduce/star.h"
 
@@ -44,7 +45,9 @@ class Neighbourhood {
       grown.growBy(reach_);
       items_.push_back({unit(cross(p[1] - p[0], p[2] - p[0])), box, grown, p[0], t});
     }
-    if (items_.empty()) return;
+    List all(items_.size());
+    std::iota(all.begin(), all.end(), 0);
+    if (all.empty() || isOneSheet(all)) return;
     bounds.lower = maxVec3f(bounds.lower, within.lower);
     bounds.upper = minVec3f(bounds.upper, within.upper);
     const float mean = sizes / static_cast<float>(items_.size());

@@ -67,10 +67,15 @@ void Part::loadTables(const Surface& surface, std::span<const Index> triangles) 
 void Part::loadSamples(const Surface& surface) {
   firstSample_.assign(triangleCount_, kNone);
   sampleIds_ = partition_->samples(number_);
-  samples_.resize(sampleIds_.size());
+  samples_.resize(sampleIds_.size()), owners_.resize(sampleIds_.size());
+  isRough_.resize(sampleIds_.size());
+  hasRough_ = false;
   for (Index s = 0; s < sampleIds_.size(); ++s) {
-    const Index t = partition_->localTriangle(surface.owner[sampleIds_[s]]);
-    samples_[s] = {reference_->positions()[sampleIds_[s]], firstSample_[t], t, 0, kNone};
+    const Index r = sampleIds_[s], t = partition_->localTriangle(surface.owner[r]);
+    samples_[s] = {reference_->positions()[r], firstSample_[t]};
+    owners_[s] = {t, 0, kNone};
+    isRough_[s] = reference_->isRough(r);
+    hasRough_ |= isRough_[s] != 0;
     firstSample_[t] = s;
   }
 }
@@ -126,7 +131,7 @@ void Part::giveSamples() {
   for (const Taken& taken : taken_) {
     Index& first = firstSample_[taken.triangle];
     samples_[taken.sample].next = first;
-    samples_[taken.sample].owner = taken.triangle;
+    owners_[taken.sample].triangle = taken.triangle;
     first = taken.sample;
   }
 }

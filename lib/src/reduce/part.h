@@ -54,8 +54,11 @@ class Part {
   /// A reference vertex, in the list of its owner.
   struct Sample {
     Vec3f p;
-    Index next, owner;
-    Index stamp, taker;  ///< in the attempt `stamp` its owner would be `taker`
+    Index next;
+  };
+  struct Owner {
+    Index triangle;
+    Index stamp, taker;  ///< in the attempt `stamp` it would be `taker`
   };
   struct Taken {
     Index sample, triangle;
@@ -250,6 +253,9 @@ class Part {
   // For each corner; for each triangle its first sample; for each sample.
   std::vector<Index> vertex_, opposite_, firstSample_;
   std::vector<Sample> samples_;
+  std::vector<Owner> owners_;
+  std::vector<std::uint8_t> isRough_;
+  bool hasRough_ = false;  ///< any of the samples
   std::span<const Index> sampleIds_;
 
   // The queue: buckets by the leading bits of the cost, first in first out.

@@ -291,7 +291,7 @@ Outcome Part::clusterDistanceGuard(Index nearest) {
 // As samplesNear(); the new triangle of a sample is found by its angle.
 bool Part::clusterSamplesNear(Index t) {
   for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
-    if (!isKnot_ && reference_->isRough(sampleIds_[s])) return false;
+    if (!isKnot_ && isRough_[s] != 0) return false;
     const Vec3f p = samples_[s].p - place_;
     const float* const next =
         std::upper_bound(turns_, turns_ + size_, turnOf(dot(p, frame_.x), dot(p, frame_.y)));

@@ -268,17 +268,17 @@ struct Part::Changed {
 Index Part::ownerAfter(Index r) const {
   const Index local = partition_->localSample(r);
   if (local >= sampleIds_.size() || sampleIds_[local] != r) return kNone;
-  const Sample& s = samples_[local];
-  return s.stamp == now_ ? s.taker : s.owner;
+  const Owner& owner = owners_[local];
+  return owner.stamp == now_ ? owner.taker : owner.triangle;
 }
 
 // Faces of the reference at rough vertices that change their owner, and held ones below an edge
 // that changes.
 bool Part::facesNear() {
   for (const Taken& t : taken_) {
-    const Index r = sampleIds_[t.sample];
-    if (!reference_->isRough(r)) continue;
-    reference_->allAround(r, [&](Index f) {
+    if (!hasRough_) break;
+    if (isRough_[t.sample] == 0) continue;
+    reference_->allAround(sampleIds_[t.sample], [&](Index f) {
       roughFaces_.push_back(f);
       return true;
     });
@@ -287,8 +287,8 @@ bool Part::facesNear() {
   std::sort(roughFaces_.begin(), roughFaces_.end());
   roughFaces_.erase(std::unique(roughFaces_.begin(), roughFaces_.end()), roughFaces_.end());
   for (const Taken& t : taken_) {
-    samples_[t.sample].stamp = now_;
-    samples_[t.sample].taker = t.triangle;
+    owners_[t.sample].stamp = now_;
+    owners_[t.sample].taker = t.triangle;
   }
   return std::all_of(roughFaces_.begin(), roughFaces_.end(), [&](Index f) { return faceNear(f); });
 }

@@ -195,6 +195,26 @@ void Partition::shareSamples(const Surface& surface, base::Job& job) {
         return surface.owner[r] == kNone ? kNone : partOfTriangle_[surface.owner[r]];
       },
       [&](Index r, Index at) { localSample_[r] = at; }, job);
+  job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<Index> next, sorted;
+    for (std::size_t p = begin; p < end; ++p) sortSamples(surface, p, next, sorted);
+  });
+}
+
+// Those of a triangle together, as they are read together. Where triangles have one or two, the
+// order of the reference serves as well.
+void Partition::sortSamples(const Surface& surface, std::size_t part, std::vector<Index>& next,
+                            std::vector<Index>& sorted) {
+  const std::span<Index> own{samples_.members.data() + samples_.first[part],
+                             samples_.members.data() + samples_.first[part + 1]};
+  const std::size_t triangles = triangles_.first[part + 1] - triangles_.first[part];
+  if (own.size() < 2 * triangles) return;
+  next.assign(triangles + 1, 0);
+  for (const Index r : own) ++next[localTriangle_[surface.owner[r]] + 1];
+  for (std::size_t t = 0; t < triangles; ++t) next[t + 1] += next[t];
+  sorted.resize(own.size());
+  for (const Index r : own) sorted[next[localTriangle_[surface.owner[r]]]++] = r;
+  for (Index s = 0; s < own.size(); ++s) own[s] = sorted[s], localSample_[sorted[s]] = s;
 }
 
 }  // namespace tufa::reduce

@@ -46,7 +46,7 @@ class Partition {
   [[nodiscard]] std::span<const Index> foreign(Index p) const {
     return of(foreign_.members, foreign_.first, p);
   }
-  /// Reference vertices whose owners are triangles of a part.
+  /// Reference vertices whose owners are triangles of a part, in an order that suits its lists.
   [[nodiscard]] std::span<const Index> samples(Index p) const {
     return of(samples_.members, samples_.first, p);
   }
@@ -92,6 +92,8 @@ class Partition {
   void numberVertices(base::Job& job);
   void shareTriangles(const Surface& surface, base::Job& job);
   void shareSamples(const Surface& surface, base::Job& job);
+  void sortSamples(const Surface& surface, std::size_t part, std::vector<Index>& next,
+                   std::vector<Index>& sorted);
 
   std::vector<Item> items_;
   std::vector<Node> nodes_;

@@ -176,6 +176,8 @@ class ReferenceMesh {
       if (c == kNone) return {};
       face = c / 3;
       const int at = static_cast<int>(c - 3 * face);
+      prefetchAcross(at == 2 ? c - 2 : c + 1);
+      prefetchAcross(at == 0 ? c + 2 : c - 1);
       const Vec3f w = positions_[faces_[face].vertex[static_cast<std::size_t>(at)]] - section.start;
       const float sw = dot(w, side);
       // The edge from right to left is opposite c, turned round: right comes after c's successor.
@@ -189,6 +191,12 @@ class ReferenceMesh {
   }
 
  private:
+  // Asks for a face that a walk may enter next while the position that decides it is read.
+  void prefetchAcross(Index c) const {
+    const Index across = faces_[c / 3].opposite[c % 3];
+    __builtin_prefetch(faces_.data() + (across == kNone ? 0 : across / 3));
+  }
+
   static constexpr float kBeside = 1e-4f;  ///< voxels from a section, for an edge along it
   static constexpr int kMostSteps = 2000;
   static constexpr std::uint8_t kRough = 1, kHeld = 2;
