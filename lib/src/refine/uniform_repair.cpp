@@ -33,16 +33,20 @@ class UniformRepair {
         2 * std::min(kMostRounding * surface_.affine().leastHeight(),
                      largestRounding(surface_.volume.blocks, surface_.volume.transform));
     report_.movedVertices += orderAlongCreases(surface_, job_);
-    Withdrawal withdrawn = withdrawPlacements(surface_, margin, job_);
-    candidates_ = std::move(withdrawn.candidates);
-    report_.intersectionsFound = withdrawn.pairsFound;
-    report_.movedVertices += withdrawn.vertices;
-    if (withdrawn.left > 0) repairCandidates();
-    for (int i = 0; i < kMostReturns && putBackComponents(); ++i) repairCandidates();
+    withdraw(margin);
+    for (int i = 0; i < kMostReturns && putBackComponents(); ++i) withdraw(margin);
     return std::move(candidates_);
   }
 
  private:
+  void withdraw(double margin) {
+    const Withdrawal withdrawn = withdrawPlacements(surface_, margin, job_);
+    addCandidates(withdrawn.candidates);
+    report_.intersectionsFound = std::max(report_.intersectionsFound, withdrawn.pairsFound);
+    report_.movedVertices += withdrawn.vertices;
+    if (withdrawn.left > 0) repairCandidates();
+  }
+
   void repairCandidates() {
     Source own = sourceOf(surface_, job_);
     own.crossings = nullptr;  // the forest has no place for the centres of fans
@@ -64,7 +68,10 @@ class UniformRepair {
     const std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_);
     if (misplaced.empty()) return false;
     const std::vector<Position> fallbacks = sourceOf(surface_, job_).massPoints(misplaced);
-    for (std::size_t i = 0; i < misplaced.size(); ++i) mesh_.positions[misplaced[i]] = fallbacks[i];
+    for (std::size_t i = 0; i < misplaced.size(); ++i) {
+      mesh_.positions[misplaced[i]] = fallbacks[i];
+      surface_.sheets.withdraw(misplaced[i]);
+    }
     report_.movedVertices += misplaced.size();
     std::vector<intersect::PolygonIndex> around;
     for (std::uint32_t i = 0; i < mesh_.quads.size(); ++i) {

@@ -39,6 +39,8 @@ constexpr double kLeastArea = 0.02;
 constexpr double kApart = 0.1;
 // Sheets of a smaller cosine (140 degrees apart) may have faces that are a fold.
 constexpr double kSharpSheets = -0.766;
+// And a fold sharper than they are by less than this, in its cosine: 3 degrees at 145.
+constexpr double kAsSharp = 0.03;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
 
@@ -214,7 +216,7 @@ class PlacementGuard {
     return !isSharpAt(a.low, na, nb) || !isSharpAt(a.high, na, nb);
   }
 
-  // Whether the two faces lie on two of the sheets known at a vertex.
+  // Whether the two faces lie on two of the sheets known at a vertex, and fold no more than these.
   [[nodiscard]] bool isSharpAt(VertexIndex vertex, const Vec3& na, const Vec3& nb) const {
     const uniform::MeetingSheets sheets = surface_.sheets.sheets(mesh_, vertex);
     if (sheets.count < 2) return false;
@@ -230,8 +232,9 @@ class PlacementGuard {
       return best;
     };
     const int first = sheetOf(na), second = sheetOf(nb);
-    return first >= 0 && second >= 0 && first != second &&
-           Vec3(sheets.normals[first]).dot(Vec3(sheets.normals[second])) < kSharpSheets;
+    if (first < 0 || second < 0 || first == second) return false;
+    const double sharp = Vec3(sheets.normals[first]).dot(Vec3(sheets.normals[second]));
+    return sharp < kSharpSheets && na.dot(nb) > (sharp - kAsSharp) * na.length() * nb.length();
   }
 
   void findPairs(bool first, std::vector<Conflict>& conflicts) {

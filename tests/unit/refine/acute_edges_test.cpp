@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "grid/volume.h"
@@ -69,6 +70,51 @@ int countOnCrease(const uniform::UniformSurface& surface, const Wedge& wedge) {
     count += wedge.offCrease(pointOf(surface, v)) < 0.02 ? 1 : 0;
   }
   return count;
+}
+
+// Edges of more than 150 degrees between faces of more than a twentieth of a square voxel.
+int countFolds(const Mesh& mesh) {
+  struct Face {
+    VertexIndex low, high;
+    Vec3 normal{0.0};
+  };
+  std::vector<Face> faces;
+  for (const Triangle& t : triangulate(mesh)) {
+    const Vec3 a(mesh.positions[t.vertices[0]]);
+    const Vec3 normal =
+        (Vec3(mesh.positions[t.vertices[1]]) - a).cross(Vec3(mesh.positions[t.vertices[2]]) - a);
+    if (normal.length() < 2 * 0.05) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexIndex v = t.vertices[i], w = t.vertices[(i + 1) % 3];
+      faces.push_back({std::min(v, w), std::max(v, w), normal.unitOrX()});
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    return std::pair(a.low, a.high) < std::pair(b.low, b.high);
+  });
+  int folds = 0;
+  for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
+    const Face &a = faces[i], &b = faces[i + 1];
+    folds += a.low == b.low && a.high == b.high && a.normal.dot(b.normal) < -0.866 ? 1 : 0;
+  }
+  return folds;
+}
+
+// Sheets further apart than 140 degrees may fold, but no more than they do; and components that are
+// put back leave no fold behind.
+TEST(AcuteEdges, FoldNoMoreThanTheirSheets) {
+  for (int seed = 0; seed < 24; ++seed) {
+    const double degrees = 34 + seed % 3;
+    const Wedge wedge(degrees, {30.3, 30.1 + 0.13 * seed, 30.4}, {1, 0.1 * seed, 0.2},
+                      {0.3 - 0.05 * seed, 0.2, 1});
+    const auto grid = makeGrid(wedge, 60);
+    base::Job job(1, {});
+    uniform::UniformSurface surface = makeSurface(*grid, job);
+    ContourReport report;
+    (void)repairUniform(surface, report, job);
+    EXPECT_EQ(countFolds(surface.mesh), 0) << seed;
+    EXPECT_EQ(report.intersectionsLeft, 0U) << seed;
+  }
 }
 
 TEST(OrderAlongCreases, KeepsVerticesOnTheirCreaseAndInTheirPlaces) {
