@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -99,9 +100,9 @@ class CreaseVertices {
     }
     std::sort(vertices_.begin(), vertices_.end());
   }
-  // The nearest one within kDeepest; none: the number of vertices.
-  [[nodiscard]] VertexIndex nearestTo(const Vec3& point) const {
-    auto best = static_cast<VertexIndex>(mesh_.positions.size());
+  // Those within kDeepest, the nearest one first.
+  [[nodiscard]] std::vector<VertexIndex> nearTo(const Vec3& point) const {
+    std::vector<VertexIndex> found;
     double nearest = cell_ * cell_;
     const Cell middle = cellOf(point);
     for (int i = 0; i < 27; ++i) {
@@ -110,10 +111,12 @@ class CreaseVertices {
           std::lower_bound(vertices_.begin(), vertices_.end(), std::pair(cell, VertexIndex{0}));
       for (; at != vertices_.end() && at->first == cell; ++at) {
         const double away = (Vec3(mesh_.positions[at->second]) - point).squaredLength();
-        if (away < nearest) nearest = away, best = at->second;
+        if (away >= cell_ * cell_) continue;
+        found.push_back(at->second);
+        if (away < nearest) nearest = away, std::swap(found.front(), found.back());
       }
     }
-    return best;
+    return found;
   }
 
  private:
@@ -130,20 +133,23 @@ class CreaseVertices {
   std::vector<std::pair<Cell, VertexIndex>> vertices_;
 };
 
-// The shortest way along the normal of one of a crease's sheets on which a box passes that sheet;
-// `side` is 1 for solid and -1 for a bubble, which is on the sheets' other side. 0 if the box is
-// past one already, or too far behind all.
-Vec3 wayOut(const uniform::MeetingSheets& meeting, const Vec3& crease, double side,
-            const std::vector<Position>& box, double voxelSize) {
+// The shortest way along the normal of one of the sheets that meet at a crease's first vertex on
+// which a box passes that sheet at all of its vertices, as some may be behind it. `side` is 1 for
+// solid and -1 for a bubble, which is on the sheets' other side. 0 if the box is past one already,
+// or too far behind all.
+Vec3 wayOut(const Mesh& mesh, const uniform::VertexSheets& sheets,
+            const std::vector<VertexIndex>& crease, double side, const std::vector<Position>& box,
+            double voxelSize) {
+  const uniform::MeetingSheets meeting = sheets.sheets(mesh, crease.front());
   Vec3 way(0);
-  double least = (kDeepest + kLifted) * voxelSize;
+  double least = 2 * kDeepest * voxelSize;
   for (int i = 0; i < meeting.count; ++i) {
     const Vec3 normal = Vec3(meeting.normals[i]) * side;
-    double lowest = least;
-    for (const Position& corner : box) {
-      lowest = std::min(lowest, normal.dot(Vec3(corner) - crease));
-    }
-    const double length = kLifted * voxelSize - lowest;
+    double lowest = std::numeric_limits<double>::max(), highest = -lowest;
+    for (const Position& corner : box) lowest = std::min(lowest, normal.dot(Vec3(corner)));
+    for (const VertexIndex v : crease)
+      highest = std::max(highest, normal.dot(Vec3(mesh.positions[v])));
+    const double length = highest + kLifted * voxelSize - lowest;
     if (length <= 0) return Vec3(0);
     if (length < least) least = length, way = normal * length;
   }
@@ -205,16 +211,15 @@ std::size_t liftLoneComponents(Mesh& mesh, uniform::VertexSheets& sheets,
     const std::vector<VertexIndex> vertices = verticesOf(mesh, component);
     Vec3 middle(0);
     for (const VertexIndex v : vertices) middle += Vec3(massPoint(v)) * (1.0 / kCorners);
-    const VertexIndex crease = creases.nearestTo(middle);
-    if (crease == mesh.positions.size()) continue;
+    const std::vector<VertexIndex> crease = creases.nearTo(middle);
+    if (crease.empty()) continue;
     std::vector<Position> box;
     for (const VertexIndex v : vertices) {
       box.push_back(middle + (Vec3(massPoint(v)) - middle) * kShare);
     }
     const double volume =
         volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(massPoint(v)); });
-    const Vec3 way = wayOut(sheets.sheets(mesh, crease), mesh.positions[crease],
-                            volume < 0 ? -1.0 : 1.0, box, source.voxelSize);
+    const Vec3 way = wayOut(mesh, sheets, crease, volume < 0 ? -1.0 : 1.0, box, source.voxelSize);
     if (way == Vec3(0)) continue;
     for (std::size_t i = 0; i < kCorners; ++i) moves.push_back({vertices[i], Vec3(box[i]) + way});
   }

@@ -2,14 +2,22 @@
 
 #include <algorithm>
 
+#include "base/vec3f.h"
+
 namespace tufa::refine {
 namespace {
 
 // Parts of the way to the next place, which are tried first.
 constexpr double kParts[] = {0.05, 0.1, 0.2, 0.4};
 // Voxels that a vertex may slide along its crease, and what their square counts beside other moves.
-constexpr double kSlides[] = {0.05, 0.1, 0.2, 0.3};
+constexpr double kSlides[] = {0.05, 0.1, 0.2, 0.3, 0.45, 0.6};
 constexpr double kCostOfSlide = 0.05;
+// And over a sheet, in these directions.
+constexpr double kSlidesOnSheet[] = {0.1, 0.25, 0.5};
+constexpr double kDiagonal = 0.70710678;
+constexpr double kDirections[][2] = {
+    {1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
+    {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
 // What a vertex has come to: it may take so many parts of the way to its plain point, or slides,
 // and as many from there to its mass point.
 constexpr std::uint8_t kMostParts = 6;
@@ -28,6 +36,7 @@ void PlacementMoves::add(VertexIndex vertex, const Position& plain, const Positi
   };
   const bool isPlaced = steps_[vertex] < kAtPlain && !(plain == from);
   if (isPlaced) addSlides(vertex, moves);
+  addSlidesOnSheet(vertex, moves);
   const std::uint8_t step = isPlaced ? steps_[vertex] : std::max(steps_[vertex], kAtPlain);
   if (step != kAtPlain - 1 && step != kAtMassPoint - 1) {
     for (const double share : kParts) {
@@ -50,6 +59,24 @@ void PlacementMoves::addSlides(VertexIndex vertex, std::vector<PlacementMove>& m
       const Vec3 to = at + along * way;
       const double cost = kCostOfSlide * (to - at).squaredLength();
       moves.push_back({vertex, {to[0], to[1], to[2]}, step, cost, true});
+    }
+  }
+}
+
+// Over the sheet that a vertex is on, in several directions: as far as the sheet is flat, the
+// surface stays where it was.
+void PlacementMoves::addSlidesOnSheet(VertexIndex vertex, std::vector<PlacementMove>& moves) const {
+  if (steps_[vertex] >= kMostParts) return;
+  if (surface_.sheets.kind(vertex) != uniform::VertexSheets::Kind::Near) return;
+  const uniform::MeetingSheets sheets = surface_.sheets.sheets(surface_.mesh, vertex);
+  const Vec3 at(surface_.mesh.positions[vertex]);
+  const base::Frame frame = base::frameAbout(base::Vec3f(Vec3(sheets.normals[0])));
+  const auto step = static_cast<std::uint8_t>(steps_[vertex] + 1);
+  for (const double slide : kSlidesOnSheet) {
+    const double length = slide * surface_.affine().voxelSize();
+    for (const auto& [x, y] : kDirections) {
+      const Vec3 to = at + (Vec3(frame.x) * x + Vec3(frame.y) * y) * length;
+      moves.push_back({vertex, {to[0], to[1], to[2]}, step, kCostOfSlide * length * length, true});
     }
   }
 }

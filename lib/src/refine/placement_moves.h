@@ -16,8 +16,8 @@ struct PlacementMove {
   bool isSlide = false;
 };
 
-/// The moves of vertices that were placed at creases: along the crease, which leaves the surface
-/// where it was; part of the way to the point of the QEF or to the mass point; and all of it. Each
+/// The moves of vertices at and beside creases: along the crease or over the sheet, which leaves the
+/// surface where it was; part of the way to the point of the QEF or to the mass point; and all of it. Each
 /// vertex makes few of them, so withdrawals end.
 class PlacementMoves {
  public:
@@ -40,6 +40,7 @@ class PlacementMoves {
  private:
   [[nodiscard]] Vec3 alongCrease(VertexIndex vertex) const;
   void addSlides(VertexIndex vertex, std::vector<PlacementMove>& moves) const;
+  void addSlidesOnSheet(VertexIndex vertex, std::vector<PlacementMove>& moves) const;
 
   const uniform::UniformSurface& surface_;
   std::vector<std::uint8_t> steps_;  ///< places that each vertex has left

@@ -392,6 +392,7 @@ class PlacementGuard {
       if (placementMoves_.note(move)) ++result_.vertices;
       mesh_.positions[move.vertex] = move.to;
       if (PlacementMoves::leavesCrease(move)) surface_.sheets.withdraw(move.vertex);
+      if (move.isSlide) surface_.sheets.setOutOfCell(move.vertex);
       moved_[move.vertex] = 1;
     }
     return any;
