@@ -16,7 +16,7 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   box_ = partition.box(number);
   const auto vertices = partition.vertices(number);
   vertexCount_ = static_cast<Index>(vertices.size());
-  position_.resize(vertexCount_), axis_.resize(vertexCount_), quadric_.resize(vertexCount_);
+  position_.resize(vertexCount_), axis_.resize(vertexCount_);
   flags_.resize(vertexCount_), inner_.resize(vertexCount_), face_.resize(vertexCount_);
   corner_.resize(vertexCount_);
   version_.assign(vertexCount_, 0), stamp_.assign(vertexCount_, 0);
@@ -25,10 +25,11 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
     position_[i] = surface.position[v], axis_[i] = surface.axis[v];
-    quadric_[i] = surface.quadric[v], flags_[i] = surface.flags[v];
+    flags_[i] = surface.flags[v];
     face_[i] = surface.face[v], inner_[i] = partition.isInner(v);
   }
   loadTables(surface, partition.triangles(number));
+  loadQuadrics();
   loadSamples(surface);
   loadLines(surface);
   lowest_ = kBuckets;
@@ -64,6 +65,21 @@ void Part::loadTables(const Surface& surface, std::span<const Index> triangles) 
   }
 }
 
+// Of the planes of the triangles as they are now. Those that a vertex has gathered in phases before
+// would hold it back, although the distance guard knows better how far it may go (memoryless
+// simplification, Lindstrom and Turk 1998).
+void Part::loadQuadrics() {
+  quadric_.assign(vertexCount_, {});
+  for (Index t = 0; t < triangleCount_; ++t) {
+    Vec3f p[3];
+    triangleAt(t, p);
+    const Vec3f normal = cross(p[1] - p[0], p[2] - p[0]);
+    const float l = length(normal);
+    if (!(l > 0)) continue;
+    for (Index i = 0; i < 3; ++i) quadric_[vertex_[3 * t + i]].addPlane(normal * (1 / l), l / 6);
+  }
+}
+
 void Part::loadSamples(const Surface& surface) {
   firstSample_.assign(triangleCount_, kNone);
   sampleIds_ = partition_->samples(number_);
@@ -87,8 +103,7 @@ void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) const {
     const Index v = vertices[i];
     if (inner_[i] != 0) surface.axis[v] = axis_[i], surface.flags[v] = flags_[i];
     if (moved_[i] == 0) continue;
-    surface.position[v] = position_[i], surface.quadric[v] = quadric_[i];
-    surface.face[v] = face_[i];
+    surface.position[v] = position_[i], surface.face[v] = face_[i];
     if (!isOnLine(i)) surface.source[v] = kNone;
   }
   for (Index t = 0; t < triangleCount_; ++t) {

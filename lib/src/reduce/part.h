@@ -8,6 +8,7 @@
 
 #include "reduce/box_list.h"
 #include "reduce/lines.h"
+#include "reduce/local_quadric.h"
 #include "reduce/operations.h"
 #include "reduce/partition.h"
 #include "reduce/reference_mesh.h"
@@ -84,6 +85,7 @@ class Part {
 
   // part.cpp: tables and queue.
   void loadTables(const Surface& surface, std::span<const Index> triangles);
+  void loadQuadrics();
   void loadSamples(const Surface& surface);
   void push(float cost, const Candidate& candidate);
   bool pop(Candidate& candidate);
@@ -238,7 +240,7 @@ class Part {
 
   // For each vertex.
   std::vector<Vec3f> position_, axis_;
-  std::vector<LocalQuadric> quadric_;
+  std::vector<LocalQuadric> quadric_;  ///< seen from the position
   std::vector<std::uint8_t> flags_, inner_, moved_;
   std::vector<Index> face_, corner_, version_, stamp_, merged_;
   bool hasLines_ = false;

@@ -37,7 +37,6 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
       isSteep = true;
       continue;
     }
-    s.quadric[v].addPlane(normal * (1 / l), l / 6);
     if (n < kMost) normals[n++] = normal * (1 / l);
   }
   if (sum != 0) setFlag(s.flags[v], kBorder);
@@ -101,7 +100,6 @@ Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> 
   s.triangles.assign(triangles.begin(), triangles.end());
   s.source.resize(count);
   for (Index i = 0; i < count; ++i) s.source[i] = i;
-  base::resizeLarge(s.quadric, count, job);
   base::resizeLarge(s.axis, count, job);
   s.flags.assign(count, 0);
   const CornersOfVertices corners(count, s.triangles);
@@ -179,7 +177,7 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
   for (Index v = 0; v < vertexNumber.size(); ++v) {
     if (vertexNumber[v] == kNone) continue;
     const Index n = vertexNumber[v] = vertices++;
-    s.position[n] = s.position[v], s.axis[n] = s.axis[v], s.quadric[n] = s.quadric[v];
+    s.position[n] = s.position[v], s.axis[n] = s.axis[v];
     s.flags[n] = s.flags[v], s.source[n] = s.source[v], s.face[n] = s.face[v];
     if (s.hasLines()) s.line[n] = s.line[v];
   }
@@ -187,7 +185,7 @@ void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
   for (Triangle& t : s.triangles) {
     for (Index& v : t.vertices) v = vertexNumber[v];
   }
-  s.position.resize(vertices), s.axis.resize(vertices), s.quadric.resize(vertices);
+  s.position.resize(vertices), s.axis.resize(vertices);
   s.flags.resize(vertices), s.source.resize(vertices), s.face.resize(vertices);
   if (s.hasLines()) s.region.resize(triangles), s.line.resize(vertices);
   if (!s.changeOf.empty()) s.changeOf.resize(triangles);

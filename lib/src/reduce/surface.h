@@ -9,7 +9,6 @@
 #include "base/job.h"
 #include "reduce/corners.h"
 #include "reduce/lines.h"
-#include "reduce/local_quadric.h"
 
 namespace tufa::reduce {
 
@@ -26,11 +25,10 @@ class ReferenceMesh;
 struct Surface {
   // For each vertex.
   std::vector<Vec3f> position;
-  std::vector<Vec3f> axis;            ///< all triangles at the vertex face it; 0 if there is none
-  std::vector<LocalQuadric> quadric;  ///< seen from the position
-  std::vector<std::uint8_t> flags;    ///< of VertexFlag
-  std::vector<Index> source;          ///< the input's vertex that it still is, or kNone
-  std::vector<Index> face;            ///< of the reference, at the vertex seen along its axis
+  std::vector<Vec3f> axis;          ///< all triangles at the vertex face it; 0 if there is none
+  std::vector<std::uint8_t> flags;  ///< of VertexFlag
+  std::vector<Index> source;        ///< the input's vertex that it still is, or kNone
+  std::vector<Index> face;          ///< of the reference, at the vertex seen along its axis
 
   std::vector<Triangle> triangles;
   /// For each reference vertex its owner: the triangle that answers for it. kNone for those without
@@ -71,8 +69,8 @@ struct Surface {
   }
 };
 
-/// A surface of these positions and triangles, with quadrics, axes, and flags of borders and steep
-/// stars. Vertices without an axis, and those beside them, are narrow.
+/// A surface of these positions and triangles, with axes, and flags of borders and steep stars.
+/// Vertices without an axis, and those beside them, are narrow.
 [[nodiscard]] Surface makeSurface(std::span<const Vec3f> positions,
                                   std::span<const Triangle> triangles, base::Job& job);
 
