@@ -4,6 +4,8 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <unordered_set>
 #include <utility>
 
 #include "reduce/halving.h"
@@ -13,6 +15,8 @@ namespace tufa::reduce {
 namespace {
 
 constexpr std::size_t kGrain = 8192;
+// Voxels; a larger tolerance is many faces wide.
+constexpr float kLarge = 2;
 
 // A triangle beside a face of the reference, where the map may jump.
 struct Gap {
@@ -187,27 +191,67 @@ class Measure {
   }
 
  private:
-  // From what of a triangle is in a sphere.
+  // From what of a triangle is in a sphere. With a large tolerance a few of the faces nearby do for
+  // most, as each of them gives a bound.
   void wayBack(const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned,
                Measured& measured) const {
-    const float reach = about.radius + kBeyond + 2 * expected_ + 1;
-    std::vector<Index> candidates{gap.face};
-    for (const Index t : trianglesAround({&gap.triangle, 1})) {
-      for (const Index r : owned[t]) {
-        if (squaredLength(reference_.positions()[r] - about.middle) > reach * reach) continue;
-        reference_.allAround(r, [&](Index f) {
-          candidates.push_back(f);
-          return true;
-        });
-      }
-    }
-    sortUnique(candidates);
     const auto toFace = [&](Vec3f q, Index f) { return reference_.distance(f, q); };
     const Index t = gap.triangle;
     const Corners p{s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2)};
-    const float back = Halving(toFace, about, expected_).bound(p, candidates);
+    const auto boundTo = [&](const std::vector<Index>& faces) {
+      return Halving(toFace, about, expected_).bound(p, faces);
+    };
+    float back = kFar2;
+    if (expected_ >= kLarge) back = boundTo(someFacesNear(gap, about, owned));
+    if (back > expected_) back = boundTo(allFacesNear(gap, about, owned));
     regions_.see(t, back);
     measured.see(back, gap.face, expected_);
+  }
+
+  // Calls f(vertex) for the reference vertices of the triangles around one that are so near a
+  // sphere that a face there may be the nearest.
+  template <class F>
+  void forVerticesNear(Index triangle, const Sphere& about,
+                       const std::vector<std::vector<Index>>& owned, F&& f) const {
+    const float reach = about.radius + kBeyond + 2 * expected_ + 1;
+    for (const Index t : trianglesAround({&triangle, 1})) {
+      for (const Index r : owned[t]) {
+        if (squaredLength(reference_.positions()[r] - about.middle) <= reach * reach) f(r);
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<Index> allFacesNear(
+      const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned) const {
+    std::vector<Index> faces{gap.face};
+    forVerticesNear(gap.triangle, about, owned, [&](Index r) {
+      reference_.allAround(r, [&](Index f) {
+        faces.push_back(f);
+        return true;
+      });
+    });
+    sortUnique(faces);
+    return faces;
+  }
+
+  // One of each cube of a share of the tolerance.
+  [[nodiscard]] std::vector<Index> someFacesNear(
+      const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned) const {
+    constexpr float kShare = 0.125f;
+    const float perCube = 1 / (kShare * expected_);
+    std::vector<Index> faces{gap.face};
+    std::unordered_set<std::uint64_t> seen;
+    forVerticesNear(gap.triangle, about, owned, [&](Index r) {
+      const Vec3f at = (reference_.positions()[r] - about.middle) * perCube;
+      std::uint64_t cube = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        constexpr float kMiddle = 1 << 20;
+        const float cell = std::clamp(std::floor(at[axis]) + kMiddle, 0.0f, 2 * kMiddle - 1);
+        cube = cube << 21 | static_cast<std::uint64_t>(cell);
+      }
+      if (seen.insert(cube).second) faces.push_back(reference_.cornerOf(r) / 3);
+    });
+    return faces;
   }
 
   [[nodiscard]] OwnedFace owned(Index f) const {
