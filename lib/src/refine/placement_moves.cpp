@@ -36,7 +36,6 @@ void PlacementMoves::add(VertexIndex vertex, const Position& plain, const Positi
   };
   const bool isPlaced = steps_[vertex] < kAtPlain && !(plain == from);
   if (isPlaced) addSlides(vertex, moves);
-  addSlidesOnSheet(vertex, moves);
   const std::uint8_t step = isPlaced ? steps_[vertex] : std::max(steps_[vertex], kAtPlain);
   if (step != kAtPlain - 1 && step != kAtMassPoint - 1) {
     for (const double share : kParts) {
@@ -69,6 +68,7 @@ void PlacementMoves::addSlidesOnSheet(VertexIndex vertex, std::vector<PlacementM
   if (steps_[vertex] >= kMostParts) return;
   if (surface_.sheets.kind(vertex) != uniform::VertexSheets::Kind::Near) return;
   const uniform::MeetingSheets sheets = surface_.sheets.sheets(surface_.mesh, vertex);
+  if (sheets.count != 1) return;
   const Vec3 at(surface_.mesh.positions[vertex]);
   const base::Frame frame = base::frameAbout(base::Vec3f(Vec3(sheets.normals[0])));
   const auto step = static_cast<std::uint8_t>(steps_[vertex] + 1);

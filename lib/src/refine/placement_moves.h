@@ -16,9 +16,9 @@ struct PlacementMove {
   bool isSlide = false;
 };
 
-/// The moves of vertices at and beside creases: along the crease or over the sheet, which leaves the
-/// surface where it was; part of the way to the point of the QEF or to the mass point; and all of it. Each
-/// vertex makes few of them, so withdrawals end.
+/// The moves of vertices at and beside creases: along the crease or over the sheet, which leaves
+/// the surface where it was; part of the way to the point of the QEF or to the mass point; and all
+/// of it. Each vertex makes few of them, so withdrawals end.
 class PlacementMoves {
  public:
   explicit PlacementMoves(const uniform::UniformSurface& surface)
@@ -27,6 +27,9 @@ class PlacementMoves {
   /// Adds those that a vertex has. `plain`, `mass`: its point by the QEF and its mass point.
   void add(VertexIndex vertex, const Position& plain, const Position& mass,
            std::vector<PlacementMove>& moves) const;
+  /// Adds slides over the sheet of a vertex that lies on one, beside a crease. Folds are settled
+  /// so; pairs gain little for the time.
+  void addSlidesOnSheet(VertexIndex vertex, std::vector<PlacementMove>& moves) const;
   /// To the mass point at once.
   [[nodiscard]] static PlacementMove toMassPoint(VertexIndex vertex, const Position& mass);
   [[nodiscard]] bool isAtMassPoint(VertexIndex vertex) const;
@@ -40,7 +43,6 @@ class PlacementMoves {
  private:
   [[nodiscard]] Vec3 alongCrease(VertexIndex vertex) const;
   void addSlides(VertexIndex vertex, std::vector<PlacementMove>& moves) const;
-  void addSlidesOnSheet(VertexIndex vertex, std::vector<PlacementMove>& moves) const;
 
   const uniform::UniformSurface& surface_;
   std::vector<std::uint8_t> steps_;  ///< places that each vertex has left

@@ -33,20 +33,24 @@ class UniformRepair {
         2 * std::min(kMostRounding * surface_.affine().leastHeight(),
                      largestRounding(surface_.volume.blocks, surface_.volume.transform));
     report_.movedVertices += orderAlongCreases(surface_, job_);
-    withdraw(margin);
-    for (int i = 0; i < kMostReturns && putBackComponents(); ++i) withdraw(margin);
+    const Withdrawal withdrawn =
+        withdrawPlacements(surface_, margin, job_, [this] { return putBackComponents(); });
+    candidates_ = withdrawn.candidates;
+    report_.intersectionsFound = withdrawn.pairsFound;
+    report_.movedVertices += withdrawn.vertices;
+    if (withdrawn.left > 0) {
+      repairCandidates();
+      for (int i = 0; i < kMostReturns; ++i) {
+        const std::vector<VertexIndex> misplaced = putBackComponents();
+        if (misplaced.empty()) break;
+        addCandidates(quadsAt(misplaced));
+        repairCandidates();
+      }
+    }
     return std::move(candidates_);
   }
 
  private:
-  void withdraw(double margin) {
-    const Withdrawal withdrawn = withdrawPlacements(surface_, margin, job_);
-    addCandidates(withdrawn.candidates);
-    report_.intersectionsFound = std::max(report_.intersectionsFound, withdrawn.pairsFound);
-    report_.movedVertices += withdrawn.vertices;
-    if (withdrawn.left > 0) repairCandidates();
-  }
-
   void repairCandidates() {
     Source own = sourceOf(surface_, job_);
     own.crossings = nullptr;  // the forest has no place for the centres of fans
@@ -59,31 +63,37 @@ class UniformRepair {
   }
 
   // A vertex that a crease or the repair moved out of its cell may have passed a small component.
-  // Moves misplaced components and what is beside them to their mass points. Whether there are any.
-  bool putBackComponents() {
+  // Moves misplaced components and what is beside them to their mass points. Returns these
+  // vertices, sorted.
+  std::vector<VertexIndex> putBackComponents() {
     if (surface_.sheets.sharpCount() == 0 || surface_.topology.openEdges > 0 ||
         surface_.volume.blocks.isPart()) {
-      return false;
+      return {};
     }
-    const std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_);
-    if (misplaced.empty()) return false;
+    std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_);
+    if (misplaced.empty()) return misplaced;
     const std::vector<Position> fallbacks = sourceOf(surface_, job_).massPoints(misplaced);
     for (std::size_t i = 0; i < misplaced.size(); ++i) {
       mesh_.positions[misplaced[i]] = fallbacks[i];
       surface_.sheets.withdraw(misplaced[i]);
     }
     report_.movedVertices += misplaced.size();
-    std::vector<intersect::PolygonIndex> around;
+    return misplaced;
+  }
+
+  // The quads at some sorted vertices.
+  [[nodiscard]] std::vector<intersect::PolygonIndex> quadsAt(
+      const std::vector<VertexIndex>& vertices) const {
+    std::vector<intersect::PolygonIndex> quads;
     for (std::uint32_t i = 0; i < mesh_.quads.size(); ++i) {
       const auto& v = mesh_.quads[i].vertices;
       if (std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
-            return std::binary_search(misplaced.begin(), misplaced.end(), vertex);
+            return std::binary_search(vertices.begin(), vertices.end(), vertex);
           })) {
-        around.push_back(i);
+        quads.push_back(i);
       }
     }
-    addCandidates(around);
-    return true;
+    return quads;
   }
 
   void addCandidates(const std::vector<intersect::PolygonIndex>& polygons) {

@@ -22,6 +22,8 @@ namespace {
 
 // A vertex moves twice at most, so rounds end by themselves; this many are a sign of a fault.
 constexpr int kMostRounds = 64;
+// How often others may move vertices afterwards.
+constexpr int kMostReturns = 3;
 // Faces whose normals have a smaller cosine (140 degrees) make a fold.
 constexpr double kFold = -0.766;
 // An edge folded by more than 140 degrees has a face more than 70 degrees off the normal of each
@@ -61,24 +63,42 @@ class PlacementGuard {
         polygons_(mesh_, job),
         placementMoves_(surface) {}
 
-  Withdrawal run() {
+  Withdrawal run(const std::function<std::vector<VertexIndex>()>& afterwards) {
     moved_.assign(mesh_.positions.size(), 0);
     beside_.assign(mesh_.positions.size(), 0);
-    if (withdrawFrom(findCoincident())) {
-      splitAgain();
-      findTouched();
-    }
-    for (int round = 0; round < kMostRounds; ++round) {
-      const std::vector<Conflict> conflicts = findConflicts(round == 0);
+    if (withdrawFrom(findCoincident())) lookAround();
+    settle(Look::Everywhere);
+    for (int i = 0; i < kMostReturns && afterwards; ++i) {
+      const std::vector<VertexIndex> others = afterwards();
+      if (others.empty()) break;
       std::fill(moved_.begin(), moved_.end(), 0);
-      if (!withdrawFrom(conflicts)) break;
-      splitAgain();
-      findTouched();
+      for (const VertexIndex vertex : others) moved_[vertex] = 1;
+      lookAround();
+      settle(Look::AtAllTouched);
     }
     return std::move(result_);
   }
 
  private:
+  // Where a round looks for conflicts: everywhere, or at what vertices touch that have moved, for
+  // pairs where candidates are or at all of it.
+  enum class Look { Everywhere, AtTouched, AtAllTouched };
+
+  void settle(Look look) {
+    for (int round = 0; round < kMostRounds; ++round) {
+      const std::vector<Conflict> conflicts = findConflicts(round == 0 ? look : Look::AtTouched);
+      std::fill(moved_.begin(), moved_.end(), 0);
+      if (!withdrawFrom(conflicts)) break;
+      lookAround();
+    }
+  }
+
+  // After vertices have moved.
+  void lookAround() {
+    splitAgain();
+    findTouched();
+  }
+
   // Without normals diagonals are not chosen by the sheets, and stay.
   void splitAgain() {
     if (!mesh_.normals.empty()) uniform::splitAgain(surface_.view(), moved_, mesh_, job_);
@@ -166,20 +186,20 @@ class PlacementGuard {
     return conflicts;
   }
 
-  std::vector<Conflict> findConflicts(bool first) {
+  std::vector<Conflict> findConflicts(Look look) {
     std::vector<Conflict> conflicts;
-    if (!mesh_.normals.empty()) findFolds(first, conflicts);
+    if (!mesh_.normals.empty()) findFolds(look, conflicts);
     const std::size_t folds = conflicts.size();
-    findPairs(first, conflicts);
-    if (first) result_.pairsFound = conflicts.size() - folds;
+    findPairs(look, conflicts);
+    if (look == Look::Everywhere) result_.pairsFound = conflicts.size() - folds;
     return conflicts;
   }
 
   // Edges between a triangle that is off and any other one. After the first time only those of
   // quads that were touched can be new; the triangle that is off may be the one beside such a quad.
-  void findFolds(bool first, std::vector<Conflict>& conflicts) {
+  void findFolds(Look look, std::vector<Conflict>& conflicts) {
     const std::vector<std::uint32_t> off = collect(2 * mesh_.quads.size(), [&](std::uint32_t face) {
-      return (first || touches(face / 2, beside_)) && isOff(face);
+      return (look == Look::Everywhere || touches(face / 2, beside_)) && isOff(face);
     });
     if (off.empty()) return;
     std::vector<std::uint8_t> marks(mesh_.positions.size());
@@ -237,11 +257,14 @@ class PlacementGuard {
     return sharp < kSharpSheets && na.dot(nb) > (sharp - kAsSharp) * na.length() * nb.length();
   }
 
-  void findPairs(bool first, std::vector<Conflict>& conflicts) {
+  void findPairs(Look look, std::vector<Conflict>& conflicts) {
     std::vector<std::uint32_t> fresh =
-        intersect::findCandidates(surface_.view(), mesh_, margin_, job_, first ? nullptr : &moved_);
+        look == Look::AtAllTouched
+            ? touched_
+            : intersect::findCandidates(surface_.view(), mesh_, margin_, job_,
+                                        look == Look::Everywhere ? nullptr : &moved_);
     std::vector<intersect::PolygonPair> pairs;
-    if (first) {
+    if (look == Look::Everywhere) {
       result_.candidates = std::move(fresh);
       pairs = intersect::findPairs(polygons_, result_.candidates, job_);
     } else {
@@ -308,6 +331,9 @@ class PlacementGuard {
       for (int i = 0; i < involved.count; ++i) {
         const std::size_t slot = slotOf(involved.vertices[i]);
         placementMoves_.add(involved.vertices[i], plain[slot], mass[slot], moves);
+        if (conflict.kind == Conflict::Kind::Fold) {
+          placementMoves_.addSlidesOnSheet(involved.vertices[i], moves);
+        }
       }
       std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
         return std::pair(a.cost, a.vertex) < std::pair(b.cost, b.vertex);
@@ -422,8 +448,9 @@ class PlacementGuard {
 
 }  // namespace
 
-Withdrawal withdrawPlacements(uniform::UniformSurface& surface, double margin, base::Job& job) {
-  return PlacementGuard(surface, margin, job).run();
+Withdrawal withdrawPlacements(uniform::UniformSurface& surface, double margin, base::Job& job,
+                              const std::function<std::vector<VertexIndex>()>& afterwards) {
+  return PlacementGuard(surface, margin, job).run(afterwards);
 }
 
 }  // namespace tufa::refine

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/job.h"
@@ -34,7 +35,11 @@ struct Withdrawal {
 /// points are left for repair; few inputs but noise have any. `margin`: as for findCandidates().
 /// Cost: one pass over the triangles, one over the quads, and a search for pairs among the
 /// candidates.
-[[nodiscard]] Withdrawal withdrawPlacements(uniform::UniformSurface& surface, double margin,
-                                            base::Job& job);
+///
+/// `afterwards`, if there is one, is called once all is settled. It may move vertices, and returns
+/// which; what they touch is settled in turn, and it is called again, a few times at most.
+[[nodiscard]] Withdrawal withdrawPlacements(
+    uniform::UniformSurface& surface, double margin, base::Job& job,
+    const std::function<std::vector<VertexIndex>()>& afterwards = {});
 
 }  // namespace tufa::refine

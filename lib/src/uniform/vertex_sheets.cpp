@@ -19,6 +19,7 @@ MeetingSheets VertexSheets::sheets(const Mesh& mesh, VertexIndex vertex) const {
     default:
       break;
   }
+  if (mesh.normals.empty()) return {};
   MeetingSheets one;
   one.count = 1;
   one.normals[0] = mesh.normals[vertex];
