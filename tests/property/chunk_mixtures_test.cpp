@@ -365,7 +365,7 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
     return sum;
   };
   double farTriangles = 0, nearTriangles = 0;
-  for (const double voxelSize : {0.03, 0.035, 0.04}) {
+  for (const double voxelSize : {0.025, 0.0275, 0.03, 0.0325, 0.035, 0.04}) {
     const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, voxelSize);
     ChunkOptions options;
     options.chunkSize = 32;

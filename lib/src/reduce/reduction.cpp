@@ -225,7 +225,7 @@ void Reduction::restore(const State& state) {
 float Reduction::toCount(Index count, float mostTolerance) {
   attempt_ = 0;
   keepsShape_ = true;
-  const auto isReached = [&] { return triangleCount() <= count + 1; };
+  const auto isReached = [&] { return triangleCount() <= count; };
   const auto reduceTo = [&](float tolerance, int phases) {
     trees_.clear(), nextTree_ = 0;
     reduce(tolerance, count, phases);

@@ -10,7 +10,7 @@ namespace {
 // Parts of the way to the next place, which are tried first.
 constexpr double kParts[] = {0.05, 0.1, 0.2, 0.4};
 // Voxels that a vertex may slide along its crease, and what their square counts beside other moves.
-constexpr double kSlides[] = {0.05, 0.1, 0.2, 0.3, 0.45, 0.6};
+constexpr double kSlides[] = {0.05, 0.1, 0.2, 0.3};
 constexpr double kCostOfSlide = 0.05;
 // And over a sheet, in these directions.
 constexpr double kSlidesOnSheet[] = {0.1, 0.25, 0.5};
