@@ -32,6 +32,7 @@ run() {
 }
 
 # As many targets at a time as there are cores.
+failed=
 while [ $# -gt 0 ]; do
   running=
   for _ in $(seq "$(nproc)"); do
@@ -41,5 +42,5 @@ while [ $# -gt 0 ]; do
     shift
   done
   for target in $running; do wait "$target" || failed=1; done
-  [ -z "${failed-}" ] || exit 1
+  [ -z "$failed" ] || exit 1
 done

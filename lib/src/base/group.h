@@ -14,10 +14,12 @@ struct Groups {
   std::vector<std::uint32_t> members;  ///< of each group in rising order
 };
 
+/// The key of a number that is in no group.
+inline constexpr std::uint32_t kNoGroup = ~std::uint32_t{0};
+
 /// Groups the numbers below `count` by keyOf(number), the number of a group; those of kNoGroup are
 /// in none. place(number, at) is told the place of each within its group. A counting sort in
 /// ranges, so that threads write apart. Cost: two passes, and 4 bytes a group and range.
-inline constexpr std::uint32_t kNoGroup = ~std::uint32_t{0};
 template <class KeyOf, class Place>
 Groups groupBy(std::size_t count, std::size_t groups, const KeyOf& keyOf, const Place& place,
                Job& job) {

@@ -46,7 +46,8 @@ class Partition {
   [[nodiscard]] std::span<const Index> foreign(Index p) const {
     return of(foreign_.members, foreign_.first, p);
   }
-  /// Reference vertices whose owners are triangles of a part, in an order that suits its lists.
+  /// Reference vertices whose owners are triangles of a part; where these have several, those of a
+  /// triangle together.
   [[nodiscard]] std::span<const Index> samples(Index p) const {
     return of(samples_.members, samples_.first, p);
   }

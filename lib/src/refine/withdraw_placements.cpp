@@ -20,7 +20,8 @@
 namespace tufa::refine {
 namespace {
 
-// A vertex moves twice at most, so rounds end by themselves; this many are a sign of a fault.
+// A vertex moves a bounded number of times, so rounds end by themselves; this many are a sign of a
+// fault.
 constexpr int kMostRounds = 64;
 // How often others may move vertices afterwards.
 constexpr int kMostReturns = 3;
