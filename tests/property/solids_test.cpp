@@ -73,5 +73,8 @@ TEST(Solids, KeepTheirPromises) {
   for (unsigned i = 0; i < count; ++i) expectKeptPromises(first + i);
 }
 
+// Its cut had a speck too thin for the way there to bound the way back.
+TEST(Solids, KeepTheirPromisesWhereASpeckIsThinnerThanTheTolerance) { expectKeptPromises(146); }
+
 }  // namespace
 }  // namespace tufa

@@ -10,6 +10,8 @@
 
 #include "reduce/halving.h"
 #include "reduce/overlay_path.h"
+#include "reduce/overlay_surface.h"
+#include "reduce/uncovered.h"
 
 namespace tufa::reduce {
 namespace {
@@ -91,7 +93,8 @@ class Measure {
         regions_(regions),
         owner_(s.owner),
         corners_(s.position.size(), s.triangles),
-        opposite_(oppositeCorners(s.triangles, corners_, job)) {}
+        opposite_(oppositeCorners(s.triangles, corners_, job)),
+        overlay_{s, opposite_} {}
 
   void vertices(std::size_t begin, std::size_t end, Measured& measured) const {
     for (std::size_t r = begin; r < end; ++r) {
@@ -180,14 +183,15 @@ class Measure {
     for (std::size_t i = 0; i < gaps.size(); ++i) wayBack(gaps[i], parts[i], owned, measured);
   }
 
-  // As overlay_path.h sees a mesh.
-  Vec3f operator()(Index t, int i) const { return s_.corner(t, static_cast<std::size_t>(i)); }
-  [[nodiscard]] Index vertex(Index t, int i) const {
-    return s_.triangles[t].vertices[static_cast<std::size_t>(i)];
+  // The way back from a whole triangle to faces among which the nearest ones are.
+  void wayBack(Index triangle, const FacesNear& faces, Measured& measured) const {
+    const Corners p{s_.corner(triangle, 0), s_.corner(triangle, 1), s_.corner(triangle, 2)};
+    const std::vector<Index> near = faces.of(p);
+    seeWayBack(triangle, near.front(), boundTo(near, p, {{}, kEverywhere}), measured);
   }
-  [[nodiscard]] Index across(Index t, int i) const {
-    const Index c = opposite_[3 * t + static_cast<Index>(i)];
-    return c == kNone ? kNone : c / 3;
+
+  [[nodiscard]] Uncovered uncovered(base::Job& job) const {
+    return findUncovered(overlay_, corners_, reference_, owner_, expected_, job);
   }
 
  private:
@@ -195,17 +199,23 @@ class Measure {
   // most, as each of them gives a bound.
   void wayBack(const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned,
                Measured& measured) const {
-    const auto toFace = [&](Vec3f q, Index f) { return reference_.distance(f, q); };
     const Index t = gap.triangle;
     const Corners p{s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2)};
-    const auto boundTo = [&](const std::vector<Index>& faces) {
-      return Halving(toFace, about, expected_).bound(p, faces);
-    };
     float back = kFar2;
-    if (expected_ >= kLarge) back = boundTo(someFacesNear(gap, about, owned));
-    if (back > expected_) back = boundTo(allFacesNear(gap, about, owned));
-    regions_.see(t, back);
-    measured.see(back, gap.face, expected_);
+    if (expected_ >= kLarge) back = boundTo(someFacesNear(gap, about, owned), p, about);
+    if (back > expected_) back = boundTo(allFacesNear(gap, about, owned), p, about);
+    seeWayBack(t, gap.face, back, measured);
+  }
+
+  [[nodiscard]] float boundTo(const std::vector<Index>& faces, const Corners& p,
+                              const Sphere& about) const {
+    const auto toFace = [&](Vec3f q, Index f) { return reference_.distance(f, q); };
+    return Halving(toFace, about, expected_).bound(p, faces);
+  }
+
+  void seeWayBack(Index triangle, Index face, float back, Measured& measured) const {
+    regions_.see(triangle, back);
+    measured.see(back, face, expected_);
   }
 
   // Calls f(vertex) for the reference vertices of the triangles around one that are so near a
@@ -277,7 +287,7 @@ class Measure {
   bool passes(Index f, Measured& measured) const {
     const OwnedFace face = owned(f);
     if (face.hasOneOwner()) return true;
-    const float way = std::sqrt(overlayBound2(*this, face, expected_ * expected_));
+    const float way = std::sqrt(overlayBound2(overlay_, face, expected_ * expected_));
     if (!(way <= expected_)) return false;
     regions_.seeAround(face.owners, corners_, way);
     measured.see(way, f, expected_);
@@ -322,7 +332,19 @@ class Measure {
   std::vector<Index> owner_;
   CornersOfVertices corners_;
   std::vector<Index> opposite_;
+  OverlaySurface overlay_;
 };
+
+// Calls body(i, measured) for each i, with what it measures behind what there is.
+template <class Body>
+void measureEach(std::size_t count, std::vector<Measured>& parts, base::Job& job,
+                 const Body& body) {
+  const std::size_t done = parts.size();
+  parts.resize(done + count);
+  job.forRanges(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i, parts[done + i]);
+  });
+}
 
 }  // namespace
 
@@ -365,13 +387,14 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     }
     const std::size_t groups = first.size();
     first.push_back(gaps.size());
-    const std::size_t done = parts.size();
-    parts.resize(done + groups);
-    job.forRanges(groups, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        measure.wayBack({gaps.data() + first[i], gaps.data() + first[i + 1]}, owned,
-                        parts[done + i]);
-      }
+    measureEach(groups, parts, job, [&](std::size_t i, Measured& part) {
+      measure.wayBack({gaps.data() + first[i], gaps.data() + first[i + 1]}, owned, part);
+    });
+  }
+  if (const Uncovered uncovered = measure.uncovered(job); !uncovered.triangles.empty()) {
+    const FacesNear near(reference, uncovered.faces, job);
+    measureEach(uncovered.triangles.size(), parts, job, [&](std::size_t i, Measured& part) {
+      measure.wayBack(uncovered.triangles[i], near, part);
     });
   }
   double sum = 0;

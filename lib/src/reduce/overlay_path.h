@@ -132,10 +132,18 @@ bool hasVertex(const M& mesh, Index triangle, Index vertex) {
   return false;
 }
 
+/// A loop, or its arc, that goes round a vertex and is pulled over it: once closed it takes some
+/// steps from triangle to triangle around the vertex, first of all from one to another.
+struct OverlayTurn {
+  Index vertex;
+  Index from, to;
+  int steps;
+};
+
 /// Pulls a loop over a vertex, if it gets shorter: its first `arc` triangles are around the vertex,
-/// and those on the other side take their place.
-template <class M>
-bool pullOver(const M& mesh, Index vertex, int arc, OverlayLoop& loop) {
+/// and those on the other side take their place. onTurn: see overlayBound2().
+template <class M, class OnTurn>
+bool pullOver(const M& mesh, Index vertex, int arc, const OnTurn& onTurn, OverlayLoop& loop) {
   std::array<Index, OverlayLoop::kMost> others;
   int count = 0;
   for (Index before = loop.at(arc - 2), t = loop.at(arc - 1); t != loop.at(0);) {
@@ -147,6 +155,7 @@ bool pullOver(const M& mesh, Index vertex, int arc, OverlayLoop& loop) {
     before = t, t = next;
     others[static_cast<std::size_t>(count++)] = t;
   }
+  onTurn(OverlayTurn{vertex, loop.at(0), loop.at(1), arc + count});
   OverlayLoop pulled;
   for (int i = arc - 1; i < loop.count; ++i) pulled.add(loop.at(i));
   for (int i = count; i-- > 0;) pulled.add(others[static_cast<std::size_t>(i)]);  // from loop.at(0)
@@ -161,9 +170,9 @@ bool pullOver(const M& mesh, Index vertex, int arc, OverlayLoop& loop) {
 /// Where the loop crosses an edge is near a point of the face, and so is the vertex. The loop's
 /// arc around the vertex and the vertex make triangles, each inside one triangle of the mesh, that
 /// go to triangles in the face corner by corner; then the loop crosses all edges at the vertex.
-template <class M>
+template <class M, class OnTurn>
 float pullTogether(const M& mesh, const std::array<Vec3f, 3>& face, float limit2,
-                   OverlayLoop& loop) {
+                   const OnTurn& onTurn, OverlayLoop& loop) {
   float worst = 0;
   const auto isNear = [&](Index t, int k) {
     const float d2 = squaredDistanceToTriangle(mesh(t, k), face[0], face[1], face[2]);
@@ -179,8 +188,11 @@ float pullTogether(const M& mesh, const std::array<Vec3f, 3>& face, float limit2
         int arc = 1;
         while (arc < loop.count && hasVertex(mesh, loop.at(arc), vertex)) ++arc;
         if (arc == loop.count) {
-          if (isNear(first, k)) return loop.count = 0, true;
-        } else if (arc > 2 && isNear(first, k) && pullOver(mesh, vertex, arc, loop)) {
+          if (!isNear(first, k)) continue;
+          onTurn(OverlayTurn{vertex, first, loop.at(1), arc});
+          return loop.count = 0, true;
+        }
+        if (arc > 2 && isNear(first, k) && pullOver(mesh, vertex, arc, onTurn, loop)) {
           return true;
         }
       }
@@ -197,9 +209,11 @@ float pullTogether(const M& mesh, const std::array<Vec3f, 3>& face, float limit2
 /// over it, from the ways of its edges; more than the limit, at most kFar2, if there is none. The
 /// ways make a loop, which must fall together or be pulled together over vertices near the face.
 /// The distances of the corners from their owners are not in it.
-/// findPath(a, b, path) finds the way from corner a to corner b, as findOverlayPath() does.
-template <class M, class FindPath>
-float overlayBound2(const M& mesh, const OwnedFace& face, float limit2, const FindPath& findPath) {
+/// findPath(a, b, path) finds the way from corner a to corner b, as findOverlayPath() does;
+/// onTurn(turn) learns of each vertex that the loop is pulled over.
+template <class M, class FindPath, class OnTurn>
+float overlayBound2(const M& mesh, const OwnedFace& face, float limit2, const FindPath& findPath,
+                    const OnTurn& onTurn) {
   float worst = 0;
   OverlayLoop loop;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -215,14 +229,19 @@ float overlayBound2(const M& mesh, const OwnedFace& face, float limit2, const Fi
     }
   }
   loop.close();
-  return std::max(worst, pullTogether(mesh, face.corners, limit2, loop));
+  return std::max(worst, pullTogether(mesh, face.corners, limit2, onTurn, loop));
+}
+template <class M, class OnTurn>
+float overlayBound2(const M& mesh, const OwnedFace& face, float limit2, const OnTurn& onTurn) {
+  const auto findPath = [&](std::size_t a, std::size_t b, OverlayPath& path) {
+    return findOverlayPath(mesh, {face.corners[a], face.corners[b]}, face.owners[a], face.owners[b],
+                           limit2, path);
+  };
+  return overlayBound2(mesh, face, limit2, findPath, onTurn);
 }
 template <class M>
 float overlayBound2(const M& mesh, const OwnedFace& face, float limit2) {
-  return overlayBound2(mesh, face, limit2, [&](std::size_t a, std::size_t b, OverlayPath& path) {
-    return findOverlayPath(mesh, {face.corners[a], face.corners[b]}, face.owners[a], face.owners[b],
-                           limit2, path);
-  });
+  return overlayBound2(mesh, face, limit2, [](const OverlayTurn&) {});
 }
 
 /// The squared distance of a face's farthest corner from that of its owners where it is least: a

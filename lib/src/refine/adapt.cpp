@@ -98,6 +98,7 @@ class Cutter {
       makeNext();
       ++adaptive_.rounds;
     } while (split(distance_.measure(cut_, made_, changedVertices(before_, cut_))) ||
+             split(findUncovered()) ||
              (model_.repairs() && (split(findMeeting()) || split(findMisplaced()))));
     const uniform::SurfaceView base = model_.view();
     adaptive_.leaves = octree::collectLeaves(forest_, base.topology, merged_);
@@ -117,6 +118,11 @@ class Cutter {
 
   bool split(const std::vector<VertexIndex>& vertices) {
     return splitCells(forest_, vertices, cut_, rule_.minLevel, forbidden_);
+  }
+
+  std::vector<VertexIndex> findUncovered() {
+    if (model_.surface().topology.openEdges > 0) return {};
+    return distance_.findUncovered(cut_, made_);
   }
 
   std::vector<VertexIndex> findMeeting() {

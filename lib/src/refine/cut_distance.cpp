@@ -7,18 +7,22 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "base/box.h"
 #include "base/huge_pages.h"
 #include "base/polygons.h"
+#include "reduce/box3f.h"
 #include "reduce/certificate.h"
 #include "reduce/corners.h"
+#include "reduce/map_degree.h"
 #include "reduce/overlay_path.h"
 #include "reduce/reference_mesh.h"
 #include "reduce/surface.h"
 #include "refine/cut_folds.h"
 #include "refine/cut_triangles.h"
 #include "refine/tolerance_scales.h"
+#include "topology/misplaced.h"
 
 namespace tufa::refine {
 namespace {
@@ -67,13 +71,43 @@ class CutDistance::Measure {
     splitFolds();
     findOwners();
     measureFaces();
-    std::sort(coarse_.begin(), coarse_.end());
-    coarse_.erase(std::unique(coarse_.begin(), coarse_.end()), coarse_.end());
-    return std::move(coarse_);
+    return takeCoarse();
+  }
+
+  std::vector<VertexIndex> findUncovered() {
+    findPolygons();
+    const std::vector<VertexIndex> componentOf = topology::connectedComponentsOf(mesh_);
+    const std::vector<VertexIndex> seedOf = findSeeds(componentOf);
+    findFacesNear(componentOf, seedOf);
+    collectTriangles();
+    std::vector<std::pair<VertexIndex, std::uint32_t>> faces;  // of components
+    for (std::uint32_t face = 0; face < isDirty_.size(); ++face) {
+      if (isDirty_[face] == 0) continue;
+      faces.emplace_back(componentOf[cut_.vertexOf[faceOf(face).vertices[0]]], face);
+    }
+    std::sort(faces.begin(), faces.end());
+    auto next = faces.begin();
+    for (VertexIndex component = 0; component < seedOf.size(); ++component) {
+      const auto first = next;
+      while (next != faces.end() && next->first == component) ++next;
+      if (seedOf[component] == kNone || degreeAt(seedOf[component], {first, next}) == 1) continue;
+      std::vector<VertexIndex> vertices;
+      for (VertexIndex v = component; v < componentOf.size(); ++v) {
+        if (componentOf[v] == component) vertices.push_back(v);
+      }
+      addLargest(vertices, coarse_);
+    }
+    return takeCoarse();
   }
 
  private:
   [[nodiscard]] const Mesh& base() const { return all_.base_.mesh; }
+
+  std::vector<VertexIndex> takeCoarse() {
+    std::sort(coarse_.begin(), coarse_.end());
+    coarse_.erase(std::unique(coarse_.begin(), coarse_.end()), coarse_.end());
+    return std::move(coarse_);
+  }
 
   template <class Body>
   void forRanges(std::size_t count, const Body& body) {
@@ -244,38 +278,105 @@ class CutDistance::Measure {
         return;
       }
       bound = kFar;
-      reduce::OwnedFace owned;
-      float tolerance = kFar;
       bool isFar = false;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const VertexIndex v = r.vertices[i];
+      for (const VertexIndex v : r.vertices) {
         if (all_.owner_[v] == kNone) {
           for (const VertexIndex c : r.vertices) coarse.push_back(cut_.vertexOf[c]);
           return;
         }
-        owned.corners[i] = all_.points_[v];
-        owned.vertices[i] = v;
-        owned.owners[i] = localOf_[all_.owner_[v]];
-        tolerance = std::min(tolerance, all_.toleranceAt(v));
         isFar |= all_.distance_[v] > all_.toleranceAt(v);
       }
       if (isFar) return;
+      const reduce::OwnedFace owned = ownedFace(r);
       if (owned.hasOneOwner()) {
         bound = 0;
         return;
       }
-      const float limit = std::max(tolerance, kRounding);
-      const float squared =
-          reduce::overlayBound2(triangles_, owned, limit * limit,
-                                [&](std::size_t a, std::size_t b, reduce::OverlayPath& way) {
-                                  return findWay(owned, a, b, limit * limit, way);
-                                });
+      const float limit = limitOf(r);
+      const float squared = overlayBound2(owned, limit, [](const reduce::OverlayTurn&) {});
       if (squared <= limit * limit) {
         bound = std::sqrt(squared);
         return;
       }
       addOwners(owned.owners, coarse);
     });
+  }
+
+  [[nodiscard]] reduce::OwnedFace ownedFace(const Triangle& r) const {
+    reduce::OwnedFace owned;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexIndex v = r.vertices[i];
+      owned.corners[i] = all_.points_[v];
+      owned.vertices[i] = v;
+      owned.owners[i] = localOf_[all_.owner_[v]];
+    }
+    return owned;
+  }
+
+  // How far a uniform face may be.
+  [[nodiscard]] float limitOf(const Triangle& r) const {
+    float tolerance = kFar;
+    for (const VertexIndex v : r.vertices) tolerance = std::min(tolerance, all_.toleranceAt(v));
+    return std::max(tolerance, kRounding);
+  }
+
+  template <class OnTurn>
+  float overlayBound2(const reduce::OwnedFace& owned, float limit, const OnTurn& onTurn) const {
+    const auto way = [&](std::size_t a, std::size_t b, reduce::OverlayPath& path) {
+      return findWay(owned, a, b, limit * limit, path);
+    };
+    return reduce::overlayBound2(triangles_, owned, limit * limit, way, onTurn);
+  }
+
+  // Of each component a vertex of a larger cell, none where all is as in the uniform mesh.
+  [[nodiscard]] std::vector<VertexIndex> findSeeds(
+      const std::vector<VertexIndex>& componentOf) const {
+    std::vector<VertexIndex> seedOf(componentOf.size(), kNone);
+    base::forPolygons(mesh_, [&](base::PolygonIndex, base::Corners v) {
+      VertexIndex& seed = seedOf[componentOf[v[0]]];
+      if (seed != kNone) return;
+      const auto large = std::find_if(v.begin(), v.end(),
+                                      [&](VertexIndex k) { return cut_.clusters[k].level > 0; });
+      if (large != v.end()) seed = *large;
+    });
+    return seedOf;
+  }
+
+  // The faces that may be pulled over the seed of their component.
+  void findFacesNear(const std::vector<VertexIndex>& componentOf,
+                     const std::vector<VertexIndex>& seedOf) {
+    isDirty_.assign(2 * base().quads.size(), 0);
+    wanted_.assign(base().positions.size(), 0);
+    forRanges(isDirty_.size(), [&](std::size_t face) {
+      const Triangle r = faceOf(face);
+      const VertexIndex seed = seedOf[componentOf[cut_.vertexOf[r.vertices[0]]]];
+      if (seed == kNone || all_.faceBound_[face] == kFar) return;
+      const auto& [a, b, c] = r.vertices;
+      const std::array<Vec3f, 3> p{all_.points_[a], all_.points_[b], all_.points_[c]};
+      const Vec3f at = all_.toVoxels(mesh_.positions[seed]);
+      const float limit = limitOf(r);
+      reduce::Box3f box = reduce::boxOf(p.data());
+      box.growBy(2 * limit);
+      if (!box.hasInside(at)) return;
+      if (reduce::squaredDistanceToTriangle(at, p[0], p[1], p[2]) > limit * limit) return;
+      if (isInMesh(static_cast<std::uint32_t>(face), r)) return;
+      isDirty_[face] = 1;
+      for (const VertexIndex v : r.vertices) mark(wanted_, v);
+    });
+  }
+
+  // How often some uniform faces cover a vertex.
+  [[nodiscard]] int degreeAt(VertexIndex v,
+                             std::span<const std::pair<VertexIndex, std::uint32_t>> faces) const {
+    const std::span<const Index> corners = cornersOf_->of(v);
+    if (corners.empty()) return 0;  // no face is near
+    reduce::MapDegree degree(triangles_, v, corners.front() / 3);
+    for (const auto& [component, face] : faces) {
+      const Triangle r = faceOf(face);
+      (void)overlayBound2(ownedFace(r), limitOf(r),
+                          [&](const reduce::OverlayTurn& turn) { degree(turn); });
+    }
+    return degree.degree();
   }
 
   [[nodiscard]] bool isFine(VertexIndex r) const {
@@ -386,6 +487,11 @@ base::Vec3f CutDistance::toVoxels(const Position& p) const {
 std::vector<VertexIndex> CutDistance::measure(const octree::Cut& cut, const octree::CutMesh& made,
                                               const std::vector<std::uint8_t>& changed) {
   return Measure(*this, cut, made).run(changed);
+}
+
+std::vector<VertexIndex> CutDistance::findUncovered(const octree::Cut& cut,
+                                                    const octree::CutMesh& made) {
+  return Measure(*this, cut, made).findUncovered();
 }
 
 Deviation CutDistance::total(const octree::Cut& cut, const Mesh& mesh) const {

@@ -40,6 +40,12 @@ class CutDistance {
                                                  const octree::CutMesh& made,
                                                  const std::vector<std::uint8_t>& changed);
 
+  /// Components of the mesh measured last, which is closed, that the uniform mesh may leave out in
+  /// part: those too thin for the distance forth to bound the way back. Returns their vertices in
+  /// the largest cells, sorted; see reduce/map_degree.h.
+  [[nodiscard]] std::vector<VertexIndex> findUncovered(const octree::Cut& cut,
+                                                       const octree::CutMesh& made);
+
   /// How far the mesh measured last is, without components that were left out since. Where cells
   /// were not split that had to be, all is measured anew.
   [[nodiscard]] Deviation total(const octree::Cut& cut, const Mesh& mesh) const;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "base/bvh.h"
+#include "base/connected.h"
 #include "base/flat_triangle.h"
 #include "base/polygons.h"
 #include "intersect/exact.h"
@@ -134,20 +134,11 @@ class Pieces {
 }  // namespace
 
 std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
-  std::vector<VertexIndex> parents(mesh.positions.size());
-  std::iota(parents.begin(), parents.end(), VertexIndex{0});
-  const auto rootOf = [&](VertexIndex i) {
-    while (parents[i] != i) i = parents[i] = parents[parents[i]];
-    return i;
-  };
-  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
-    for (const VertexIndex other : v) {
-      const VertexIndex a = rootOf(v[0]), b = rootOf(other);
-      parents[std::max(a, b)] = std::min(a, b);
-    }
+  return base::connectedItems(mesh.positions.size(), [&](const auto& connect) {
+    base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+      for (const VertexIndex other : v) connect(v[0], other);
+    });
   });
-  for (VertexIndex i = 0; i < parents.size(); ++i) parents[i] = rootOf(i);
-  return parents;
 }
 
 std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {

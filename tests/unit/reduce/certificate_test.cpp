@@ -98,6 +98,22 @@ TEST(Certificate, BoundsTheWayBackToo) {
   }
 }
 
+// Both sides of a thin plate are near one side of the mesh; nothing goes to the other one, wherever
+// it is.
+TEST(Certificate, BoundsTheWayBackFromASideThatIsLeftOut) {
+  const test::FineMesh plate = test::subdivided(test::box(8, 8, 0.04f), 3);
+  test::FineMesh thick = plate;
+  for (Vec3f& p : thick.positions) {
+    if (p.z == 0) p.z = -0.3f;
+  }
+  for (const float expected : {0.1f, 0.5f}) {
+    const Certificate c = certified(thick, plate, expected);
+    EXPECT_GE(c.largest, 0.3f * 0.999f) << expected;
+    EXPECT_LE(c.largest, std::max(0.31f, expected)) << expected;
+    EXPECT_LE(c.mean, 0.04f);
+  }
+}
+
 // The ways along a face's edges make a loop around vertices of the mesh that are inside it.
 TEST(Certificate, PullsLoopsOverVerticesInsideAFace) {
   const test::FineMesh reference = test::subdivided(test::box(8, 8, 8), 1);

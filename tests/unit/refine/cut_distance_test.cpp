@@ -118,6 +118,39 @@ TEST(CutDistance, AsksTheToleranceWhereThingsLie) {
   EXPECT_FALSE(strict.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
 }
 
+// A speck of one sample is thinner than the tolerance. Where its top is in the mesh, both of its
+// sides are near the bottom.
+TEST(CutDistance, NamesComponentsThatTheUniformMeshLeavesOutInPart) {
+  const auto grid = test::levelSetOf(4, 1, [](const Vec3& p) { return p.length() - 0.02; });
+  for (const bool isMoved : {false, true}) {
+    test::ModelOf speck(grid);
+    test::MeshOfCut mesh = speck.uniformCut();
+    ASSERT_EQ(mesh.cut.clusters.size(), 8U);
+    std::vector<VertexIndex> all;
+    for (VertexIndex v = 0; v < 8; ++v) {
+      Position& p = mesh.made.mesh.positions[v];
+      if (isMoved && p.x < 8) p.z += 0.3f;  // the sample is at 8, 8, 8
+      mesh.cut.clusters[v].level = 1;
+      all.push_back(v);
+    }
+    const octree::CutRule rule = ruleOf(0.1);
+    CutDistance distance(speck.model().view(), rule, speck.job());
+    const std::vector<std::uint8_t> changed(8, 1);
+    EXPECT_TRUE(distance.measure(mesh.cut, mesh.made, changed).empty());
+    EXPECT_EQ(distance.findUncovered(mesh.cut, mesh.made),
+              isMoved ? all : std::vector<VertexIndex>{});
+  }
+}
+
+TEST(CutDistance, FindsNothingUncoveredOnABall) {
+  Ball ball;
+  for (const VertexIndex moved : {100, 500, 700}) ball.move(moved, 0.2);
+  const octree::CutRule rule = ruleOf(0.25);
+  CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+  EXPECT_TRUE(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
+  EXPECT_TRUE(distance.findUncovered(ball.mesh.cut, ball.mesh.made).empty());
+}
+
 // A surface in a crowd of cells of all sizes: what is within the tolerance by the bound is within
 // it by samples, whether it was measured at once or from mesh to mesh.
 TEST(CutDistance, IsABoundFromMeshToMesh) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "reduce/surface.h"
+
+namespace tufa::reduce {
+
+/// A surface as overlay_path.h sees a mesh.
+struct OverlaySurface {
+  const Surface& surface;
+  std::span<const Index> opposite;  ///< of oppositeCorners()
+
+  Vec3f operator()(Index t, int i) const { return surface.corner(t, static_cast<std::size_t>(i)); }
+  [[nodiscard]] Index vertex(Index t, int i) const {
+    return surface.triangles[t].vertices[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] Index across(Index t, int i) const {
+    const Index c = opposite[3 * t + static_cast<Index>(i)];
+    return c == kNone ? kNone : c / 3;
+  }
+};
+
+}  // namespace tufa::reduce
