@@ -12,8 +12,8 @@ using reduce::Index;
 // Cosine of 149 degrees and area in square voxels: positions are still to be rounded.
 constexpr float kFoldCosine = -0.857f;
 constexpr float kLeastArea = 0.048f;
-// Two sheets of a smaller cosine (148 degrees) may have faces that are a fold.
-constexpr double kSharpSheets = -0.848;
+// Two sheets of a smaller cosine (150.5 degrees) may have faces that are a fold.
+constexpr double kSharpSheets = -0.87;
 // A face within this cosine (25 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.906;
 
