@@ -172,6 +172,7 @@ Mesh runRepairSteps(const Mesh& mesh, const RepairOptions& options, RepairReport
       soup.points, soup.polygons, CGAL::parameters::erase_all_duplicates(false));
   pmp::remove_isolated_points_in_polygon_soup(soup.points, soup.polygons);
   report.mergedVertices = vertices - soup.points.size();
+  if (soup.polygons.empty()) return {};  // CGAL's functions want one
   step(0.4);
   const std::size_t whole = soup.points.size();
   pmp::orient_polygon_soup(soup.points, soup.polygons);

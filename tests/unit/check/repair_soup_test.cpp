@@ -147,6 +147,18 @@ TEST(RepairSoup, NeverGivesAWorseMesh) {
   }
 }
 
+TEST(RepairSoup, OfNoFacesIsEmptyAndMergingAllKeepsTheInput) {
+  Mesh points;
+  points.positions = {Position(0, 0, 0), Position(1, 0, 0)};
+  EXPECT_TRUE(repair(points).positions.empty());
+  EXPECT_TRUE(repair({}).positions.empty());
+  RepairReport report;
+  RepairOptions options;
+  options.mergeDistance = 100;
+  EXPECT_EQ(repair(cube(), options, &report).triangleCount(), cube().triangleCount());
+  EXPECT_TRUE(report.keptInput);
+}
+
 TEST(RepairSoup, RefusesOptionsOutOfRangeAndStops) {
   RepairOptions options;
   options.mergeDistance = -1;
