@@ -89,6 +89,8 @@ struct FilterOptions {
   /// them.
   std::optional<double> isovalue;
   Inside inside = Inside::Auto;  ///< see isovalue
+  /// What to do with NaN and infinite values, before the first step: filters would spread them.
+  NonFinite nonFinite = NonFinite::Refuse;
   /// Most active voxels, in estimate, that resampling may make: more are refused as LimitExceeded.
   double mostVoxels = 1 << 28;
   int threads = 0;  ///< most threads; 0: as many as the TBB arena allows. Never changes the result.
@@ -97,18 +99,20 @@ struct FilterOptions {
 
 /// What one step did.
 struct FilterReport {
-  std::string filter;              ///< its name: "smooth", "keep-largest", ...
-  std::size_t voxelsBefore = 0;    ///< active ones
-  std::size_t voxelsAfter = 0;     ///< active ones
-  std::size_t components = 0;      ///< of KeepLargest and MinComponent: how many were found
-  std::size_t componentsKept = 0;  ///< of these
-  double seconds = 0;              ///< wall clock
+  std::string filter;               ///< its name: "smooth", "keep-largest", ...
+  std::size_t voxelsBefore = 0;     ///< active ones
+  std::size_t voxelsAfter = 0;      ///< active ones
+  std::size_t components = 0;       ///< of KeepLargest and MinComponent: how many were found
+  std::size_t componentsKept = 0;   ///< of these
+  std::size_t nonFiniteValues = 0;  ///< of the first step: how many were taken as outside
+  double seconds = 0;               ///< wall clock
 };
 
 /// Applies filters to a float or double grid, in their order, and returns the resulting grid; the
 /// one given stays as it is. Throws Error: UnsupportedGrid (a filter for level sets on another
 /// grid, voxels that are no cubes where OpenVDB needs them, a background that is inside),
-/// InvalidArgument (an option out of its range), LimitExceeded (mostVoxels), Cancelled.
+/// InvalidArgument (an option out of its range), NonFiniteValues, LimitExceeded (mostVoxels),
+/// Cancelled.
 [[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> applyFilters(
     const openvdb::GridBase& grid, const std::vector<Filter>& filters,
     const FilterOptions& options = {}, std::vector<FilterReport>* reports = nullptr);

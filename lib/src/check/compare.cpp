@@ -12,6 +12,7 @@
 #include "base/peak_memory.h"
 #include "base/run_call.h"
 #include "check/surface_reference.h"
+#include "grid/non_finite.h"
 #include "grid/volume_to_mesh.h"
 
 namespace tufa {
@@ -126,6 +127,10 @@ class Comparer {
     const double end = kReferenceEnd / 2;
     const Mesh mesh = extract(grid_, Method::MarchingCubes33, extractOptions(0, end / 2), &report);
     out_.activeVoxels = report.activeVoxels;
+    if (report.nonFiniteValues > 0) {
+      const Inside inside = iso_.insideIsBelow ? Inside::Below : Inside::Above;
+      finite_ = grid::finiteCopy(grid_, {contour_.nonFinite, iso_.isovalue, inside});
+    }
     out_.trilinearEuler = checked(mesh, end / 2, end, false).eulerCharacteristic;
   }
 
@@ -143,7 +148,8 @@ class Comparer {
       Mesh mesh;
       runPart(begin_, end, [&](base::Job& job) {
         job.beginStage("volumeToMesh", 1);
-        mesh = grid::volumeToMesh(grid_, iso_, name == kPeer ? 0 : kPeerAdaptivity);
+        mesh = grid::volumeToMesh(finite_ ? *finite_ : grid_, iso_,
+                                  name == kPeer ? 0 : kPeerAdaptivity);
       });
       return mesh;
     }
@@ -236,6 +242,7 @@ class Comparer {
   }
 
   const openvdb::GridBase& grid_;
+  std::shared_ptr<const openvdb::GridBase> finite_;  ///< for volumeToMesh(); null: as it is
   const CompareOptions& options_;
   const ContourOptions& contour_;
   grid::VoxelFrame frame_;

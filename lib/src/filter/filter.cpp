@@ -14,6 +14,7 @@
 #include "base/known_enum.h"
 #include "base/number_text.h"
 #include "filter/steps.h"
+#include "grid/non_finite.h"
 #include "grid/volume.h"
 
 namespace tufa {
@@ -93,6 +94,8 @@ template <class GridT>
 openvdb::GridBase::Ptr applyAll(const GridT& source, const std::vector<Filter>& filters,
                                 const FilterOptions& options, std::vector<FilterReport>& reports) {
   typename GridT::Ptr grid = source.deepCopy();
+  const std::size_t nonFinite =
+      grid::takeAsOutside(*grid, {options.nonFinite, options.isovalue, options.inside});
   for (std::size_t i = 0; i < filters.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     FilterReport report;
@@ -113,6 +116,7 @@ openvdb::GridBase::Ptr applyAll(const GridT& source, const std::vector<Filter>& 
     report.componentsKept = step.components().kept;
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (i == 0) report.nonFiniteValues = nonFinite;
     reports.push_back(std::move(report));
   }
   return grid;
@@ -126,6 +130,7 @@ openvdb::GridBase::Ptr applyFilters(const openvdb::GridBase& grid,
                                     std::vector<FilterReport>* reports) {
   grid::requireMeshable(grid);
   base::requireKnown(options.inside, Inside::Above, "the side that is inside");
+  base::requireKnown(options.nonFinite, NonFinite::Outside, "what to do with NaN");
   openvdb::GridBase::Ptr result;
   std::vector<FilterReport> found;
   base::Job(options.threads, {}).run([&] {

@@ -103,9 +103,11 @@ void offset(GridT& grid, const std::vector<double>& distances, ProgressInterrupt
   const double voxel = grid.voxelSize()[0];
   for (const double distance : distances) {
     if (std::abs(distance) <= kMostVoxels * voxel) continue;  // false for NaN
-    throw Error(ErrorCode::InvalidArgument, "an offset of " + base::numberText(distance) +
-                                                " world units is more than " +
-                                                base::numberText(kMostVoxels) + " voxels");
+    throw Error(ErrorCode::InvalidArgument,
+                "an offset of " + base::numberText(distance) + " world units is " +
+                    base::roughNumberAbove(std::abs(distance) / voxel, kMostVoxels) +
+                    " voxels, and at most " + base::numberText(kMostVoxels) +
+                    " either way are moved");
   }
   LevelSetFilter<GridT> filter(grid, &interrupter);
   for (const double distance : distances) {

@@ -1,12 +1,10 @@
 #include "grid/blocks.h"
 
-#include <tufa/error.h>
-
 #include <algorithm>
 #include <mutex>
-#include <sstream>
 
 #include "base/huge_pages.h"
+#include "grid/non_finite.h"
 
 namespace tufa::grid {
 
@@ -23,7 +21,9 @@ Blocks::Blocks(std::shared_ptr<const Tree> tree, const IsoChoice& iso, NonFinite
     }
   });
   summary_ = tree_->readSides(iso, inside_, job);
-  if (summary_.nonFiniteValues > 0 && nonFinite == NonFinite::Refuse) refuseNonFinite();
+  if (summary_.nonFiniteValues > 0 && nonFinite == NonFinite::Refuse) {
+    refuseNonFinite(summary_.nonFiniteValues, summary_.firstNonFinite);
+  }
   tree_->findPlaces(iso, places_, job);
   addTileBlocks(job);
 }
@@ -46,16 +46,6 @@ Blocks::Blocks(const Blocks& whole, const base::IndexBox& box)
 std::uint64_t Blocks::active(BlockRef block, int x, Accessor& accessor) const {
   if (leaves_[block] != kNoLeaf) return tree_->leafActive(leaves_[block], x);
   return accessor.isActive(origins_[block]) ? ~std::uint64_t{0} : 0;
-}
-
-void Blocks::refuseNonFinite() const {
-  std::ostringstream message;
-  message << "the grid holds " << summary_.nonFiniteValues << " NaN or infinite "
-          << (summary_.nonFiniteValues == 1 ? "value" : "values") << ", the first at index ("
-          << summary_.firstNonFinite[0] << ", " << summary_.firstNonFinite[1] << ", "
-          << summary_.firstNonFinite[2]
-          << "); repair the grid or treat them as outside (--nan outside)";
-  throw Error(ErrorCode::NonFiniteValues, message.str());
 }
 
 BlockRef Blocks::find(const Coord& origin, Accessor& accessor) const {

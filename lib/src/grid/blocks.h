@@ -62,7 +62,6 @@ class Blocks {
  private:
   [[nodiscard]] std::uint64_t sides(const Neighbours& neighbours, int dx, int dy, int dz,
                                     int x) const;
-  [[noreturn]] void refuseNonFinite() const;
   void addTileBlocks(base::Job& job);
   void tilesBelowLeaf(BlockRef block, Accessor& accessor, std::vector<Coord>& found) const;
 

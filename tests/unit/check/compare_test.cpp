@@ -5,6 +5,7 @@
 #include <tufa/error.h>
 #include <tufa/shapes.h>
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "support/expect_error.h"
@@ -74,6 +75,21 @@ TEST(Compare, ShowsWhatNoiseBreaks) {
   EXPECT_FALSE(resultOf(all, "mc-original").check.closed);
   EXPECT_EQ(resultOf(all, "mc33").check.eulerCharacteristic, all.trilinearEuler);
   EXPECT_GT(all.difference, 0.1);
+}
+
+TEST(Compare, GivesThePeerWhatIsTakenAsOutside) {
+  const auto grid = shape(Shape::Sphere, 0.1);
+  for (auto value = grid->beginValueOn(); value; ++value) {
+    if (*value > 0.15F && value.getCoord().x() == 3) value.setValue(NAN);
+  }
+  CompareOptions options;
+  options.methods = {"volume-to-mesh-0", "dual-uniform"};
+  test::expectError(ErrorCode::NonFiniteValues, "NaN",
+                    [&] { static_cast<void>(compareMethods(*grid, options)); });
+  options.extract.contour.nonFinite = NonFinite::Outside;
+  const Comparison all = compareMethods(*grid, options);
+  EXPECT_TRUE(resultOf(all, "volume-to-mesh-0").check.watertight());
+  EXPECT_TRUE(resultOf(all, "dual-uniform").check.watertight());
 }
 
 TEST(Compare, MeasuresThePointsGiven) {

@@ -10,6 +10,7 @@
 #include <tufa/contour.h>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "support/expect_error.h"
 
@@ -287,6 +288,36 @@ TEST(Filters, RefuseWhatHasNoMeaning) {
               [&] { static_cast<void>(after(*grid, KeepLargest{1}, above)); });
   grid->transform().preScale(openvdb::Vec3d(1, 2, 1));
   refused(Offset{0.1}, ErrorCode::UnsupportedGrid, "cubes");
+}
+
+TEST(Filters, TakeNonFiniteValuesAsOutsideBeforeTheFirstStep) {
+  const auto whole = makeSphere(1);
+  auto grid = whole->deepCopy();
+  auto accessor = grid->getAccessor();
+  int count = 0;
+  for (auto value = whole->cbeginValueOn(); value && count < 40; ++value) {
+    if (*value < kVoxel) continue;  // a voxel outside the surface
+    accessor.setValue(value.getCoord(), count % 2 == 0 ? NAN : INFINITY);
+    ++count;
+  }
+  const Filter smooth = Smooth{};
+  expectError(ErrorCode::NonFiniteValues, "40 NaN or infinite values, the first at",
+              [&] { static_cast<void>(after(*grid, smooth)); });
+  FilterOptions options;
+  options.nonFinite = NonFinite::Outside;
+  std::vector<FilterReport> reports;
+  const auto smoothed = applyFilters(*grid, {smooth, smooth}, options, &reports);
+  EXPECT_EQ(reports.at(0).nonFiniteValues, 40u);
+  EXPECT_EQ(reports.at(1).nonFiniteValues, 0u);
+  EXPECT_NEAR(volumeOf(*smoothed), volumeOf(*after(*after(*whole, smooth), smooth)), 0.01);
+  // Where the background is inside, the value on the other side of the isovalue.
+  auto fog = FloatGrid::create(1);
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  fog->tree().setValue({0, 0, 0}, NAN);
+  fog->tree().setValue({1, 0, 0}, 0.75F);
+  options.isovalue = 0.25;
+  const auto clipped = applyFilters(*fog, {ClipBox{{-9, -9, -9}, {9, 9, 9}}}, options);
+  EXPECT_EQ(openvdb::gridPtrCast<FloatGrid>(clipped)->tree().getValue({0, 0, 0}), -0.5F);
 }
 
 TEST(Filters, CanBeCancelled) {
