@@ -28,4 +28,11 @@ inline std::string roughNumberText(double value) {
   return error == std::errc() ? std::string(text.data(), end) : numberText(value);
 }
 
+/// The same of an estimate that is above a limit, or its whole number where three digits are not.
+inline std::string roughNumberAbove(double value, double limit) {
+  const double step = std::pow(10, std::floor(std::log10(std::abs(value))) - 2);
+  return std::round(value / step) * step > limit ? roughNumberText(value)
+                                                 : numberText(std::ceil(value));
+}
+
 }  // namespace tufa::base

@@ -75,6 +75,11 @@ std::vector<Target> targetsOf(const LodOptions& options) {
     }
     octree::requireFactor(options.factor);
     double tolerance = options.contour.tolerance;
+    if (tolerance == 0 && options.levels > 1) {
+      refuse(
+          "no level can follow one of tolerance 0, as each level's tolerance is a multiple of "
+          "that before: give the tolerances of all levels, or one level");
+    }
     // Nothing is coarser than what the largest tolerance gives.
     for (int i = 0; i < options.levels && (i == 0 || tolerance <= octree::kLargestTolerance); ++i) {
       targets.push_back({tolerance});

@@ -107,8 +107,9 @@ void requireUsableBand(const Mesh& mesh, const VoxelizeOptions& options) {
   const double voxels = bandVoxelsOf(mesh, options);
   if (voxels <= options.bandVoxels) return;
   throw Error(ErrorCode::LimitExceeded,
-              "the band around the mesh has about " + base::roughNumberText(voxels) +
-                  " voxels, more than " + base::numberText(options.bandVoxels) +
+              "the band around the mesh has about " +
+                  base::roughNumberAbove(voxels, options.bandVoxels) + " voxels, more than " +
+                  base::numberText(options.bandVoxels) +
                   "; take larger voxels, or raise the limit (--band-voxels)");
 }
 

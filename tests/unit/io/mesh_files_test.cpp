@@ -163,6 +163,26 @@ TEST(MeshFiles, KeepDoublePrecisionFarFromTheOrigin) {
   }
 }
 
+TEST(MeshFiles, StlIsRefusedWhereSinglePrecisionMovesFaces) {
+  const ScratchFolder folder;
+  write(makePyramid(1e3), folder / "m.stl");
+  expectError(ErrorCode::LimitExceeded, "single precision",
+              [&] { write(makePyramid(1e7), folder / "far.stl"); });
+  EXPECT_EQ(folder.fileCount(), 1);
+}
+
+TEST(MeshFiles, AreReadFromFormatsThatAreRead) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "d.ply");
+  expectError(ErrorCode::UnreadableFile, "a folder", [&] { (void)readMesh(folder / "d.ply"); });
+  expectError(ErrorCode::InvalidArgument, ".off and .glb",
+              [&] { (void)readMesh(folder / "volume.vdb"); });
+  for (const char* name : {"e.ply", "e.obj", "e.stl", "e.off", "e.glb"}) {
+    write({}, folder / name);
+    EXPECT_TRUE(readMesh(folder / name).positions.empty()) << name;
+  }
+}
+
 TEST(MeshFiles, RefuseUnknownEndings) {
   const ScratchFolder folder;
   for (const char* name : {"m.txt", "m", "ply"}) {

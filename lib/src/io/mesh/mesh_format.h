@@ -14,6 +14,9 @@ namespace tufa::io {
 
 using shading::ShadedMesh;
 
+/// The format that a file's ending says, if any.
+[[nodiscard]] std::optional<MeshFormat> formatOfEnding(const std::filesystem::path& path);
+
 /// The corners of the box around all positions; both zero for an empty mesh.
 struct Bounds {
   Position least{0, 0, 0};

@@ -1,6 +1,12 @@
 #include <tufa/io.h>
 #include <tufa/memory.h>
 
+#include <tufa/error.h>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "io/mesh/mesh_format.h"
 #include "io/mesh/mesh_readers.h"
 
 namespace tufa {
@@ -29,8 +35,17 @@ Mesh readAs(MeshFormat format, const io::InputBytes& input) {
 }  // namespace
 
 Mesh readMesh(const std::filesystem::path& path) {
-  const MeshFormat format = meshFormatOf(path);
-  return readAs(format, io::InputBytes(path));
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw Error(ErrorCode::UnreadableFile, "cannot read " + path.string() + ": it is a folder");
+  }
+  const std::optional<MeshFormat> format = io::formatOfEnding(path);
+  if (!format) {
+    throw Error(ErrorCode::InvalidArgument,
+                "cannot tell the mesh format of " + path.string() +
+                    ": meshes are read from .ply, .obj, .stl, .off and .glb");
+  }
+  return readAs(*format, io::InputBytes(path));
 }
 
 Mesh readMesh(const FileBytes& file, MeshFormat format) {

@@ -181,6 +181,16 @@ std::vector<MeshPart> partsOf(const std::vector<NamedMesh>& meshes, MeshFormat f
 }
 
 }  // namespace
+
+std::optional<MeshFormat> formatOfEnding(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  const auto names = meshFormatNames();
+  for (std::size_t i = 0; i < names.size() && !ending.empty(); ++i) {
+    if (sameWord(std::string_view(ending).substr(1), names[i])) return static_cast<MeshFormat>(i);
+  }
+  return {};
+}
+
 }  // namespace io
 
 std::span<const std::string_view> meshFormatNames() {
@@ -195,16 +205,9 @@ bool hasFormat(MeshFormat format) {
 }
 
 MeshFormat meshFormatOf(const std::filesystem::path& path) {
-  const std::string ending = path.extension().string();
-  const auto names = meshFormatNames();
+  if (const auto format = io::formatOfEnding(path)) return *format;
   std::string all;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    all.append(" .").append(names[i]);
-    if (ending.empty()) continue;
-    if (io::sameWord(std::string_view(ending).substr(1), names[i])) {
-      return static_cast<MeshFormat>(i);
-    }
-  }
+  for (const std::string_view name : meshFormatNames()) all.append(" .").append(name);
   throw Error(ErrorCode::InvalidArgument,
               "cannot tell the mesh format of " + path.string() + ": its ending is none of" + all);
 }

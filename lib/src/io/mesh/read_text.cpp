@@ -64,8 +64,10 @@ Mesh readObj(const InputBytes& input) {
   std::vector<std::uint64_t> corners;
   std::uint64_t largest = 0;
   std::size_t largestLine = 0;
+  bool isObj = false;
   while (text.nextLine(/*continued=*/true)) {
     const std::string_view keyword = text.nextWord();
+    isObj |= keyword == "o" || keyword == "g";
     if (keyword == "v") {
       builder.addPosition(nextPosition(text));
     } else if (keyword == "f") {
@@ -86,7 +88,8 @@ Mesh readObj(const InputBytes& input) {
     input.failAtLine(largestLine, "a face names vertex " + std::to_string(largest + 1) + " of " +
                                       std::to_string(count));
   }
-  if (count == 0) input.fail("it holds no vertices");
+  // An object without any is an empty mesh.
+  if (count == 0 && !isObj) input.fail("it holds no vertices");
   return std::move(builder.mesh());
 }
 

@@ -1,12 +1,17 @@
 // .ply and .stl: little-endian binary.
 
+#include <tufa/error.h>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "base/number_text.h"
+#include "base/polygons.h"
 #include "base/require_at_most.h"
+#include "base/single_precision.h"
 #include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
@@ -115,7 +120,40 @@ void writePly(const Mesh& mesh, MeshSink& sink) {
   forEachItem(sink, mesh.triangles, writeFace);
 }
 
+namespace {
+
+double edgeLength(const Position& a, const Position& b) {
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+/// Throws where single precision would move vertices by more than a fiftieth of an edge in the
+/// mean, so that faces could turn over and intersect.
+void requireSinglePrecisionEnough(const Mesh& mesh) {
+  constexpr double kMostOfEdge = 0.02;
+  if (!needsDoublePrecision(mesh)) return;
+  double largest = 0, edges = 0;
+  for (const Position& p : mesh.positions) {
+    largest = std::max(largest, edgeLength(p, base::toSingle(p)));
+  }
+  std::size_t count = 0;
+  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+    for (std::size_t i = 0; i < v.size(); ++i, ++count) {
+      edges += edgeLength(mesh.positions[v[i]], mesh.positions[v[(i + 1) % v.size()]]);
+    }
+  });
+  const double mean = count == 0 ? 0 : edges / static_cast<double>(count);
+  if (count == 0 || largest <= kMostOfEdge * mean) return;
+  throw Error(ErrorCode::LimitExceeded,
+              ".stl has single precision, which so far from the origin moves vertices by up to " +
+                  base::roughNumberText(largest) + ", with edges of " +
+                  base::roughNumberText(mean) +
+                  " in the mean: write .ply, .obj, .off or .glb, or move the volume");
+}
+
+}  // namespace
+
 void writeStl(const Mesh& mesh, MeshSink& sink) {
+  requireSinglePrecisionEnough(mesh);
   base::requireAtMost(std::numeric_limits<std::uint32_t>::max(), mesh.triangleCount(), "triangles",
                       ".stl");
   // Not "solid": readers take files that begin so for text.
