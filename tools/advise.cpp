@@ -158,6 +158,7 @@ void addAdviseCommand(CLI::App& app, Command& chosen) {
                    "share of the cells, those with the smallest features, that may go without")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  addNonFiniteOption(*advise, options.contour.nonFinite);
   addThreadsOption(*advise, options.contour.threads);
   advise->add_flag("--json", arguments->json, "one JSON object on standard output");
   advise->add_flag("--quiet", arguments->quiet, "no text, only the exit code");

@@ -7,6 +7,7 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -68,6 +69,8 @@ Lods cameraLods(const ChunkIndex& index, const std::string& eye, const std::stri
   Camera camera;
   camera.eye = {readNumber<double>(words[0], lods), readNumber<double>(words[1], lods),
                 readNumber<double>(words[2], lods)};
+  const Position& at = camera.eye;
+  if (!std::isfinite(at.x) || !std::isfinite(at.y) || !std::isfinite(at.z)) refuse(lods);
   return selectLods(index, camera, pixelError);
 }
 

@@ -66,7 +66,12 @@ int checkFile(const std::string& file, const Truth& truth, const CheckArguments&
   ProgressBar bar(arguments.quiet, truth.grid ? std::vector{1.0, 1.0} : std::vector{1.0});
   const CheckReport report = checkMesh(mesh, arguments, bar);
   std::optional<DistanceReport> distance;
-  if (truth.grid) distance = measureDistance(mesh, *truth.grid, truth.isovalue, arguments, bar);
+  if (truth.grid) {
+    distance = measureDistance(mesh, *truth.grid, truth.isovalue, arguments, bar);
+    if (distance->surfaceToMesh.samples == 0) {
+      requireSurface({}, distance->isovalue, *truth.grid, *arguments.against);
+    }
+  }
 
   if (arguments.json) {
     Json json;
@@ -115,7 +120,7 @@ void addCheckCommand(CLI::App& app, Command& chosen) {
       ->add_option("MESH", arguments->inputs,
                    "a .ply, .obj, .stl, .off or .glb file, or several; - for standard input")
       ->required();
-  addFormatOption(*check, arguments->format, "of the mesh in standard input");
+  addInputFormatOption(*check, arguments->format);
   CLI::Option* const against =
       check->add_option("--against", arguments->against,
                         "measure the distance to the isosurface of a grid of this .vdb file");

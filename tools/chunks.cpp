@@ -12,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@
 #include "paths.h"
 #include "progress_bar.h"
 #include "staged_folder.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -81,6 +83,10 @@ ChunkOptions chunkOptions(const ChunksArguments& arguments, const openvdb::GridB
 /// Throws Error if it is certain already that the folder could not be made or written to, or if its
 /// name is that of a mesh.
 void requireWritableFolder(const std::filesystem::path& folder) {
+  if (isStandard(folder.string())) {
+    throw Error(ErrorCode::InvalidArgument,
+                "chunks are written to a folder, which standard output cannot hold");
+  }
   const std::string ending = endingOf(folder);
   if (!std::filesystem::is_directory(folder) &&
       (ending == ".glb" || ending == ".ply" || ending == ".obj" || ending == ".stl" ||
@@ -122,6 +128,35 @@ void keepOthers(ChunkIndex& index, const std::string& folder) {
   }
   index.chunks.clear();
   for (auto& [place, chunk] : chunks) index.chunks.push_back(std::move(chunk));
+}
+
+std::vector<std::string> filesOf(const ChunkIndex& index) {
+  std::vector<std::string> files;
+  for (const ChunkEntry& chunk : index.chunks) {
+    for (const ChunkLevelEntry& level : chunk.levels) files.push_back(level.file);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The files of an earlier run in a folder that are not those of this one.
+std::vector<std::filesystem::path> filesLeftOver(const std::filesystem::path& folder,
+                                                 const ChunkIndex& index) {
+  std::vector<std::filesystem::path> left;
+  ChunkIndex before;
+  try {
+    if (!std::filesystem::exists(folder / "chunks.json")) return left;
+    before = readChunkIndex(folder);
+  } catch (const Error&) {
+    return left;  // nobody knows what its files are
+  }
+  const std::vector<std::string> files = filesOf(index);
+  for (const std::string& name : filesOf(before)) {
+    const std::filesystem::path path = name;
+    if (path.empty() || path.filename() != path) continue;
+    if (!std::binary_search(files.begin(), files.end(), name)) left.push_back(folder / path);
+  }
+  return left;
 }
 
 /// Says on standard error which of the chunks asked for have no surface.
@@ -181,7 +216,13 @@ ChunksRun build(const ChunksArguments& arguments) {
   if (!options.only.empty()) keepOthers(all, arguments.output);
   if (!staged) staged.emplace(arguments.output);
   writeChunkIndex(all, staged->path());
+  std::vector<std::filesystem::path> old;
+  if (options.only.empty()) old = filesLeftOver(arguments.output, all);
   staged->commit("chunks.json");
+  for (const std::filesystem::path& file : old) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
   return run;
 }
 
@@ -326,9 +367,6 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
     requireAttributes(arguments.attributes,
                       arguments.format == "glb" ? MeshFormat::Glb : MeshFormat::Ply);
   }
-  if (command.count("--normals") != 0) {
-    throw Error(ErrorCode::InvalidArgument, "--normals is not for chunks");
-  }
   if (assembling && arguments.assemble.lods.empty()) {
     throw Error(ErrorCode::InvalidArgument, "--assemble needs --lods");
   }
@@ -389,7 +427,9 @@ void addChunksCommand(CLI::App& app, Command& chosen) {
   addBuildOptions(*chunks, *arguments);
   addAssembleOptions(*chunks, arguments->assemble);
   addContourOptions(*chunks, arguments->chunks.contour, arguments->isovalue);
-  chunks->remove_option(chunks->get_option("--no-repair"));
+  for (const char* none : {"--no-repair", "--simplify", "--normals"}) {
+    chunks->remove_option(chunks->get_option(none));
+  }
   chunks->add_flag("--json", arguments->json, "one JSON object on standard output");
   chunks->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   chunks->callback([arguments, chunks, &chosen] {

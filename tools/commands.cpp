@@ -83,6 +83,12 @@ CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isoval
                         "auto: half way between the least and the greatest value");
 }
 
+void addNonFiniteOption(CLI::App& app, NonFinite& nonFinite) {
+  addChoice<NonFinite>(app, "--nan", nonFinite,
+                       {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
+                       "what to do with NaN and infinite values (default refuse)");
+}
+
 void addFrameOptions(CLI::App& app, UpAxis& up, double& scale) {
   addChoice<UpAxis>(app, "--up", up, {{"y", UpAxis::Y}, {"z", UpAxis::Z}},
                     ".glb, .usda and .3mf: axis of the volume that points up (default y)");
@@ -105,27 +111,27 @@ void noteFloats(const std::string& what) {
   printNote("note: " + what + " is stored in floats: 16 bits do not tell all its vertices apart");
 }
 
-void addContourOptions(CLI::App& app, ContourOptions& options,
-                       std::optional<std::string>& isovalue) {
+void addContourOptions(CLI::App& app, ContourOptions& options, std::optional<std::string>& isovalue,
+                       bool methods) {
   addIsovalueOption(app, isovalue);
   addChoice<Inside>(app, "--inside", options.inside,
                     {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
                     "which side of the isovalue is solid (default auto)");
-  addChoice<Ambiguity>(app, "--ambiguity", options.ambiguity,
-                       {{"separate", Ambiguity::Separate},
-                        {"join", Ambiguity::Join},
-                        {"asymptotic", Ambiguity::Asymptotic},
-                        {"chord", Ambiguity::Chord},
-                        {"original", Ambiguity::Original}},
-                       "rule for ambiguous cell faces (default separate); original, which may "
-                       "leave holes, is for --method mc alone");
+  std::map<std::string, Ambiguity> rules{{"separate", Ambiguity::Separate},
+                                         {"join", Ambiguity::Join},
+                                         {"asymptotic", Ambiguity::Asymptotic},
+                                         {"chord", Ambiguity::Chord}};
+  std::string help = "rule for ambiguous cell faces (default separate)";
+  if (methods) {
+    rules["original"] = Ambiguity::Original;
+    help += "; original, which may leave holes, is for --method mc alone";
+  }
+  addChoice<Ambiguity>(app, "--ambiguity", options.ambiguity, rules, help);
   addChoice<Normals>(
       app, "--normals", options.normals,
       {{"gradient", Normals::Gradient}, {"faces", Normals::Faces}, {"none", Normals::None}},
       "where the normals come from (default gradient)");
-  addChoice<NonFinite>(app, "--nan", options.nonFinite,
-                       {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
-                       "what to do with NaN and infinite values (default refuse)");
+  addNonFiniteOption(app, options.nonFinite);
   app.add_flag("--cap", options.cap, "close the surface where it runs out of the data");
   app.add_flag(
       "--simplify,!--no-simplify,!--fast", options.simplify,
@@ -139,6 +145,7 @@ void addContourOptions(CLI::App& app, ContourOptions& options,
   app.add_flag("!--no-repair", options.repair, "do not look for self-intersections");
   app.add_option("--tile-faces", options.tileFaces,
                  "most faces of voxels on the surface between tiles; more take gigabytes")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str();
   addThreadsOption(app, options.threads);
 }

@@ -45,7 +45,10 @@ void requireFeasible(const CompareArguments& arguments) {
     const std::string& output = arguments.outputs[i];
     static_cast<void>(kindOf(output));
     requireDistinct(output, {arguments.input});
-    for (std::size_t k = 0; k < i; ++k) requireDistinct(output, {arguments.outputs[k]});
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!sameFile(output, arguments.outputs[k])) continue;
+      throw Error(ErrorCode::InvalidArgument, "two outputs are the same file: " + output);
+    }
     requireWritable(output);
   }
 }

@@ -12,6 +12,7 @@
 #include "console.h"
 #include "number.h"
 #include "progress_bar.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -183,6 +184,7 @@ std::shared_ptr<openvdb::GridBase> filterVolume(const std::shared_ptr<openvdb::G
   FilterOptions options;
   options.isovalue = meshing.isovalue;
   options.inside = meshing.inside;
+  options.nonFinite = meshing.nonFinite;
   options.threads = meshing.threads;
   options.progress = bar.callback();
   run.words = words.inOrder;
@@ -195,6 +197,18 @@ std::shared_ptr<openvdb::GridBase> filterVolume(const std::shared_ptr<openvdb::G
     filtered = applyFilters(*grid, filters, options, &run.reports);
   });
   return filtered;
+}
+
+void requireLeft(const openvdb::GridBase& grid, const std::string& file, const FilterRun& run) {
+  const auto hasTakenAll = [](const FilterReport& report) {
+    return report.voxelsAfter == 0 || (report.components > 0 && report.componentsKept == 0);
+  };
+  const auto first = std::find_if(run.reports.begin(), run.reports.end(), hasTakenAll);
+  if (first == run.reports.end()) return;
+  const FilterWord& word = run.words[static_cast<std::size_t>(first - run.reports.begin())];
+  throw Error(ErrorCode::UnsupportedGrid, "--" + word.option + " " + word.value +
+                                              " leaves nothing of grid \"" + nameOf(grid) +
+                                              "\" in " + shownInput(file));
 }
 
 Json toJson(const FilterRun& run) {

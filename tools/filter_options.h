@@ -33,6 +33,10 @@ struct FilterRun {
   std::vector<FilterWord> words;
   std::vector<FilterReport> reports;  ///< one for each word
   double seconds = 0;
+  /// NaN and infinite values that were taken as outside before the first one.
+  [[nodiscard]] std::size_t nonFiniteValues() const {
+    return reports.empty() ? 0 : reports.front().nonFiniteValues;
+  }
 };
 
 /// Declares the options of filters.
@@ -48,6 +52,9 @@ void orderFilters(const CLI::App& app, FilterWords& words);
 [[nodiscard]] std::shared_ptr<openvdb::GridBase> filterVolume(
     const std::shared_ptr<openvdb::GridBase>& grid, const std::string& file,
     const FilterWords& words, const ContourOptions& meshing, ProgressBar& bar, FilterRun& run);
+
+/// Throws Error(UnsupportedGrid) with the filter that has left nothing of a grid of a file.
+void requireLeft(const openvdb::GridBase& grid, const std::string& file, const FilterRun& run);
 
 /// What filters did, for programs.
 [[nodiscard]] nlohmann::ordered_json toJson(const FilterRun& run);

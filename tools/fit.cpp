@@ -12,8 +12,10 @@
 #include "commands.h"
 #include "console.h"
 #include "number_list.h"
+#include "open_edges.h"
 #include "paths.h"
 #include "progress_bar.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -22,6 +24,7 @@ namespace {
 struct FitArguments {
   std::string input;
   std::string output;
+  std::optional<std::string> format;
   std::optional<std::string> weights;
   FitOptions options;
   bool json = false;
@@ -64,7 +67,8 @@ int runFit(const FitArguments& arguments) {
     options.normalWeight = weights[1];
     options.shrinkWeight = weights[2];
   }
-  const Mesh mesh = readMesh(arguments.input);
+  const Mesh mesh = readMeshInput(arguments.input, arguments.format);
+  if (!arguments.quiet) noteOpenMesh(mesh, "the inside");
   BlobFit fit;
   const double seconds = timed([&] {
     ProgressBar bar(arguments.quiet);
@@ -92,8 +96,10 @@ void addFitCommand(CLI::App& app, Command& chosen) {
                  (canFitBlobs() ? "" : " (this tufa was built without Ceres Solver)"));
   FitOptions& options = arguments->options;
   fit->add_option("MESH", arguments->input,
-                  "a .ply, .obj, .stl, .off or .glb file: closed, facing outward")
+                  "a .ply, .obj, .stl, .off or .glb file, or - for standard input: closed, facing "
+                  "outward")
       ->required();
+  addInputFormatOption(*fit, arguments->format);
   fit->add_option("-o,--output", arguments->output, "the .json scene to write")->required();
   fit->add_option("--blobs", options.blobs, "most blobs")->capture_default_str();
   fit->add_option("--error", options.error,

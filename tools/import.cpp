@@ -4,6 +4,8 @@
 
 #include <tufa/error.h>
 #include <tufa/import.h>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -38,6 +40,14 @@ struct ImportArguments {
 
 using Files = std::vector<std::filesystem::path>;
 
+std::array<double, 3> readSpacing(const std::string& text) {
+  const auto spacing = numbersIn<3>("--spacing", text);
+  if (std::any_of(spacing.begin(), spacing.end(), [](double length) { return !(length > 0); })) {
+    throw Error(ErrorCode::InvalidArgument, "--spacing takes lengths above 0, not " + text);
+  }
+  return spacing;
+}
+
 std::shared_ptr<openvdb::GridBase> importRawFiles(const ImportArguments& arguments,
                                                   const Files& files, ProgressBar& bar) {
   if (arguments.series) {
@@ -52,7 +62,7 @@ std::shared_ptr<openvdb::GridBase> importRawFiles(const ImportArguments& argumen
     options.size[axis] = static_cast<std::int64_t>(size[axis]);
   }
   options.type = *rawTypeByName(arguments.type);
-  if (arguments.spacing) options.spacing = numbersIn<3>("--spacing", *arguments.spacing);
+  if (arguments.spacing) options.spacing = readSpacing(*arguments.spacing);
   if (arguments.origin) {
     const auto origin = numbersIn<3>("--origin", *arguments.origin);
     options.origin = {origin[0], origin[1], origin[2]};
@@ -71,7 +81,7 @@ std::shared_ptr<openvdb::GridBase> importImage(const ImportArguments& arguments,
   requireImageReader();
   ImageSlices image = openImage(arguments.inputs, arguments.series);
   if (arguments.spacing) {
-    const auto spacing = numbersIn<3>("--spacing", *arguments.spacing);
+    const auto spacing = readSpacing(*arguments.spacing);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       image.steps[axis] = scaled(image.steps[axis], spacing[axis]);
     }

@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 /// Prints what the user should know to standard error; returns the exit code.
 int judge(const LodRun& run) {
-  noteData(run.contour);
+  noteData(run.contour, run.chain.levels.empty() ? nullptr : &run.chain.levels.front().mesh);
   if (!run.chain.stopped.empty()) printNote("note: " + run.chain.stopped);
   for (const std::size_t level : run.written.floatLevels) {
     noteFloats("level " + std::to_string(level));
@@ -103,8 +103,11 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   }
   if (!glb && !usda && lodFile(arguments.output, 0) == arguments.output) {
     throw Error(ErrorCode::InvalidArgument,
-                arguments.output +
-                    ": only .glb and .usda hold several levels; --separate makes one file a level");
+                isStandard(arguments.output)
+                    ? "of the formats only glb and usda hold several levels, in standard output"
+                    : arguments.output +
+                          ": only .glb and .usda hold several levels; --separate "
+                          "makes one file a level");
   }
   if (arguments.check || arguments.report) requireChecker();
   requireDistinctLevels(arguments);

@@ -36,9 +36,11 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   ContourOptions meshing = arguments.lod.contour;
   meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
   grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run.filters);
+  if (!arguments.allowEmpty) requireLeft(*grid, arguments.input, run.filters);
   const LodOptions options = chainOptions(arguments, meshing, *grid, bar);
   run.dropping = options.allowTopologyChange;
   run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
+  run.contour.nonFiniteValues += run.filters.nonFiniteValues();
   if (run.chain.levels.empty() && !run.chain.stopped.empty()) {
     throw Error(ErrorCode::InvalidArgument, run.chain.stopped);
   }

@@ -10,6 +10,7 @@
 #include "checker.h"
 #include "commands.h"
 #include "console.h"
+#include "frames.h"
 #include "mesh_run.h"
 #include "mesh_sequence.h"
 #include "standard_streams.h"
@@ -25,7 +26,7 @@ int judge(const MeshRun& run) {
   int exitCode = kDone;
   for (const std::string& name : run.written.floatMeshes) noteFloats("mesh \"" + name + "\"");
   for (const GridRun& grid : run.grids) {
-    noteData(grid.contour);
+    noteData(grid.contour, &grid.mesh);
     if (!grid.check || grid.check->watertight()) continue;
     noteBroken(*grid.check, grid.contour,
                run.grids.size() == 1 ? "the mesh" : "the mesh of grid \"" + grid.grid + "\"");
@@ -92,6 +93,12 @@ void addSequenceOptions(CLI::App& app, SequenceArguments& sequence) {
 
 /// Throws Error for options that mean nothing without a sequence.
 void requireSequence(const CLI::App& app, const MeshArguments& arguments) {
+  if (!isStandard(arguments.output) && namesFrames(arguments.output)) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the name of the output has #### in the place of a frame's number, and that of the "
+                "input, " +
+                    arguments.input + ", has none");
+  }
   for (const char* name : {"--jobs", "--resume", "--fps", "--report"}) {
     if (app.get_option(name)->count() == 0) continue;
     throw Error(ErrorCode::InvalidArgument, std::string(name) + " is for sequences, and " +
@@ -135,8 +142,34 @@ void requireMeaning(const CLI::App& app, Method method) {
   for (const char* name : {"--max-angle", "--min-cell", "--max-cell", "--tolerance-grid",
                            "--simplify", "--min-angle", "--target", "--no-repair"}) {
     if (app.get_option(name)->count() == 0) continue;
+    const std::string word =
+        name == std::string("--simplify") ? "--simplify, as --fast and --no-simplify," : name;
+    throw Error(ErrorCode::InvalidArgument, word + " is for --method dual alone; leave it out");
+  }
+}
+
+/// Throws Error for options that exclude each other.
+void requireOneKindOfMesh(const CLI::App& app, const ContourOptions& options) {
+  const auto isGiven = [&](const char* name) { return app.get_option(name)->count() > 0; };
+  if (app.get_option("--simplify")->count() > 1) {
     throw Error(ErrorCode::InvalidArgument,
-                std::string(name) + " is for --method dual alone; leave it out");
+                "--simplify, --fast and --no-simplify exclude each other");
+  }
+  for (const char* name : {"--max-angle", "--min-cell", "--max-cell"}) {
+    if (!options.simplify || !isGiven("--simplify") || !isGiven(name)) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(name) +
+                    " bounds cells, and --simplify collapses edges whatever cells "
+                    "they are in: leave one of them out");
+  }
+  if (!options.uniform) return;
+  for (const char* name : {"--tolerance", "--max-angle", "--min-cell", "--max-cell",
+                           "--tolerance-grid", "--simplify", "--min-angle"}) {
+    if (!isGiven(name)) continue;
+    const bool isSimplify = name == std::string("--simplify");
+    throw Error(ErrorCode::InvalidArgument,
+                (isSimplify ? std::string("--simplify, as --fast and --no-simplify,") : name) +
+                    " means nothing to --uniform, which merges no cells and collapses no edges");
   }
 }
 
@@ -180,11 +213,11 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
   addAdaptiveOptions(*mesh, *arguments);
   addFilterOptions(*mesh, arguments->filters);
   addAttributeOptions(*mesh, arguments->attributes);
-  addContourOptions(*mesh, arguments->contour, arguments->isovalue);
+  addContourOptions(*mesh, arguments->contour, arguments->isovalue, true);
   mesh->add_option(
           "--crease", arguments->creaseAngle,
           ".glb, .obj and .usda: normals are split where faces differ by more, in degrees; "
-          "default: 40 if the field is a distance field, else 180: nowhere")
+          "default: 40")
       ->check(CLI::Range(0.0, 180.0));
   addFrameOptions(*mesh, arguments->up, arguments->scale);
   addCompressionOptions(*mesh, arguments->compression);
@@ -204,10 +237,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
       requireMeaning(*mesh, arguments->method);
       arguments->mergeCells = arguments->method == Method::CubicalMarchingSquares &&
                               mesh->get_option("--tolerance")->count() > 0;
-      if (arguments->contour.uniform && arguments->contour.minAngle > 0) {
-        throw Error(ErrorCode::InvalidArgument,
-                    "--min-angle means nothing to --uniform, which collapses no edges");
-      }
+      requireOneKindOfMesh(*mesh, arguments->contour);
       if (isSequence(*arguments, *sequence)) return runSequence(*arguments, *sequence);
       requireSequence(*mesh, *arguments);
       return runMesh(*arguments);

@@ -20,8 +20,6 @@
 namespace tufa::tools {
 namespace {
 
-constexpr double kCreaseAngle = 40;
-constexpr double kNoCreases = 180;
 constexpr const char* kUnionName = "union";
 
 /// Whether the output's file name has a place for the name of a grid.
@@ -55,6 +53,7 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
   options.isovalue =
       arguments.labels ? kOfLabels : readIsovalue(arguments.isovalue, *grid, arguments.input);
   grid = filterVolume(grid, arguments.input, arguments.filters, options, bar, run.filters);
+  if (!arguments.allowEmpty) requireLeft(*grid, arguments.input, run.filters);
   options.tolerance = readTolerance("--tolerance", arguments.tolerance, *grid);
   if (arguments.toleranceGrid) {
     options.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
@@ -66,6 +65,7 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
     const double merge = arguments.mergeCells ? options.tolerance : 0;
     run.mesh = extract(*grid, arguments.method, {options, arguments.sharpAngle, refine, merge},
                        &run.contour);
+    run.contour.nonFiniteValues += run.filters.nonFiniteValues();
     if (arguments.target == Target::Quads) {
       pairTriangles(run.mesh, options.tolerance * voxelSizeOf(*grid));
     }
@@ -126,8 +126,7 @@ void checkMesh(GridRun& run, const MeshArguments& arguments, ProgressBar& bar) {
 WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, ProgressBar& bar) {
   WriteOptions options;
   if (!run.grid.empty()) options.name = run.grid;
-  options.creaseAngle =
-      arguments.creaseAngle.value_or(run.contour.distanceField ? kCreaseAngle : kNoCreases);
+  if (arguments.creaseAngle) options.creaseAngle = *arguments.creaseAngle;
   options.up = arguments.up;
   options.scale = arguments.scale;
   options.compression = arguments.compression;
@@ -302,6 +301,12 @@ void requireFeasible(const MeshArguments& arguments) {
     const MeshFormat format = meshFormat(arguments.output, arguments.format);
     if (format != MeshFormat::Glb && format != MeshFormat::Usda && format != MeshFormat::ThreeMf) {
       throw Error(ErrorCode::InvalidArgument, "--up and --scale are for .glb, .usda and .3mf only");
+    }
+  }
+  if (arguments.creaseAngle) {
+    const MeshFormat format = meshFormat(arguments.output, arguments.format);
+    if (format != MeshFormat::Glb && format != MeshFormat::Usda && format != MeshFormat::Obj) {
+      throw Error(ErrorCode::InvalidArgument, "--crease is for .glb, .obj and .usda only");
     }
   }
   if (arguments.compression != GlbCompression::None &&

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -199,6 +201,36 @@ Json readResult(const ProcessResult& result) {
   return {{"error", errorToJson("ended", why)}};
 }
 
+/// The least and the greatest isovalue of the frames that have a surface.
+class IsovalueRange {
+ public:
+  void add(const Json& frame) {
+    if (const auto grids = frame.find("grids"); grids != frame.end()) {
+      for (const Json& grid : *grids) addGrid(grid);
+    } else {
+      addGrid(frame);
+    }
+  }
+  /// Says on standard error that frames differ, if they do.
+  void note() const {
+    if (!(least_ < greatest_)) return;
+    printNote("note: the isovalue differs from frame to frame, from " + formatNumber(least_) +
+              " to " + formatNumber(greatest_) +
+              ", half way between the least and the greatest value of each; --iso makes it one");
+  }
+
+ private:
+  void addGrid(const Json& grid) {
+    if (!grid.contains("isovalue") || grid.value("triangles", 0) == 0) return;
+    const double isovalue = grid["isovalue"].get<double>();
+    least_ = std::min(least_, isovalue);
+    greatest_ = std::max(greatest_, isovalue);
+  }
+
+  double least_ = std::numeric_limits<double>::infinity();
+  double greatest_ = -std::numeric_limits<double>::infinity();
+};
+
 }  // namespace
 
 bool isSequence(const MeshArguments& arguments, const SequenceArguments& sequence) {
@@ -218,13 +250,16 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
   }
   FrameTable table(frames.size());
   std::string wrongUsage;
+  IsovalueRange isovalues;
   const auto work = [&](std::size_t index) {
     return frames[index].state == FrameState::Done ? meshFrame(frames[index]) : std::string("{}");
   };
   const auto tell = [&](std::size_t index, const ProcessResult& result) {
     const Frame& frame = frames[index];
+    Json json = readResult(result);
+    isovalues.add(json);
     const FrameRow& row = table.add(
-        {frame.number, frame.arguments.input, frame.output(), frame.state, readResult(result)});
+        {frame.number, frame.arguments.input, frame.output(), frame.state, std::move(json)});
     // What is wrong with the command line is wrong with every frame.
     if (row.code() == nameOf(ErrorCode::InvalidArgument)) wrongUsage = row.message();
     if (!wrongUsage.empty()) return false;
@@ -234,6 +269,7 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
   };
   const double seconds = timed([&] { runInProcesses(frames.size(), sequence.jobs, work, tell); });
   if (!wrongUsage.empty()) refuse(wrongUsage);
+  if (!arguments.isovalue || *arguments.isovalue == "auto") isovalues.note();
   bool isJoined = false;
   const double joinSeconds = timed([&] { isJoined = one && one->join(frames, sequence.fps); });
 

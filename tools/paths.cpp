@@ -41,13 +41,20 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   if (isStandard(a) || isPipeOrDevice(a)) return false;
   std::error_code error;
   if (std::filesystem::equivalent(a, b, error) && !error) return true;
-  return std::filesystem::weakly_canonical(std::filesystem::absolute(a), error) ==
-         std::filesystem::weakly_canonical(std::filesystem::absolute(b), error);
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(a, error), error) ==
+         std::filesystem::weakly_canonical(std::filesystem::absolute(b, error), error);
 }
 
 void requireDistinct(const std::filesystem::path& output,
                      const std::vector<std::filesystem::path>& inputs) {
+  const auto requireName = [](const std::filesystem::path& path, const char* what) {
+    if (path.empty()) {
+      throw Error(ErrorCode::InvalidArgument, std::string("the name of the ") + what + " is empty");
+    }
+  };
+  requireName(output, "output");
   for (const std::filesystem::path& input : inputs) {
+    requireName(input, "input");
     if (!sameFile(output, input)) continue;
     const std::string same = output == input ? "" : ", which is the same file as " + input.string();
     throw Error(ErrorCode::InvalidArgument,

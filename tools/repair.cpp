@@ -4,6 +4,7 @@
 #include <tufa/repair.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "checker.h"
@@ -12,6 +13,7 @@
 #include "paths.h"
 #include "progress_bar.h"
 #include "report.h"
+#include "standard_streams.h"
 #include "volume.h"
 
 namespace tufa::tools {
@@ -22,6 +24,7 @@ using Json = nlohmann::ordered_json;
 struct RepairArguments {
   std::string input;
   std::string output;
+  std::optional<std::string> format;
   RepairOptions options;
   bool json = false;
   bool quiet = false;
@@ -53,7 +56,7 @@ int runRepair(const RepairArguments& arguments) {
   requireMeshEnding(arguments.output);
   requireDistinct(arguments.output, {arguments.input});
   requireWritable(arguments.output);
-  const Mesh mesh = readMesh(arguments.input);
+  const Mesh mesh = readMeshInput(arguments.input, arguments.format);
   RepairReport report;
   Mesh repaired;
   {
@@ -81,11 +84,15 @@ void addRepairCommand(CLI::App& app, Command& chosen) {
       "repair",
       checkerHelp("Make a mesh of another program watertight; exit code 1 if it is not then"));
   RepairOptions& options = arguments->options;
-  repair->add_option("MESH", arguments->input, "a .ply, .obj, .stl, .off or .glb file")->required();
+  repair
+      ->add_option("MESH", arguments->input,
+                   "a .ply, .obj, .stl, .off or .glb file, or - for standard input")
+      ->required();
   repair
       ->add_option("-o,--output", arguments->output,
-                   "the mesh to write: .ply (binary), .obj, .stl, .off or .glb")
+                   "the mesh to write: .ply (binary), .obj, .stl, .off, .glb, .usda or .3mf")
       ->required();
+  addInputFormatOption(*repair, arguments->format);
   repair
       ->add_option("--merge", options.mergeDistance,
                    "vertices nearer than this, in the mesh's units, become one; 0: those at the "

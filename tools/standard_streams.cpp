@@ -107,6 +107,11 @@ CLI::Option* addFormatOption(CLI::App& app, std::optional<std::string>& format,
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
 }
 
+CLI::Option* addInputFormatOption(CLI::App& app, std::optional<std::string>& format) {
+  return app.add_option("--format", format, "of the mesh in standard input")
+      ->check(CLI::IsMember({"ply", "obj", "stl", "off", "glb"}));
+}
+
 MeshFormat meshFormat(const std::string& name, const std::optional<std::string>& format) {
   if (isStandard(name)) {
     if (format) return meshFormatOf("-." + *format);
@@ -119,8 +124,9 @@ MeshFormat meshFormat(const std::string& name, const std::optional<std::string>&
 }
 
 Mesh readMeshInput(const std::string& name, const std::optional<std::string>& format) {
-  const MeshFormat known = meshFormat(name, format);
-  return isStandard(name) ? readMesh(standardInput(), known) : readMesh(name);
+  if (isStandard(name)) return readMesh(standardInput(), meshFormat(name, format));
+  if (format) static_cast<void>(meshFormat(name, format));  // throws
+  return readMesh(name);
 }
 
 }  // namespace tufa::tools

@@ -34,6 +34,8 @@ void keepApart(const std::string& output);
 /// Declares `--format`, one of the names of mesh formats.
 CLI::Option* addFormatOption(CLI::App& app, std::optional<std::string>& format,
                              const std::string& help);
+/// The same for meshes in standard input, of the formats that are read.
+CLI::Option* addInputFormatOption(CLI::App& app, std::optional<std::string>& format);
 
 /// The format of a mesh: what `--format` says for "-", and the ending for a file. Throws
 /// Error(InvalidArgument) if "-" has no format, a file has one beside its ending, or the ending is

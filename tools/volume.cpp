@@ -13,6 +13,7 @@
 #include "console.h"
 #include "crash_guard.h"
 #include "number.h"
+#include "open_edges.h"
 #include "standard_streams.h"
 
 namespace tufa::tools {
@@ -78,6 +79,11 @@ std::optional<double> readIsovalue(const std::optional<std::string>& text,
   }
   if (grid.getGridClass() != openvdb::GRID_FOG_VOLUME) return std::nullopt;
   const GridInfo info = describeGrid(grid);
+  if (!info.minValue) {
+    throw Error(ErrorCode::InvalidArgument, "a fog volume needs --iso, and grid \"" +
+                                                grid.getName() + "\" in " + shownInput(file) +
+                                                " has no values that could tell a good one");
+  }
   throw Error(ErrorCode::InvalidArgument,
               "a fog volume needs --iso: grid \"" + grid.getName() + "\" in " + shownInput(file) +
                   " " + describeValues(info) + "; try " + suggestIsovalue(info) +
@@ -198,18 +204,19 @@ double readTolerance(const std::string& option, const std::string& text,
   if (!length || !(length->value >= 0)) {
     throw Error(ErrorCode::InvalidArgument,
                 option +
-                    " must be a number of voxels, or of world units with the suffix w, not \"" +
+                    " must be a number of voxels, 0 or more, or of world units with the suffix w, "
+                    "not \"" +
                     text + "\"");
   }
   return length->world ? length->value / voxelSizeOf(grid) : length->value;
 }
 
-void noteData(const ContourReport& report) {
+void noteData(const ContourReport& report, const Mesh* mesh) {
   if (report.nonFiniteValues > 0) {
     printNote("note: " + formatCount(report.nonFiniteValues) +
               " NaN or infinite values were taken as outside");
   }
-  if (report.openEdges > 0) {
+  if (report.openEdges > 0 && (mesh == nullptr || countOpenEdges(*mesh) > 0)) {
     printNote("note: the surface runs out of the data at " + formatCount(report.openEdges) +
               " lattice edges and is open there; --cap closes it");
   }

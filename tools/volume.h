@@ -20,9 +20,10 @@ namespace tufa::tools {
 // What the commands that mesh a volume share.
 
 /// Declares the options for where the surface of a volume lies and how its finest mesh is made; the
-/// isovalue as text, for readIsovalue().
-void addContourOptions(CLI::App& app, ContourOptions& options,
-                       std::optional<std::string>& isovalue);
+/// isovalue as text, for readIsovalue(). `methods`: whether other methods than the dual one may
+/// take them.
+void addContourOptions(CLI::App& app, ContourOptions& options, std::optional<std::string>& isovalue,
+                       bool methods = false);
 
 /// Declares `--up` and `--scale`, for formats that say what is up and how long a metre is.
 void addFrameOptions(CLI::App& app, UpAxis& up, double& scale);
@@ -32,6 +33,9 @@ void addCompressionOptions(CLI::App& app, GlbCompression& compression);
 
 /// Says on standard error that something could not be quantized.
 void noteFloats(const std::string& what);
+
+/// Declares `--nan` alone.
+void addNonFiniteOption(CLI::App& app, NonFinite& nonFinite);
 
 /// Declares `--iso` alone.
 CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isovalue);
@@ -96,7 +100,7 @@ void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& 
                     const std::string& file);
 
 /// Prints what the user should know about the data to standard error.
-void noteData(const ContourReport& report);
+void noteData(const ContourReport& report, const Mesh* mesh = nullptr);
 
 /// Prints to standard error in what a mesh, named by `what`, is not watertight.
 void noteBroken(const CheckReport& check, const ContourReport& report, const std::string& what);

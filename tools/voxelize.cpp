@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "open_edges.h"
 #include "paths.h"
 #include "progress_bar.h"
 #include "standard_streams.h"
@@ -38,6 +39,7 @@ int runVoxelize(const VoxelizeArguments& arguments) {
   if (mesh.triangleCount() == 0) {
     throw Error(ErrorCode::UnreadableFile, shownInput(arguments.input) + " holds no faces");
   }
+  if (!arguments.quiet) noteOpenMesh(mesh, "the inside");
   openvdb::FloatGrid::Ptr grid;
   const double seconds = timed([&] {
     ProgressBar bar(arguments.quiet);
@@ -69,7 +71,7 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen) {
       ->add_option("-o,--output", arguments->output,
                    "the .vdb file to write, or - for standard output")
       ->required();
-  addFormatOption(*voxelize, arguments->format, "of the mesh in standard input");
+  addInputFormatOption(*voxelize, arguments->format);
   voxelize->add_option("--voxel", options.voxelSize, "voxel size in the mesh's units")->required();
   voxelize
       ->add_option("--half-width", options.halfWidth, "half width of the narrow band, in voxels")

@@ -5,6 +5,7 @@
 #include <tufa/chunks.h>
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -114,6 +115,17 @@ TEST_F(ChunksCommand, MakesChunksAloneAsTheyAreTogether) {
     EXPECT_EQ(readBytes(folder / "d" / name), readBytes(folder / "together" / name)) << name;
   }
   expectFailure("chunks v.vdb -o d --chunk 16 --levels 2 --only 0,0,0", 2, "of other options");
+}
+
+TEST_F(ChunksCommand, ASecondRunLeavesNoFileOfTheFirst) {
+  makeChunks("--quiet");
+  std::ofstream(folder / "d" / "notes.txt") << "of someone else";
+  ASSERT_EQ(run("chunks v.vdb -o d --chunk 32 --levels 1 --quiet").exitCode, 0);
+  std::set<std::string> expected{"chunks.json", "notes.txt"};
+  for (const ChunkEntry& chunk : readChunkIndex((folder / "d").string()).chunks) {
+    expected.insert(chunk.levels.at(0).file);
+  }
+  EXPECT_EQ(namesIn("d"), expected);
 }
 
 TEST_F(ChunksCommand, CancelledRunsLeaveTheFirstResult) {

@@ -93,6 +93,10 @@ TEST_F(FilterOptions, BoxesAndGridsOfTheFileClip) {
   for (const Position& p : readMesh(folder / "m.ply").positions) {
     ASSERT_LT(std::hypot(p.x - 1, p.y, p.z), 1.2);
   }
+  // Clipped to its own voxels the surface is whole, whatever ends beside them.
+  EXPECT_EQ(run("mesh d.vdb -o m.ply --clip dust --quiet").err, "");
+  EXPECT_NE(run("mesh d.vdb -o m.ply --clip half --quiet").err.find("open there"),
+            std::string::npos);
   expectFailure("mesh d.vdb -o n.ply --mask none", 3, "no grid \"none\"");
   expectFailure("mesh d.vdb -o n.ply --clip none", 3, "no grid \"none\"");
 }
@@ -116,8 +120,10 @@ TEST_F(FilterOptions, SayWhatIsWrongBeforeAnythingIsRead) {
   }
 }
 
-TEST_F(FilterOptions, AFilterThatLeavesNothingIsToldAsAnEmptySurface) {
-  expectFailure("mesh d.vdb -o n.ply --min-component 1000000", 3, "no surface");
+TEST_F(FilterOptions, AFilterThatLeavesNothingIsTold) {
+  expectFailure("mesh d.vdb -o n.ply --min-component 1000000", 3,
+                "--min-component 1000000 leaves nothing of grid \"dust\"");
+  expectFailure("lod d.vdb -o n.glb --smooth mean --clip 10,10,10,11,11,11", 3, "--clip 10,");
   EXPECT_EQ(run("mesh d.vdb -o e.ply --quiet --allow-empty --min-component 1000000").exitCode, 0);
   EXPECT_EQ(readMesh(folder / "e.ply").triangleCount(), 0u);
 }

@@ -1,6 +1,7 @@
 // Sequences of volumes: `tufa mesh 'smoke.####.vdb'`.
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include <tufa/io.h>
 #include <algorithm>
@@ -109,6 +110,18 @@ TEST_F(Sequence, EmptyFramesAreWrittenEmpty) {
   EXPECT_EQ(readMesh(folder / "m.0001.ply").triangleCount(), 0u);
   const Json json = Json::parse(readBytes(folder / "all.json"));
   EXPECT_EQ(statesOf(json), (States{"empty", "empty", "empty"}));
+}
+
+TEST_F(Sequence, IsovaluesThatDifferFromFrameToFrameAreTold) {
+  for (const int frame : {1, 2}) {
+    auto grid = openvdb::FloatGrid::create(0);  // of no class
+    grid->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(4)), static_cast<float>(frame));
+    writeGrids({grid}, folder / ("t." + std::to_string(frame) + ".vdb"));
+  }
+  const Outcome two = run("mesh t.#.vdb -o t.#.ply --quiet");
+  EXPECT_EQ(two.exitCode, 0) << two.err;
+  EXPECT_NE(two.err.find("from frame to frame, from 0.5 to 1"), std::string::npos) << two.err;
+  EXPECT_EQ(run("mesh t.#.vdb -o t.#.ply --quiet --iso 0.25").err, "");
 }
 
 TEST_F(Sequence, ResumeLeavesOutWhatIsNewer) {

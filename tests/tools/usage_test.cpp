@@ -7,6 +7,8 @@
 #include <tufa/io.h>
 #include <tufa/shapes.h>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/command_fixture.h"
@@ -44,7 +46,7 @@ std::string lastLineOf(const std::string& text) {
   return text.substr(begin + 1, end - begin);
 }
 
-TEST_F(Usage, MeshSplitsNormalsWhereTheFieldIsADistance) {
+TEST_F(Usage, MeshSplitsNormalsAtCreases) {
   writeShapes("box.vdb", {Shape::Box});
   writeShapes("fog.vdb", {Shape::Fog});
   // More vertices in the file than the mesh has, or as many.
@@ -56,9 +58,44 @@ TEST_F(Usage, MeshSplitsNormalsWhereTheFieldIsADistance) {
   };
   EXPECT_GT(added("box.vdb"), 0);
   EXPECT_EQ(added("box.vdb --crease 180"), 0);
-  EXPECT_EQ(added("fog.vdb --iso 0.3"), 0);
+  EXPECT_EQ(added("fog.vdb --iso 0.3 --crease 180"), 0);
   EXPECT_GT(added("fog.vdb --iso 0.3 --crease 20"), 0);
   expectFailure("mesh box.vdb -o n.glb --crease 181", 2, "--crease");
+}
+
+TEST_F(Usage, RefusesWordsThatExcludeEachOther) {
+  makeSphere();
+  for (const auto& [words, part] : std::vector<std::pair<std::string, std::string>>{
+           {"--uniform --fast", "--uniform"},
+           {"--uniform --tolerance 1", "--tolerance means nothing to --uniform"},
+           {"--uniform --min-angle 10", "--min-angle means nothing to --uniform"},
+           {"--simplify --fast", "exclude each other"},
+           {"--max-angle 20 --simplify", "--max-angle bounds cells"},
+           {"--crease 30", ".glb, .obj and .usda"},
+           {"--method mc --fast", "--fast"},
+           {"--tile-faces -1", "--tile-faces"},
+           {"--tolerance -1", "0 or more"}}) {
+    expectFailure("mesh s.vdb -o m.ply " + words, 2, part);
+  }
+  expectFailure("mesh s.vdb -o m_####.ply", 2, "####");
+  expectFailure("mesh s.vdb -o ''", 2, "output is empty");
+  expectFailure("mesh '' -o m.ply", 2, "input is empty");
+  expectFailure("chunks s.vdb -o -", 2, "a folder");
+  expectFailure("chunks s.vdb -o d --fast", 2, "--fast");
+  expectFailure("lod s.vdb -o m.glb --tolerance 0", 2, "tolerance 0");
+  expectFailure("compare s.vdb -o a.md -o a.md", 2, "two outputs");
+}
+
+TEST_F(Usage, TellsOfOpenMeshes) {
+  writeBytes(folder / "open.obj",
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  writeBytes(folder / "soup.obj",  // closed, with corners of its own for each face
+             "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 0 0\nv 0 0 1\nv 0 1 0\n"
+             "v 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 4 5 6\nf 7 8 9\nf 10 11 12\n");
+  const Outcome open = run("voxelize open.obj -o v.vdb --voxel 0.1");
+  EXPECT_EQ(open.exitCode, 0);
+  EXPECT_NE(open.err.find("the mesh is open, with 3 edges of one face"), std::string::npos);
+  EXPECT_EQ(run("voxelize soup.obj -o v.vdb --voxel 0.1").err, "");
 }
 
 TEST_F(Usage, RefusesAnOutputThatIsAnInput) {
