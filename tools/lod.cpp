@@ -26,7 +26,8 @@ using Json = nlohmann::ordered_json;
 
 /// Prints what the user should know to standard error; returns the exit code.
 int judge(const LodRun& run) {
-  noteData(run.contour, run.chain.levels.empty() ? nullptr : &run.chain.levels.front().mesh);
+  const bool isFiltered = !run.filters.reports.empty() && !run.chain.levels.empty();
+  noteData(run.contour, isFiltered ? &run.chain.levels.front().mesh : nullptr);
   if (!run.chain.stopped.empty()) printNote("note: " + run.chain.stopped);
   for (const std::size_t level : run.written.floatLevels) {
     noteFloats("level " + std::to_string(level));
@@ -104,7 +105,7 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   if (!glb && !usda && lodFile(arguments.output, 0) == arguments.output) {
     throw Error(ErrorCode::InvalidArgument,
                 isStandard(arguments.output)
-                    ? "of the formats only glb and usda hold several levels, in standard output"
+                    ? "only glb and usda can hold several levels on standard output"
                     : arguments.output +
                           ": only .glb and .usda hold several levels; --separate "
                           "makes one file a level");

@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 
 #include <tufa/error.h>
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,7 +12,6 @@
 #include "checker.h"
 #include "commands.h"
 #include "console.h"
-#include "frames.h"
 #include "mesh_run.h"
 #include "mesh_sequence.h"
 #include "standard_streams.h"
@@ -26,7 +27,7 @@ int judge(const MeshRun& run) {
   int exitCode = kDone;
   for (const std::string& name : run.written.floatMeshes) noteFloats("mesh \"" + name + "\"");
   for (const GridRun& grid : run.grids) {
-    noteData(grid.contour, &grid.mesh);
+    noteData(grid.contour, grid.filters.reports.empty() ? nullptr : &grid.mesh);
     if (!grid.check || grid.check->watertight()) continue;
     noteBroken(*grid.check, grid.contour,
                run.grids.size() == 1 ? "the mesh" : "the mesh of grid \"" + grid.grid + "\"");
@@ -93,11 +94,11 @@ void addSequenceOptions(CLI::App& app, SequenceArguments& sequence) {
 
 /// Throws Error for options that mean nothing without a sequence.
 void requireSequence(const CLI::App& app, const MeshArguments& arguments) {
-  if (!isStandard(arguments.output) && namesFrames(arguments.output)) {
+  if (arguments.output.find("##") != std::string::npos) {
     throw Error(ErrorCode::InvalidArgument,
-                "the name of the output has #### in the place of a frame's number, and that of the "
-                "input, " +
-                    arguments.input + ", has none");
+                "the output " + arguments.output +
+                    " has a place for a frame's number, and the input is the one file " +
+                    arguments.input);
   }
   for (const char* name : {"--jobs", "--resume", "--fps", "--report"}) {
     if (app.get_option(name)->count() == 0) continue;
@@ -151,9 +152,10 @@ void requireMeaning(const CLI::App& app, Method method) {
 /// Throws Error for options that exclude each other.
 void requireOneKindOfMesh(const CLI::App& app, const ContourOptions& options) {
   const auto isGiven = [&](const char* name) { return app.get_option(name)->count() > 0; };
-  if (app.get_option("--simplify")->count() > 1) {
-    throw Error(ErrorCode::InvalidArgument,
-                "--simplify, --fast and --no-simplify exclude each other");
+  const std::vector<std::string> simplify = app.get_option("--simplify")->results();
+  if (std::adjacent_find(simplify.begin(), simplify.end(), std::not_equal_to<>()) !=
+      simplify.end()) {
+    throw Error(ErrorCode::InvalidArgument, "--simplify excludes --fast and --no-simplify");
   }
   for (const char* name : {"--max-angle", "--min-cell", "--max-cell"}) {
     if (!options.simplify || !isGiven("--simplify") || !isGiven(name)) continue;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -201,8 +202,8 @@ Json readResult(const ProcessResult& result) {
   return {{"error", errorToJson("ended", why)}};
 }
 
-/// The least and the greatest isovalue of the frames that have a surface.
-class IsovalueRange {
+/// The isovalues of the frames that have a surface, by grid.
+class Isovalues {
  public:
   void add(const Json& frame) {
     if (const auto grids = frame.find("grids"); grids != frame.end()) {
@@ -213,22 +214,29 @@ class IsovalueRange {
   }
   /// Says on standard error that frames differ, if they do.
   void note() const {
-    if (!(least_ < greatest_)) return;
-    printNote("note: the isovalue differs from frame to frame, from " + formatNumber(least_) +
-              " to " + formatNumber(greatest_) +
-              ", half way between the least and the greatest value of each; --iso makes it one");
+    for (const auto& [grid, range] : ranges_) {
+      if (!(range.least < range.greatest)) continue;
+      printNote("note: the isovalue of grid \"" + grid + "\" differs from frame to frame, from " +
+                formatNumber(range.least) + " to " + formatNumber(range.greatest) +
+                ", half way between the least and the greatest value of each; --iso makes it one");
+    }
   }
 
  private:
+  struct Range {
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -std::numeric_limits<double>::infinity();
+  };
+
   void addGrid(const Json& grid) {
     if (!grid.contains("isovalue") || grid.value("triangles", 0) == 0) return;
+    Range& range = ranges_[grid.value("grid", "")];
     const double isovalue = grid["isovalue"].get<double>();
-    least_ = std::min(least_, isovalue);
-    greatest_ = std::max(greatest_, isovalue);
+    range.least = std::min(range.least, isovalue);
+    range.greatest = std::max(range.greatest, isovalue);
   }
 
-  double least_ = std::numeric_limits<double>::infinity();
-  double greatest_ = -std::numeric_limits<double>::infinity();
+  std::map<std::string, Range> ranges_;
 };
 
 }  // namespace
@@ -250,7 +258,7 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
   }
   FrameTable table(frames.size());
   std::string wrongUsage;
-  IsovalueRange isovalues;
+  Isovalues isovalues;
   const auto work = [&](std::size_t index) {
     return frames[index].state == FrameState::Done ? meshFrame(frames[index]) : std::string("{}");
   };

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/bits.h"
 #include "console.h"
 
 namespace tufa::tools {
@@ -30,20 +31,38 @@ std::vector<VertexIndex> namesByPlace(const Mesh& mesh) {
   return names;
 }
 
+/// Calls visit(a, b) for the edges of all faces.
+template <class Visit>
+void forEdges(const Mesh& mesh, const Visit& visit) {
+  const auto visitFace = [&](const auto& v) {
+    for (std::size_t i = 0; i < v.size(); ++i) visit(v[i], v[(i + 1) % v.size()]);
+  };
+  for (const Quad& quad : mesh.quads) visitFace(quad.vertices);
+  for (const Triangle& triangle : mesh.triangles) visitFace(triangle.vertices);
+}
+
+std::uint64_t keyOf(std::uint64_t a, std::uint64_t b) {
+  return std::min(a, b) << 32 | std::max(a, b);
+}
+
+/// Whether every edge has an even number of faces, without a look at places: by the exclusive or of
+/// all edges, each mixed to a number that no few others add up to. One pass.
+bool isClosedByIndex(const Mesh& mesh) {
+  std::uint64_t odd = 0;
+  forEdges(mesh, [&](VertexIndex a, VertexIndex b) { odd ^= base::mixBits(keyOf(a, b)); });
+  return odd == 0;
+}
+
 }  // namespace
 
 std::size_t countOpenEdges(const Mesh& mesh) {
+  if (isClosedByIndex(mesh)) return 0;
   const std::vector<VertexIndex> names = namesByPlace(mesh);
   std::vector<std::uint64_t> edges;
   edges.reserve(4 * mesh.quads.size() + 3 * mesh.triangles.size());
-  const auto addFace = [&](const auto& vertices) {
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const std::uint64_t a = names[vertices[i]], b = names[vertices[(i + 1) % vertices.size()]];
-      if (a != b) edges.push_back(std::min(a, b) << 32 | std::max(a, b));
-    }
-  };
-  for (const Quad& quad : mesh.quads) addFace(quad.vertices);
-  for (const Triangle& triangle : mesh.triangles) addFace(triangle.vertices);
+  forEdges(mesh, [&](VertexIndex a, VertexIndex b) {
+    if (names[a] != names[b]) edges.push_back(keyOf(names[a], names[b]));
+  });
   std::sort(edges.begin(), edges.end());
   std::size_t open = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -57,8 +76,9 @@ std::size_t countOpenEdges(const Mesh& mesh) {
 void noteOpenMesh(const Mesh& mesh, const std::string& what) {
   const std::size_t open = countOpenEdges(mesh);
   if (open == 0) return;
-  printNote("note: the mesh is open, with " + formatCount(open) + (open == 1 ? " edge" : " edges") +
-            " of one face: " + what + " is uncertain there; tufa repair closes holes");
+  printNote("note: the mesh is open: " + formatCount(open) +
+            (open == 1 ? " edge belongs" : " edges belong") + " to one face only, and " + what +
+            " is uncertain there; tufa repair --fill N fills holes of up to N edges");
 }
 
 }  // namespace tufa::tools

@@ -99,7 +99,9 @@ void requireVoxels(const openvdb::GridBase& grid, const std::string& file);
 void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
                     const std::string& file);
 
-/// Prints what the user should know about the data to standard error.
+/// Prints what the user should know about the data to standard error. That the surface is open,
+/// only if a mesh is given that is: where grids are clipped, data may end beside a surface that is
+/// whole.
 void noteData(const ContourReport& report, const Mesh* mesh = nullptr);
 
 /// Prints to standard error in what a mesh, named by `what`, is not watertight.

@@ -193,7 +193,7 @@ TEST_F(ChunksCommand, RefusesWhatItCannotDo) {
   expectFailure("chunks s.vdb -o d --only 1,2", 2, "\"1,2\"");
   expectFailure("chunks s.vdb -o d --format obj", 2, "--format");
   expectFailure("chunks s.vdb -o d --lods all:0", 2, "only for --assemble");
-  expectFailure("chunks s.vdb -o d --normals faces", 2, "not for chunks");
+  expectFailure("chunks s.vdb -o d --normals faces", 2, "--normals");
   expectFailure("chunks s.vdb -o missing/d", 3, "no folder");
   expectFailure("chunks missing.vdb -o d", 3, "missing.vdb");
   expectFailure("chunks s.vdb --assemble d --lods all:0 -o m.ply", 2, "takes no volume");

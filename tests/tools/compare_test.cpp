@@ -60,7 +60,7 @@ TEST_F(CompareCommand, RefusesBeforeAnyWork) {
   expectFailure("compare s.vdb -o r.md -o r.md", 2, "r.md");
   expectFailure("compare s.vdb --methods mc,cubes", 2, "cubes");
   expectFailure("compare s.vdb --truth noise", 2, "--truth");
-  expectFailure("compare s.vdb --ambiguity original", 2, "holes");
+  expectFailure("compare s.vdb --ambiguity original", 2, "--ambiguity");
   expectFailure("compare s.vdb -o none/r.md", 3, "folder");
   expectFailure("compare s.vdb --iso 100 --quiet -o r.md", 3, "no surface");
 }

@@ -134,7 +134,7 @@ TEST_F(Import, RefusesWhatDoesNotFit) {
   refused("v --size 10,10,1e7", 2, "1 to 1000000 voxels");
   refused("v --size 10,10,2.5", 2, "--size takes whole numbers");
   refused("v --size 10,10", 2, "--size takes 3 numbers");
-  refused("v --size 10,10,10 --spacing 1,0,1", 2, "spacing must be");
+  refused("v --size 10,10,10 --spacing 1,0,1", 2, "lengths above 0");
   refused("v --size 10,10,10 --origin 1,1e30,1", 2, "the origin must lie");
   refused("v --size 10,10,10 --threshold nan", 2, "threshold");
   refused("v --size 10,10,10 --type u32", 2, "--type");

@@ -120,7 +120,8 @@ TEST_F(Sequence, IsovaluesThatDifferFromFrameToFrameAreTold) {
   }
   const Outcome two = run("mesh t.#.vdb -o t.#.ply --quiet");
   EXPECT_EQ(two.exitCode, 0) << two.err;
-  EXPECT_NE(two.err.find("from frame to frame, from 0.5 to 1"), std::string::npos) << two.err;
+  EXPECT_NE(two.err.find("grid \"\" differs from frame to frame, from 0.5 to 1"), std::string::npos)
+      << two.err;
   EXPECT_EQ(run("mesh t.#.vdb -o t.#.ply --quiet --iso 0.25").err, "");
 }
 

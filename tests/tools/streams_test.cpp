@@ -67,7 +67,7 @@ TEST_F(Pipes, LodGivesTheBytesOfAFile) {
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_EQ(outcome.out, readBytes(folder / "mesh.glb"));
   EXPECT_NE(outcome.err.find("wrote standard output"), std::string::npos) << outcome.err;
-  expectFailure("lod s.vdb -o - --format ply", 2, "only .glb");
+  expectFailure("lod s.vdb -o - --format ply", 2, "only glb and usda can");
   expectFailure("lod s.vdb -o - --format glb --separate", 2, "a file for each");
 }
 

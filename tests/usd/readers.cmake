@@ -28,18 +28,18 @@ function(tufa)
     COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-# compare(NAME UP SCALE ARGUMENTS...): a .usda, and the same surface as .off.
+# compare(NAME UP SCALE CREASE ARGUMENTS...): a .usda, and the same surface as .off.
 set(pairs "")
-function(compare name up scale)
-  tufa(mesh box.vdb -o ${name}.usda ${ARGN} --up ${up} --scale ${scale})
+function(compare name up scale crease)
+  tufa(mesh box.vdb -o ${name}.usda ${ARGN} --up ${up} --scale ${scale} --crease ${crease})
   tufa(mesh box.vdb -o ${name}.off ${ARGN})
   set(pairs ${pairs} ${name}.usda ${name}.off ${up} ${scale} PARENT_SCOPE)
 endfunction()
 
 tufa(make box --voxel 0.1 -o box.vdb)
-compare(faces y 1)
-compare(quads y 1 --uniform --crease 180)
-compare(turned z 0.01)
+compare(faces y 1 40)
+compare(quads y 1 180 --uniform)
+compare(turned z 0.01 40)
 tufa(lod box.vdb -o lods.usda --levels 2)
 
 # Frames of other shapes, one of which is missing.

@@ -37,4 +37,12 @@ inline std::uint64_t spreadBits(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249;
 }
 
+/// Mixes all bits of a number, so that numbers near each other become far ones (the last steps of
+/// SplitMix64; Steele, Lea and Flood 2014).
+inline std::uint64_t mixBits(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
 }  // namespace tufa::base

@@ -127,7 +127,10 @@ class Comparer {
     const double end = kReferenceEnd / 2;
     const Mesh mesh = extract(grid_, Method::MarchingCubes33, extractOptions(0, end / 2), &report);
     out_.activeVoxels = report.activeVoxels;
-    if (report.nonFiniteValues > 0) {
+    const auto isPeer = [](const std::string& name) {
+      return name == kPeer || name == kAdaptivePeer;
+    };
+    if (report.nonFiniteValues > 0 && std::any_of(names_.begin(), names_.end(), isPeer)) {
       const Inside inside = iso_.insideIsBelow ? Inside::Below : Inside::Above;
       finite_ = grid::finiteCopy(grid_, {contour_.nonFinite, iso_.isovalue, inside});
     }

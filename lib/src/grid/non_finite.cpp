@@ -13,22 +13,38 @@
 namespace tufa::grid {
 namespace {
 
-/// Calls visit(value, place) for all values that are not finite, of voxels and tiles, active or
-/// not; visit may change them.
+/// Calls visit(place, set) for all values that are not finite, of voxels and tiles, active or not;
+/// set(value) gives one another value.
 template <class GridT, class Visit>
 void forNonFinite(GridT& grid, const Visit& visit) {
+  using Value = typename GridT::ValueType;
   using Leaf = typename GridT::TreeType::LeafNodeType;
-  for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf) {
+  using Upper = typename GridT::TreeType::RootNodeType::ChildNodeType;
+  using Lower = typename Upper::ChildNodeType;
+  std::vector<Leaf*> leaves;
+  grid.tree().getNodes(leaves);
+  for (Leaf* leaf : leaves) {
+    Value* const values = leaf->buffer().data();
     for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
-      if (std::isfinite(leaf->getValue(n))) continue;
-      visit(leaf->offsetToGlobalCoord(n), [&](auto value) { leaf->setValueOnly(n, value); });
+      if (std::isfinite(values[n])) continue;
+      visit(leaf->offsetToGlobalCoord(n), [&](Value value) { values[n] = value; });
     }
   }
-  auto tile = grid.tree().beginValueAll();
-  for (tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1); tile; ++tile) {
-    if (std::isfinite(*tile)) continue;
-    visit(tile.getCoord(), [&](auto value) { tile.setValue(value); });
-  }
+  const auto visitTiles = [&](auto& node) {
+    for (auto tile = node.beginValueAll(); tile; ++tile) {
+      if (std::isfinite(*tile)) continue;
+      visit(tile.getCoord(), [&](Value value) { tile.setValue(value); });
+    }
+  };
+  // Node by node: the iterator of a tree looks for its place in the root's table at each step.
+  const auto visitNodes = [&]<class Node>() {
+    std::vector<Node*> nodes;
+    grid.tree().getNodes(nodes);
+    for (Node* node : nodes) visitTiles(*node);
+  };
+  visitTiles(grid.tree().root());
+  visitNodes.template operator()<Upper>();
+  visitNodes.template operator()<Lower>();
 }
 
 double outsideValue(const openvdb::GridBase& grid, double background, const NonFiniteRule& rule) {
@@ -53,8 +69,15 @@ void refuseNonFinite(std::size_t count, const Coord& first) {
                   "); repair the grid or treat them as outside (--nan outside)");
 }
 
+void requireFiniteBackground(double background) {
+  if (std::isfinite(background)) return;
+  throw Error(ErrorCode::NonFiniteValues,
+              "the grid's background is not a finite number; set a finite background");
+}
+
 template <class GridT>
 std::size_t takeAsOutside(GridT& grid, const NonFiniteRule& rule) {
+  requireFiniteBackground(static_cast<double>(grid.background()));
   std::size_t count = 0;
   Coord first;
   forNonFinite(grid, [&](const openvdb::Coord& place, const auto&) {

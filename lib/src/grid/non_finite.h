@@ -13,6 +13,9 @@ namespace tufa::grid {
 /// Throws Error(NonFiniteValues): so many values that are not finite, and where the first one is.
 [[noreturn]] void refuseNonFinite(std::size_t count, const Coord& first);
 
+/// Throws Error(NonFiniteValues) for a background that is not finite.
+void requireFiniteBackground(double background);
+
 /// How NaN and infinite values are taken, and what is outside.
 struct NonFiniteRule {
   NonFinite nonFinite = NonFinite::Refuse;
@@ -22,7 +25,8 @@ struct NonFiniteRule {
 
 /// Gives NaN and infinite values of a grid one that is outside: its background or, where that is
 /// inside, the value as far from the isovalue on the other side. Returns how many there were.
-/// Throws as refuseNonFinite() if they are refused. GridT: float and double grids.
+/// Throws as refuseNonFinite() if they are refused, and as requireFiniteBackground(). GridT: float
+/// and double grids.
 template <class GridT>
 std::size_t takeAsOutside(GridT& grid, const NonFiniteRule& rule);
 

@@ -1,7 +1,5 @@
 #include <openvdb/openvdb.h>
 
-#include <tufa/error.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "base/huge_pages.h"
 #include "grid/node_tiles.h"
+#include "grid/non_finite.h"
 #include "grid/openvdb_templates.h"
 #include "grid/samples.h"
 #include "grid/tile_contacts.h"
@@ -252,10 +251,7 @@ class VdbTree final : public Tree {
   }
 
   void readTiles(Summary& summary, base::Job& job) const {
-    if (!std::isfinite(tree_.background())) {
-      throw Error(ErrorCode::NonFiniteValues,
-                  "the grid's background is not a finite number; set a finite background");
-    }
+    requireFiniteBackground(static_cast<double>(tree_.background()));
     for (auto tile = tree_.root().cbeginValueAll(); tile; ++tile) {
       if (tile.isValueOn()) summary.activeVoxels += UpperNode::NUM_VOXELS;
       if (std::isfinite(*tile)) continue;

@@ -190,8 +190,8 @@ class Measure {
     seeWayBack(triangle, near.front(), boundTo(near, p, {{}, kEverywhere}), measured);
   }
 
-  [[nodiscard]] Uncovered uncovered(base::Job& job) const {
-    return findUncovered(overlay_, corners_, reference_, owner_, expected_, job);
+  [[nodiscard]] Uncovered uncovered(std::span<const Index> gaps, base::Job& job) const {
+    return findUncovered(overlay_, corners_, reference_, owner_, gaps, expected_, job);
   }
 
  private:
@@ -335,14 +335,17 @@ class Measure {
   OverlaySurface overlay_;
 };
 
-// Calls body(i, measured) for each i, with what it measures behind what there is.
+// Calls body(i, measured) for each i, with what some of them measure behind what there is.
 template <class Body>
-void measureEach(std::size_t count, std::vector<Measured>& parts, base::Job& job,
+void measureEach(std::size_t count, std::size_t grain, std::vector<Measured>& parts, base::Job& job,
                  const Body& body) {
-  const std::size_t done = parts.size();
-  parts.resize(done + count);
-  job.forRanges(count, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) body(i, parts[done + i]);
+  const std::size_t done = parts.size(), ranges = (count + grain - 1) / grain;
+  parts.resize(done + ranges);
+  job.forRanges(ranges, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t range = begin; range < end; ++range) {
+      const std::size_t last = std::min(count, (range + 1) * grain);
+      for (std::size_t i = range * grain; i < last; ++i) body(i, parts[done + range]);
+    }
   });
 }
 
@@ -387,15 +390,19 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     }
     const std::size_t groups = first.size();
     first.push_back(gaps.size());
-    measureEach(groups, parts, job, [&](std::size_t i, Measured& part) {
+    measureEach(groups, 1, parts, job, [&](std::size_t i, Measured& part) {
       measure.wayBack({gaps.data() + first[i], gaps.data() + first[i + 1]}, owned, part);
     });
   }
-  if (const Uncovered uncovered = measure.uncovered(job); !uncovered.triangles.empty()) {
+  std::vector<Index> jumps;
+  for (const Gap& gap : gaps) jumps.push_back(gap.triangle);
+  if (const Uncovered uncovered = measure.uncovered(jumps, job); !uncovered.triangles.empty()) {
     const FacesNear near(reference, uncovered.faces, job);
-    measureEach(uncovered.triangles.size(), parts, job, [&](std::size_t i, Measured& part) {
-      measure.wayBack(uncovered.triangles[i], near, part);
-    });
+    constexpr std::size_t kTogether = 64;
+    measureEach(uncovered.triangles.size(), kTogether, parts, job,
+                [&](std::size_t i, Measured& part) {
+                  measure.wayBack(uncovered.triangles[i], near, part);
+                });
   }
   double sum = 0;
   for (const Measured& p : parts) {

@@ -26,9 +26,11 @@ struct Certificate {
 /// ends belong to triangles A and B is cut at the point nearest to what A and B share, which goes
 /// to the nearest point there. So each face falls into pieces, each with all of its corners near
 /// one triangle, and as the distance to a triangle is convex, no point of the piece is farther.
-/// That bounds the way from the reference to the surface. The map is continuous and of degree one,
-/// so that it reaches every point of the surface, and the same number bounds the way back. Nothing
-/// is projected and nothing is sampled; folds of the reference do no harm.
+/// That bounds the way from the reference to the surface. The map is continuous, and where it is of
+/// degree one it reaches every point of the surface, so that the same number bounds the way back.
+/// From closed components where it is not, or where that cannot be told, the way back is measured
+/// triangle by triangle; see uncovered.h. Nothing is projected and nothing is sampled; folds of the
+/// reference do no harm.
 ///
 /// Where a face has no such pieces within `expected` voxels, another owner is sought for one of its
 /// corners. If there is none, the face is halved until a bound of the way forth is tight, and so

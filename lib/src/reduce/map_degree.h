@@ -12,22 +12,18 @@ namespace tufa::reduce {
 
 /// Counts how often the map covers a vertex of the surface: as often as the loops of faces are
 /// pulled over it one way more than the other way. Only faces within the limit of the vertex can
-/// be. `M` as in overlay_path.h.
+/// be, and all of them must have ways. `M` as in overlay_path.h.
 template <class M>
 class MapDegree {
  public:
-  /// `at`: a triangle at the vertex.
+  /// `at`: a triangle at the vertex, around which triangles go all the way.
   MapDegree(const M& mesh, Index vertex, Index at) : mesh_(mesh), vertex_(vertex) {
     Index t = at;
     do {
       t = next(t);
       ++triangles_;
     } while (t != at && t != kNone);
-    if (t == kNone) triangles_ = 0;
   }
-
-  /// Whether triangles go all around the vertex; at a border nothing can be counted.
-  [[nodiscard]] bool isInside() const { return triangles_ > 0; }
 
   /// As overlayBound2() wants it.
   void operator()(const OverlayTurn& turn) {

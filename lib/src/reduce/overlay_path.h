@@ -132,8 +132,9 @@ bool hasVertex(const M& mesh, Index triangle, Index vertex) {
   return false;
 }
 
-/// A loop, or its arc, that goes round a vertex and is pulled over it: once closed it takes some
-/// steps from triangle to triangle around the vertex, first of all from one to another.
+/// A loop, or its arc, that goes round a vertex and is pulled over it. With the triangles that take
+/// its place it takes some steps from triangle to triangle around the vertex, all the way round
+/// once or more; the first one leads from one triangle to another.
 struct OverlayTurn {
   Index vertex;
   Index from, to;
@@ -155,7 +156,7 @@ bool pullOver(const M& mesh, Index vertex, int arc, const OnTurn& onTurn, Overla
     before = t, t = next;
     others[static_cast<std::size_t>(count++)] = t;
   }
-  onTurn(OverlayTurn{vertex, loop.at(0), loop.at(1), arc + count});
+  onTurn(OverlayTurn{vertex, loop.at(0), loop.at(1), arc - 1 + count});
   OverlayLoop pulled;
   for (int i = arc - 1; i < loop.count; ++i) pulled.add(loop.at(i));
   for (int i = count; i-- > 0;) pulled.add(others[static_cast<std::size_t>(i)]);  // from loop.at(0)

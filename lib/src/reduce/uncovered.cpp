@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -14,31 +15,35 @@ namespace tufa::reduce {
 namespace {
 
 constexpr std::size_t kGrain = 8192;
-constexpr int kTries = 4;  // vertices of a component
+constexpr int kTries = 16;  // vertices of a component
+
+// Whether the map reaches every point of a component; unknown if there is no vertex around which
+// all faces have ways.
+enum class Answer : std::uint8_t { Covered, Uncovered, Unknown };
 
 class Finder {
  public:
   Finder(const OverlaySurface& overlay, const CornersOfVertices& corners,
-         const ReferenceMesh& reference, std::span<const Index> owner, float expected,
-         base::Job& job)
+         const ReferenceMesh& reference, std::span<const Index> owner, std::span<const Index> gaps,
+         float expected, base::Job& job)
       : overlay_(overlay),
         corners_(corners),
         reference_(reference),
         owner_(owner),
+        gaps_(gaps),
         limit2_(expected * expected),
         reach_(2 * expected),
         job_(job) {}
 
   Uncovered run() {
     findComponents();
+    const auto isOpen = [](Answer answer) { return answer == Answer::Unknown; };
     for (int attempt = 0; attempt < kTries; ++attempt) {
-      if (std::none_of(isUnsettled_.begin(), isUnsettled_.end(),
-                       [](std::uint8_t is) { return is != 0; }))
-        return {};
+      if (std::none_of(answers_.begin(), answers_.end(), isOpen)) break;
       chooseSeeds(attempt);
       countDegrees();
     }
-    return partsOfUnsettled();
+    return partsOfUncovered();
   }
 
  private:
@@ -46,7 +51,7 @@ class Finder {
     return componentOf_[overlay_.vertex(triangle, 0)];
   }
 
-  // Closed ones are to be settled.
+  // Nothing is asked of open ones.
   void findComponents() {
     const std::vector<Triangle>& triangles = overlay_.surface.triangles;
     const std::size_t count = overlay_.surface.position.size();
@@ -56,45 +61,64 @@ class Finder {
         connect(t.vertices[0], t.vertices[2]);
       }
     });
-    sizeOf_.assign(count, 0);
-    isUnsettled_.assign(count, 0);
+    mayBeSeed_.assign(count, 0);
+    for (Index v = 0; v < count; ++v) mayBeSeed_[v] = corners_.of(v).empty() ? 0 : 1;
+    for (const Index t : gaps_) {
+      for (const Index v : triangles[t].vertices) mayBeSeed_[v] = 0;
+    }
+    seedsOf_.assign(count, 0);
+    answers_.assign(count, Answer::Covered);
     for (Index v = 0; v < count; ++v) {
       if (corners_.of(v).empty()) continue;
-      ++sizeOf_[componentOf_[v]];
-      isUnsettled_[componentOf_[v]] = 1;
+      seedsOf_[componentOf_[v]] += mayBeSeed_[v];
+      answers_[componentOf_[v]] = Answer::Unknown;
     }
     for (std::size_t c = 0; c < overlay_.opposite.size(); ++c) {
-      if (overlay_.opposite[c] == kNone) isUnsettled_[componentOf(static_cast<Index>(c / 3))] = 0;
+      if (overlay_.opposite[c] != kNone) continue;
+      answers_[componentOf(static_cast<Index>(c / 3))] = Answer::Covered;
     }
   }
 
-  // Of each unsettled component another vertex.
+  // Of each component that there is no answer for yet another vertex.
   void chooseSeeds(int attempt) {
     seedOf_.assign(componentOf_.size(), kNone);
     std::vector<Index> seen(componentOf_.size());
     for (Index v = 0; v < componentOf_.size(); ++v) {
       const Index component = componentOf_[v];
-      if (isUnsettled_[component] == 0 || corners_.of(v).empty()) continue;
-      const std::uint64_t at = std::uint64_t{sizeOf_[component]} * static_cast<unsigned>(attempt);
+      if (answers_[component] != Answer::Unknown || mayBeSeed_[v] == 0) continue;
+      const std::uint64_t at = std::uint64_t{seedsOf_[component]} * static_cast<unsigned>(attempt);
       if (seen[component]++ == at / kTries) seedOf_[component] = v;
     }
   }
 
-  // Settles those of degree one.
   void countDegrees() {
     const std::vector<std::pair<Index, Index>> faces = facesNearSeeds();
-    for (auto first = faces.begin(); first != faces.end();) {
-      const Index component = first->first, seed = seedOf_[component];
-      MapDegree degree(overlay_, seed, corners_.of(seed).front() / 3);
-      bool areAllBounded = true;
-      for (; first != faces.end() && first->first == component; ++first) {
-        const OwnedFace face = owned(first->second);
-        areAllBounded &= face.hasOneOwner() ||
-                         overlayBound2(overlay_, face, limit2_,
-                                       [&](const OverlayTurn& turn) { degree(turn); }) <= limit2_;
-      }
-      if (areAllBounded && degree.degree() == 1) isUnsettled_[component] = 0;
+    std::vector<std::size_t> first;  // of each component, and the end
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (i == 0 || faces[i].first != faces[i - 1].first) first.push_back(i);
     }
+    const std::size_t count = first.size();
+    first.push_back(faces.size());
+    job_.forRanges(count, 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        answers_[faces[first[i]].first] =
+            answerOf({faces.data() + first[i], faces.data() + first[i + 1]});
+      }
+    });
+  }
+
+  // From the faces near a component's seed.
+  [[nodiscard]] Answer answerOf(std::span<const std::pair<Index, Index>> faces) const {
+    const Index seed = seedOf_[faces.front().first];
+    MapDegree degree(overlay_, seed, corners_.of(seed).front() / 3);
+    for (const auto& [component, face] : faces) {
+      const OwnedFace owned = ownedFace(face);
+      if (owned.hasOneOwner()) continue;
+      const float found =
+          overlayBound2(overlay_, owned, limit2_, [&](const OverlayTurn& turn) { degree(turn); });
+      if (!(found <= limit2_)) return Answer::Unknown;
+    }
+    return degree.degree() == 1 ? Answer::Covered : Answer::Uncovered;
   }
 
   // With their components, in order.
@@ -128,25 +152,31 @@ class Finder {
     const std::array<Vec3f, 3> corners = reference_.cornersOf(face);
     Box3f box = boxOf(corners.data());
     box.growBy(reach_);
-    return box.hasInside(p) &&
+    return box.meets({p, p}) &&
            squaredDistanceToTriangle(p, corners[0], corners[1], corners[2]) <= limit2_;
   }
 
-  [[nodiscard]] OwnedFace owned(Index f) const {
+  [[nodiscard]] OwnedFace ownedFace(Index f) const {
     const auto& v = reference_.faces()[f].vertex;
     return {reference_.cornersOf(f), v, {owner_[v[0]], owner_[v[1]], owner_[v[2]]}};
   }
 
-  [[nodiscard]] Uncovered partsOfUnsettled() const {
+  [[nodiscard]] Uncovered partsOfUncovered() const {
     Uncovered uncovered;
     for (Index t = 0; t < overlay_.surface.triangles.size(); ++t) {
-      if (isUnsettled_[componentOf(t)] != 0) uncovered.triangles.push_back(t);
+      if (answers_[componentOf(t)] != Answer::Covered) uncovered.triangles.push_back(t);
     }
+    if (uncovered.triangles.empty()) return uncovered;
+    std::vector<std::uint8_t> hasFaces(componentOf_.size(), 0);
     for (Index face = 0; face < reference_.faces().size(); ++face) {
       const Index t = owner_[reference_.faces()[face].vertex[0]];
-      if (t != kNone && isUnsettled_[componentOf(t)] != 0) uncovered.faces.push_back(face);
+      if (t == kNone || answers_[componentOf(t)] == Answer::Covered) continue;
+      uncovered.faces.push_back(face);
+      hasFaces[componentOf(t)] = 1;
     }
-    if (uncovered.faces.empty()) {  // none goes there: all of the reference must do
+    const bool isLost = std::any_of(uncovered.triangles.begin(), uncovered.triangles.end(),
+                                    [&](Index t) { return hasFaces[componentOf(t)] == 0; });
+    if (isLost) {  // no face goes to some component: all of the reference must do
       uncovered.faces.resize(reference_.faces().size());
       std::iota(uncovered.faces.begin(), uncovered.faces.end(), Index{0});
     }
@@ -157,12 +187,13 @@ class Finder {
   const CornersOfVertices& corners_;
   const ReferenceMesh& reference_;
   std::span<const Index> owner_;
+  std::span<const Index> gaps_;
   float limit2_, reach_;
   base::Job& job_;
-  // Of each component, by its lowest vertex.
-  std::vector<Index> componentOf_;  // of each vertex
-  std::vector<Index> sizeOf_;       // vertices
-  std::vector<std::uint8_t> isUnsettled_;
+  std::vector<Index> componentOf_;  // of each vertex, by its lowest vertex
+  std::vector<std::uint8_t> mayBeSeed_;
+  std::vector<Index> seedsOf_;  // of each component: how many may be
+  std::vector<Answer> answers_;
   std::vector<Index> seedOf_;
 };
 
@@ -181,8 +212,8 @@ std::vector<base::Box> boxesOf(const ReferenceMesh& reference, const std::vector
 
 Uncovered findUncovered(const OverlaySurface& overlay, const CornersOfVertices& corners,
                         const ReferenceMesh& reference, std::span<const Index> owner,
-                        float expected, base::Job& job) {
-  return Finder(overlay, corners, reference, owner, expected, job).run();
+                        std::span<const Index> gaps, float expected, base::Job& job) {
+  return Finder(overlay, corners, reference, owner, gaps, expected, job).run();
 }
 
 FacesNear::FacesNear(const ReferenceMesh& reference, std::vector<Index> faces, base::Job& job)
@@ -193,7 +224,7 @@ std::vector<Index> FacesNear::of(const std::array<Vec3f, 3>& triangle) const {
   float size = 0;
   for (const Vec3f& p : triangle) size = std::max(size, length(p - middle));
   double least = std::numeric_limits<double>::max();
-  (void)tree_.nearest(Vec3(middle), least, [&](std::uint32_t i) {
+  const std::uint32_t nearest = tree_.nearest(Vec3(middle), least, [&](std::uint32_t i) {
     const double d = reference_.distance(faces_[i], middle);
     return d * d;
   });
@@ -202,8 +233,10 @@ std::vector<Index> FacesNear::of(const std::array<Vec3f, 3>& triangle) const {
   base::Box box = base::Box::empty();
   box.add(Vec3(middle) - Vec3(reach, reach, reach));
   box.add(Vec3(middle) + Vec3(reach, reach, reach));
-  std::vector<Index> near;
-  tree_.itemsMeeting(box, [&](std::uint32_t i, const base::Box&) { near.push_back(faces_[i]); });
+  std::vector<Index> near{faces_[nearest]};
+  tree_.itemsMeeting(box, [&](std::uint32_t i, const base::Box&) {
+    if (i != nearest) near.push_back(faces_[i]);
+  });
   return near;
 }
 

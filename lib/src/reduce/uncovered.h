@@ -18,17 +18,20 @@ struct Uncovered {
   std::vector<Index> faces;  ///< those of the reference that go to these components
 };
 
-/// `owner`: for each reference vertex the triangle that answers for it, or kNone; `expected`: the
-/// distance within which faces have ways. Cost: one pass over the triangles and one over the faces.
+/// `owner`: for each reference vertex the triangle that answers for it, or kNone; `gaps`: triangles
+/// where the map may jump, at which nothing is counted; `expected`: the distance within which faces
+/// have ways. Cost: a union-find of the triangles on one thread, and a pass over the faces, a
+/// second one where the first vertices tried tell nothing.
 [[nodiscard]] Uncovered findUncovered(const OverlaySurface& overlay,
                                       const CornersOfVertices& corners,
                                       const ReferenceMesh& reference, std::span<const Index> owner,
-                                      float expected, base::Job& job);
+                                      std::span<const Index> gaps, float expected, base::Job& job);
 
 /// Finds the faces of some that may be the nearest to a point of a triangle.
 class FacesNear {
  public:
   FacesNear(const ReferenceMesh& reference, std::vector<Index> faces, base::Job& job);
+  /// The one nearest to the triangle's middle first.
   [[nodiscard]] std::vector<Index> of(const std::array<Vec3f, 3>& triangle) const;
 
  private:

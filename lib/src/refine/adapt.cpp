@@ -98,7 +98,7 @@ class Cutter {
       makeNext();
       ++adaptive_.rounds;
     } while (split(distance_.measure(cut_, made_, changedVertices(before_, cut_))) ||
-             split(findUncovered()) ||
+             split(distance_.findUncovered(cut_, made_)) ||
              (model_.repairs() && (split(findMeeting()) || split(findMisplaced()))));
     const uniform::SurfaceView base = model_.view();
     adaptive_.leaves = octree::collectLeaves(forest_, base.topology, merged_);
@@ -118,11 +118,6 @@ class Cutter {
 
   bool split(const std::vector<VertexIndex>& vertices) {
     return splitCells(forest_, vertices, cut_, rule_.minLevel, forbidden_);
-  }
-
-  std::vector<VertexIndex> findUncovered() {
-    if (model_.surface().topology.openEdges > 0) return {};
-    return distance_.findUncovered(cut_, made_);
   }
 
   std::vector<VertexIndex> findMeeting() {

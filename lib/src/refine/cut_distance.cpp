@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "base/bits.h"
 #include "base/box.h"
 #include "base/huge_pages.h"
 #include "base/polygons.h"
@@ -74,7 +75,8 @@ class CutDistance::Measure {
     return takeCoarse();
   }
 
-  std::vector<VertexIndex> findUncovered() {
+  // Also tells whether the degree of some component is not known to be one.
+  std::vector<VertexIndex> findUncovered(bool& any) {
     findPolygons();
     const std::vector<VertexIndex> componentOf = topology::connectedComponentsOf(mesh_);
     const std::vector<VertexIndex> seedOf = findSeeds(componentOf);
@@ -86,16 +88,28 @@ class CutDistance::Measure {
       faces.emplace_back(componentOf[cut_.vertexOf[faceOf(face).vertices[0]]], face);
     }
     std::sort(faces.begin(), faces.end());
+    std::vector<std::uint8_t> levelOf(seedOf.size(), 0);  // of uncovered components the largest
+    std::vector<std::uint8_t> isUncovered(seedOf.size(), 0);
+    any = false;
     auto next = faces.begin();
     for (VertexIndex component = 0; component < seedOf.size(); ++component) {
       const auto first = next;
       while (next != faces.end() && next->first == component) ++next;
-      if (seedOf[component] == kNone || degreeAt(seedOf[component], {first, next}) == 1) continue;
-      std::vector<VertexIndex> vertices;
-      for (VertexIndex v = component; v < componentOf.size(); ++v) {
-        if (componentOf[v] == component) vertices.push_back(v);
+      if (seedOf[component] == kNone) continue;
+      const std::optional<int> degree = degreeAt(seedOf[component], {first, next});
+      if (degree == 1) continue;
+      any = true;
+      isUncovered[component] = degree.has_value() ? 1 : 0;
+    }
+    for (VertexIndex v = 0; v < componentOf.size(); ++v) {
+      std::uint8_t& level = levelOf[componentOf[v]];
+      level = std::max(level, cut_.clusters[v].level);
+    }
+    for (VertexIndex v = 0; v < componentOf.size(); ++v) {
+      const VertexIndex component = componentOf[v];
+      if (isUncovered[component] != 0 && cut_.clusters[v].level == levelOf[component]) {
+        coarse_.push_back(v);
       }
-      addLargest(vertices, coarse_);
     }
     return takeCoarse();
   }
@@ -328,7 +342,7 @@ class CutDistance::Measure {
     return reduce::overlayBound2(triangles_, owned, limit * limit, way, onTurn);
   }
 
-  // Of each component a vertex of a larger cell, none where all is as in the uniform mesh.
+  // Of each closed component a vertex of a larger cell, none where all is as in the uniform mesh.
   [[nodiscard]] std::vector<VertexIndex> findSeeds(
       const std::vector<VertexIndex>& componentOf) const {
     std::vector<VertexIndex> seedOf(componentOf.size(), kNone);
@@ -339,7 +353,26 @@ class CutDistance::Measure {
                                       [&](VertexIndex k) { return cut_.clusters[k].level > 0; });
       if (large != v.end()) seed = *large;
     });
+    if (all_.base_.topology.openEdges == 0) return seedOf;
+    const std::vector<std::uint64_t> oddEdges = oddEdgesOf(componentOf);
+    for (std::size_t i = 0; i < seedOf.size(); ++i) {
+      if (oddEdges[i] != 0) seedOf[i] = kNone;
+    }
     return seedOf;
+  }
+
+  // Of each component the keys of all edges by exclusive or, of each polygon that has them: 0 if
+  // every edge has two, as those of closed components have.
+  [[nodiscard]] std::vector<std::uint64_t> oddEdgesOf(
+      const std::vector<VertexIndex>& componentOf) const {
+    std::vector<std::uint64_t> odd(componentOf.size(), 0);
+    base::forPolygons(mesh_, [&](base::PolygonIndex, base::Corners v) {
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        const std::uint64_t a = v[i], b = v[(i + 1) % v.size()];
+        odd[componentOf[v[0]]] ^= base::mixBits(std::min(a, b) << 32 | std::max(a, b));
+      }
+    });
+    return odd;
   }
 
   // The faces that may be pulled over the seed of their component.
@@ -350,31 +383,37 @@ class CutDistance::Measure {
     forRanges(isDirty_.size(), [&](std::size_t face) {
       const Triangle r = faceOf(face);
       const VertexIndex seed = seedOf[componentOf[cut_.vertexOf[r.vertices[0]]]];
-      if (seed == kNone || all_.faceBound_[face] == kFar) return;
+      if (seed == kNone) return;
       const auto& [a, b, c] = r.vertices;
       const std::array<Vec3f, 3> p{all_.points_[a], all_.points_[b], all_.points_[c]};
       const Vec3f at = all_.toVoxels(mesh_.positions[seed]);
       const float limit = limitOf(r);
       reduce::Box3f box = reduce::boxOf(p.data());
       box.growBy(2 * limit);
-      if (!box.hasInside(at)) return;
+      if (!box.meets({at, at})) return;
       if (reduce::squaredDistanceToTriangle(at, p[0], p[1], p[2]) > limit * limit) return;
       if (isInMesh(static_cast<std::uint32_t>(face), r)) return;
+      if (std::any_of(r.vertices.begin(), r.vertices.end(),
+                      [&](VertexIndex v) { return all_.owner_[v] == kNone; }))
+        return;
       isDirty_[face] = 1;
       for (const VertexIndex v : r.vertices) mark(wanted_, v);
     });
   }
 
-  // How often some uniform faces cover a vertex.
-  [[nodiscard]] int degreeAt(VertexIndex v,
-                             std::span<const std::pair<VertexIndex, std::uint32_t>> faces) const {
+  // How often some uniform faces cover a vertex; unknown if one of them has no way, as where cells
+  // may not be split.
+  [[nodiscard]] std::optional<int> degreeAt(
+      VertexIndex v, std::span<const std::pair<VertexIndex, std::uint32_t>> faces) const {
     const std::span<const Index> corners = cornersOf_->of(v);
     if (corners.empty()) return 0;  // no face is near
     reduce::MapDegree degree(triangles_, v, corners.front() / 3);
     for (const auto& [component, face] : faces) {
       const Triangle r = faceOf(face);
-      (void)overlayBound2(ownedFace(r), limitOf(r),
-                          [&](const reduce::OverlayTurn& turn) { degree(turn); });
+      const float limit = limitOf(r);
+      const float found = overlayBound2(ownedFace(r), limit,
+                                        [&](const reduce::OverlayTurn& turn) { degree(turn); });
+      if (!(found <= limit * limit)) return {};
     }
     return degree.degree();
   }
@@ -491,7 +530,7 @@ std::vector<VertexIndex> CutDistance::measure(const octree::Cut& cut, const octr
 
 std::vector<VertexIndex> CutDistance::findUncovered(const octree::Cut& cut,
                                                     const octree::CutMesh& made) {
-  return Measure(*this, cut, made).findUncovered();
+  return Measure(*this, cut, made).findUncovered(isUncovered_);
 }
 
 Deviation CutDistance::total(const octree::Cut& cut, const Mesh& mesh) const {
@@ -516,7 +555,7 @@ Deviation CutDistance::total(const octree::Cut& cut, const Mesh& mesh) const {
     if (!isPresent(base_.mesh.quads[face / 2].vertices[0])) continue;
     largest = std::max(largest, faceBound_[face]);
   }
-  isTooFar |= largest == kFar;
+  isTooFar |= largest == kFar || isUncovered_;
   if (isTooFar) return measureWhole(cut, mesh, std::max(ofVertices, tolerance_));
   return {static_cast<double>(largest), count == 0 ? 0 : sum / static_cast<double>(count)};
 }

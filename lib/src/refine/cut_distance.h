@@ -21,7 +21,8 @@ struct Deviation {
 /// Measures meshes taken from cuts against the uniform mesh that they come from, as
 /// reduce::certify() does: every uniform vertex goes to the nearest point of its owner, a triangle
 /// around its cluster, and every uniform edge over triangles that lie within the tolerance of it.
-/// So the largest distance is a bound, both ways. A uniform face without such a way is too far.
+/// So the largest distance is a bound, both ways, for what findUncovered() finds covered. A uniform
+/// face without such a way is too far.
 ///
 /// From one mesh to the next only what changed is measured again. The way of an edge leads over
 /// triangles that have a vertex in common with the owner of one of its ends. So it is as it was
@@ -40,9 +41,10 @@ class CutDistance {
                                                  const octree::CutMesh& made,
                                                  const std::vector<std::uint8_t>& changed);
 
-  /// Components of the mesh measured last, which is closed, that the uniform mesh may leave out in
-  /// part: those too thin for the distance forth to bound the way back. Returns their vertices in
-  /// the largest cells, sorted; see reduce/map_degree.h.
+  /// Closed components of the mesh measured last that the uniform mesh may leave out in part: those
+  /// too thin for the distance forth to bound the way back; see reduce/map_degree.h. Returns their
+  /// vertices in the largest cells, sorted. Those that stay, as cells may not be split, total()
+  /// measures both ways.
   [[nodiscard]] std::vector<VertexIndex> findUncovered(const octree::Cut& cut,
                                                        const octree::CutMesh& made);
 
@@ -72,6 +74,7 @@ class CutDistance {
   std::vector<std::uint32_t> owner_;
   std::vector<float> distance_;
   std::vector<float> faceBound_;  ///< of each uniform face, two a quad
+  bool isUncovered_ = false;      ///< whether findUncovered() last left a component unsettled
 };
 
 }  // namespace tufa::refine

@@ -12,8 +12,10 @@ using reduce::Index;
 // Cosine of 149 degrees and area in square voxels: positions are still to be rounded.
 constexpr float kFoldCosine = -0.857f;
 constexpr float kLeastArea = 0.048f;
-// Two sheets of a smaller cosine (150.5 degrees) may have faces that are a fold.
-constexpr double kSharpSheets = -0.87;
+// Two sheets of a smaller cosine (148 degrees) may have faces as sharp.
+constexpr double kSharpSheets = -0.848;
+// But faces that turn by more than 149.9 degrees only those that do so by more than 150.5.
+constexpr double kOver = -0.8652, kOverSheets = -0.87;
 // A face within this cosine (25 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.906;
 
@@ -21,7 +23,8 @@ struct Fold {
   std::array<Index, 2> triangles;
   std::array<Vec3, 2> normals;
   std::array<VertexIndex, 2> ends;  // of their edge
-  std::array<bool, 2> isSharp{};    // whether the surface is, at the ends
+  double cosine;
+  std::array<bool, 2> isSharp{};  // whether the surface is, at the ends
 };
 
 // Of triangles below the least area, none.
@@ -44,10 +47,12 @@ std::vector<Fold> foldsOf(const CutTriangles& triangles) {
       const Index across = triangles.opposite[3 * t + static_cast<Index>(i)];
       if (across == reduce::kNone || across / 3 < t) continue;
       const Index other = across / 3;
-      if (dot(normals[t], normals[other]) >= kFoldCosine) continue;
+      const float cosine = dot(normals[t], normals[other]);
+      if (cosine >= kFoldCosine) continue;
       folds.push_back({{t, other},
                        {Vec3(normals[t]), Vec3(normals[other])},
-                       {triangles.vertex(t, (i + 1) % 3), triangles.vertex(t, (i + 2) % 3)}});
+                       {triangles.vertex(t, (i + 1) % 3), triangles.vertex(t, (i + 2) % 3)},
+                       static_cast<double>(cosine)});
     }
   }
   return folds;
@@ -55,10 +60,11 @@ std::vector<Fold> foldsOf(const CutTriangles& triangles) {
 
 // Whether the two faces of a fold lie on two sheets as sharp.
 bool haveSheets(const Fold& fold, const uniform::MeetingSheets& sheets) {
+  const double least = fold.cosine < kOver ? kOverSheets : kSharpSheets;
   for (int i = 0; i < sheets.count; ++i) {
     for (int j = 0; j < sheets.count; ++j) {
       const Vec3 a(sheets.normals[i]), b(sheets.normals[j]);
-      if (a.dot(b) < kSharpSheets && a.dot(fold.normals[0]) > kOnSheet &&
+      if (a.dot(b) < least && a.dot(fold.normals[0]) > kOnSheet &&
           b.dot(fold.normals[1]) > kOnSheet) {
         return true;
       }

@@ -142,6 +142,24 @@ TEST(CutDistance, NamesComponentsThatTheUniformMeshLeavesOutInPart) {
   }
 }
 
+// Where it may not be split, the way back is measured.
+TEST(CutDistance, MeasuresWhatStaysUncoveredBothWays) {
+  const auto grid = test::levelSetOf(4, 1, [](const Vec3& p) { return p.length() - 0.02; });
+  test::ModelOf speck(grid);
+  test::MeshOfCut mesh = speck.uniformCut();
+  for (VertexIndex v = 0; v < 8; ++v) {
+    Position& p = mesh.made.mesh.positions[v];
+    if (p.x < 8) p.z += 0.3f;
+    mesh.cut.clusters[v].level = 1;
+  }
+  const octree::CutRule rule = ruleOf(0.1);
+  CutDistance distance(speck.model().view(), rule, speck.job());
+  EXPECT_TRUE(distance.measure(mesh.cut, mesh.made, std::vector<std::uint8_t>(8, 1)).empty());
+  EXPECT_LE(distance.total(mesh.cut, mesh.made.mesh).largest, 0.1);
+  EXPECT_FALSE(distance.findUncovered(mesh.cut, mesh.made).empty());
+  EXPECT_GE(distance.total(mesh.cut, mesh.made.mesh).largest, 0.3);
+}
+
 TEST(CutDistance, FindsNothingUncoveredOnABall) {
   Ball ball;
   for (const VertexIndex moved : {100, 500, 700}) ball.move(moved, 0.2);

@@ -7,11 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
 
 #include "base/number_text.h"
-#include "base/polygons.h"
 #include "base/require_at_most.h"
 #include "base/single_precision.h"
+#include "base/vec3.h"
 #include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"
 
@@ -122,32 +123,39 @@ void writePly(const Mesh& mesh, MeshSink& sink) {
 
 namespace {
 
-double edgeLength(const Position& a, const Position& b) {
-  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+/// Whether a triangle turns over, or loses its area, where its corners are rounded.
+bool turnsOver(const Position& a, const Position& b, const Position& c) {
+  const auto normalOf = [](const Vec3& p, const Vec3& q, const Vec3& r) {
+    return (q - p).cross(r - p);
+  };
+  const Vec3 before = normalOf(a, b, c);
+  const Vec3 after = normalOf(base::toSingle(a), base::toSingle(b), base::toSingle(c));
+  return before.squaredLength() > 0 && !(before.dot(after) > 0);
 }
 
-/// Throws where single precision would move vertices by more than a fiftieth of an edge in the
-/// mean, so that faces could turn over and intersect.
+/// Throws where single precision would turn triangles over, but for needles thinner than a
+/// thousandth of the edges in the mean.
 void requireSinglePrecisionEnough(const Mesh& mesh) {
-  constexpr double kMostOfEdge = 0.02;
+  constexpr double kThin = 1e-3;
   if (!needsDoublePrecision(mesh)) return;
   double largest = 0, edges = 0;
   for (const Position& p : mesh.positions) {
-    largest = std::max(largest, edgeLength(p, base::toSingle(p)));
+    largest = std::max(largest, (Vec3(p) - Vec3(base::toSingle(p))).length());
   }
-  std::size_t count = 0;
-  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
-    for (std::size_t i = 0; i < v.size(); ++i, ++count) {
-      edges += edgeLength(mesh.positions[v[i]], mesh.positions[v[(i + 1) % v.size()]]);
-    }
-  });
+  std::size_t turned = 0, count = 0;
+  for (const Triangle& t : triangulate(mesh)) {
+    const auto& [a, b, c] = t.vertices;
+    edges += (Vec3(mesh.positions[a]) - Vec3(mesh.positions[b])).length();
+    ++count;
+    turned += turnsOver(mesh.positions[a], mesh.positions[b], mesh.positions[c]) ? 1 : 0;
+  }
   const double mean = count == 0 ? 0 : edges / static_cast<double>(count);
-  if (count == 0 || largest <= kMostOfEdge * mean) return;
+  if (turned == 0 || largest <= kThin * mean) return;
   throw Error(ErrorCode::LimitExceeded,
               ".stl has single precision, which so far from the origin moves vertices by up to " +
-                  base::roughNumberText(largest) + ", with edges of " +
-                  base::roughNumberText(mean) +
-                  " in the mean: write .ply, .obj, .off or .glb, or move the volume");
+                  base::roughNumberText(largest) + " and turns " + std::to_string(turned) +
+                  (turned == 1 ? " triangle" : " triangles") +
+                  " over: write .ply, .obj, .off or .glb, or move the volume");
 }
 
 }  // namespace
