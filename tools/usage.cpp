@@ -72,6 +72,9 @@ std::string describeMisuse(const CLI::App& app, const CLI::ParseError& error,
   if (parsed.empty() && !words.empty() && !words.front().starts_with('-')) {
     return unknownSubcommand(app, words.front()) + " (see tufa --help)";
   }
+  if (parsed.empty() && !words.empty()) {
+    return "there is no option " + words.front() + "; a subcommand comes first (see tufa --help)";
+  }
   const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
   const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty();
   const std::string what = extra ? unexpected(extras) : oneLine(error.what());

@@ -84,6 +84,7 @@ TEST_F(Usage, RefusesWordsThatExcludeEachOther) {
   expectFailure("chunks s.vdb -o d --fast", 2, "--fast");
   expectFailure("lod s.vdb -o m.glb --tolerance 0", 2, "tolerance 0");
   expectFailure("compare s.vdb -o a.md -o a.md", 2, "two outputs");
+  expectFailure("--verbose", 2, "no option --verbose");
 }
 
 TEST_F(Usage, TellsOfOpenMeshes) {

@@ -145,9 +145,9 @@ void requireSinglePrecisionEnough(const Mesh& mesh) {
   std::size_t turned = 0, count = 0;
   for (const Triangle& t : triangulate(mesh)) {
     const auto& [a, b, c] = t.vertices;
-    edges += (Vec3(mesh.positions[a]) - Vec3(mesh.positions[b])).length();
+    edges += (Vec3(mesh.positions.at(a)) - Vec3(mesh.positions.at(b))).length();
     ++count;
-    turned += turnsOver(mesh.positions[a], mesh.positions[b], mesh.positions[c]) ? 1 : 0;
+    turned += turnsOver(mesh.positions.at(a), mesh.positions.at(b), mesh.positions.at(c)) ? 1 : 0;
   }
   const double mean = count == 0 ? 0 : edges / static_cast<double>(count);
   if (turned == 0 || largest <= kThin * mean) return;
