@@ -20,8 +20,8 @@ struct Uncovered {
 
 /// `owner`: for each reference vertex the triangle that answers for it, or kNone; `gaps`: triangles
 /// where the map may jump, at which nothing is counted; `expected`: the distance within which faces
-/// have ways. Cost: a union-find of the triangles on one thread, and a pass over the faces, a
-/// second one where the first vertices tried tell nothing.
+/// have ways. Cost: a union-find of the triangles on one thread, and a pass over the faces, with
+/// another one as long as the vertex tried of some component tells nothing.
 [[nodiscard]] Uncovered findUncovered(const OverlaySurface& overlay,
                                       const CornersOfVertices& corners,
                                       const ReferenceMesh& reference, std::span<const Index> owner,

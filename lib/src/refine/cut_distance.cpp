@@ -88,7 +88,7 @@ class CutDistance::Measure {
       faces.emplace_back(componentOf[cut_.vertexOf[faceOf(face).vertices[0]]], face);
     }
     std::sort(faces.begin(), faces.end());
-    std::vector<std::uint8_t> levelOf(seedOf.size(), 0);  // of uncovered components the largest
+    std::vector<std::uint8_t> levelOf(seedOf.size(), 0);  // of each component the largest
     std::vector<std::uint8_t> isUncovered(seedOf.size(), 0);
     any = false;
     auto next = faces.begin();
@@ -361,8 +361,8 @@ class CutDistance::Measure {
     return seedOf;
   }
 
-  // Of each component the keys of all edges by exclusive or, of each polygon that has them: 0 if
-  // every edge has two, as those of closed components have.
+  // For each component the exclusive or of its polygons' edges, as mixed keys: 0 if every edge has
+  // two polygons, as in a closed component.
   [[nodiscard]] std::vector<std::uint64_t> oddEdgesOf(
       const std::vector<VertexIndex>& componentOf) const {
     std::vector<std::uint64_t> odd(componentOf.size(), 0);
