@@ -177,6 +177,7 @@ class Part {
   void noteForms(Index plane);
 
   // part_star.cpp.
+  [[nodiscard]] static bool normalsOf(const Vec3f* spokes, int count, Vec3f* normals);
   bool makeStar();
   Outcome shapeGuard(Index a, Index b);
   bool windsInFrame();
@@ -185,6 +186,8 @@ class Part {
   [[nodiscard]] float sharpestAfter() const;
   [[nodiscard]] bool foldGuard(std::span<const Index> merged) const;
   [[nodiscard]] float sharpestBefore(std::span<const Index> merged) const;
+  [[nodiscard]] float leastCosineAcross(Vec3f normal, Index edge, int between) const;
+  [[nodiscard]] float longestEdge2(Index t) const;
   [[nodiscard]] Vec3f outerNormal(Index corner) const;
   bool ringGuard();
   [[nodiscard]] Link linkAfterMerging(Index v) const;

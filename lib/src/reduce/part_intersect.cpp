@@ -11,7 +11,9 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr float kGap = 1e-3f;  // voxels that are kept between triangles
+// Voxels that are kept between triangles. More would hold up creases along which vertices crowd, as
+// those of a solid in line with the lattice. Less is left to the search in the finished mesh.
+constexpr float kGap = 1e-4f;
 
 // Of a triangle seen from the origin, with the sign of its orientation (van Oosterom and Strackee
 // 1983).

@@ -109,14 +109,14 @@ Outcome Part::tryKnot() {
 }
 
 // No triangle at the ring turns far, unless it was a sliver or folded over, and there are no more
-// slivers than before.
+// slivers than before, or fewer if they are sharper.
 Outcome Part::knotShapeGuard() {
   const auto sineOf = [](Vec3f x, Vec3f y) {
     return leastSine2(squaredLength(cross(x, y)), squaredLength(x), squaredLength(y),
                       squaredLength(y - x));
   };
   int slivers = 0;
-  float after = 1;
+  float after = 1, before = 1;
   for (int i = 0; i < size_; ++i) {
     const Vec3f old = position_[vertex_[at_[i]]] - place_, x = spoke_[i], y = spoke_[i + 1];
     const Vec3f was = cross(x - old, y - old);
@@ -125,16 +125,18 @@ Outcome Part::knotShapeGuard() {
     const bool keeps = turn > 0 && turn * turn >= limits_.turnCosine * limits_.turnCosine * area2;
     const bool wasFolded = along < 0 || along * along < kLeastCosine * kLeastCosine * area2;
     if (!keeps && then > kWorstSine2 && area2 > kTinyFace2 && !wasFolded) return Outcome::Turn;
-    after = std::min(after, now);
+    after = std::min(after, now), before = std::min(before, then);
     slivers += (now < limits_.leastSine2) - (then < limits_.leastSine2);
   }
   for (const Index t : vanishing_) {
     Vec3f p[3];
     triangleAt(t, p);
-    slivers -= sineOf(p[1] - p[0], p[2] - p[0]) < limits_.leastSine2;
+    const float then = sineOf(p[1] - p[0], p[2] - p[0]);
+    before = std::min(before, then);
+    slivers -= then < limits_.leastSine2;
   }
-  return after >= limits_.leastSine2 || (slivers <= 0 && after >= kWorstSine2) ? Outcome::Done
-                                                                               : Outcome::Round;
+  if (after >= limits_.leastSine2 || (slivers <= 0 && after >= kWorstSine2)) return Outcome::Done;
+  return slivers < 0 && after >= kSharper2 * before ? Outcome::Done : Outcome::Round;
 }
 
 void Part::applyKnot() {

@@ -11,21 +11,37 @@ namespace {
 constexpr float kWorstSine2 = 3e-4f;   // squared sine of 1 degree: no new sliver is as sharp
 constexpr float kNoNormal = 0.001f;    // of 1.8 degrees: the normal of such a sliver says little
 constexpr float kFoldFace2 = 0.01f;    // of faces of 0.05 square voxels, whose folds show
-constexpr float kLeastLength = 1e-6f;  // of a cross product, in squared voxels: no area at all
+constexpr float kLeastLength = 1e-4f;  // of a cross product, in squared voxels: no area at all
+constexpr float kNeedleWidth = 0.01f;  // voxels: less is no face of its own between two others
+constexpr int kMostBetween = 3;        // so many of them
 
 }  // namespace
 
-// The new star, as seen from the place: spokes, normals, axis and frame. Whether all triangles have
+// The normals of the triangles between spokes to a ring, one behind the other. One without area has
+// that of the triangle before it. Whether any has area.
+bool Part::normalsOf(const Vec3f* spokes, int count, Vec3f* normals) {
+  int last = -1;  // with area
+  for (int i = 0; i < count; ++i) {
+    const Vec3f c = cross(spokes[i], spokes[i + 1 == count ? 0 : i + 1]);
+    const float l = length(c);
+    if (l > kLeastLength) {
+      normals[i] = c * (1 / l);
+      last = i;
+    } else {
+      normals[i] = last < 0 ? Vec3f() : normals[last];
+    }
+  }
+  if (last < 0) return false;
+  for (int i = 0; squaredLength(normals[i]) == 0; ++i) normals[i] = normals[last];
+  return true;
+}
+
+// The new star, as seen from the place: spokes, normals, axis and frame. Whether any triangle has
 // area.
 bool Part::makeStar() {
   for (int i = 0; i < size_; ++i) spoke_[i] = position_[ring_[i]] - place_;
   spoke_[size_] = spoke_[0];
-  for (int i = 0; i < size_; ++i) {
-    const Vec3f c = cross(spoke_[i], spoke_[i + 1]);
-    const float l = length(c);
-    if (!(l > kLeastLength)) return false;
-    normal_[i] = c * (1 / l);
-  }
+  if (!normalsOf(spoke_, size_, normal_)) return false;
   float leastCosine;
   n_ = commonAxis(normal_, size_, leastCosine);
   isGraph_ = leastCosine >= kLeastCosine;
@@ -66,7 +82,8 @@ bool Part::isSimpleStar(Index a, Index b) const {
 
 // Compares the triangles with those before. None may turn far, unless it was a sliver or folded
 // over. Slivers may be made in the place of as many if the smallest angle of the star does not
-// shrink, or as long as they are few in the part.
+// shrink, or as long as they are few in the part; and in the place of more if it shrinks little:
+// along a crease on which vertices crowd, needles get longer until the last of them goes.
 Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
   const float limit = limits_.leastSine2;
   float after = 1, before = 1;
@@ -102,7 +119,7 @@ Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
   }
   if (after >= limit || !isOn(Outcome::Round)) return Outcome::Done;
   if (after >= before && newSlivers_ <= 0) return Outcome::Done;
-  if (newSlivers_ < 0 && after >= kWorstSine2) return Outcome::Done;
+  if (newSlivers_ < 0 && after >= std::min(kWorstSine2, kSharper2 * before)) return Outcome::Done;
   const bool isFew = static_cast<float>(sliverCount_ + newSlivers_) <=
                      limits_.sliverShare * static_cast<float>(alive_);
   return isFew && after >= kWorstSine2 ? Outcome::Done : Outcome::Round;
@@ -151,6 +168,28 @@ bool Part::foldGuard(std::span<const Index> merged) const {
   return sharpest >= before - kSlack && (sharpest >= kFold || before < kFold);
 }
 
+// The least cosine of a normal and those of the faces next to it across an edge, with at most
+// `between` needles without width between, such as lie along creases.
+float Part::leastCosineAcross(Vec3f normal, Index edge, int between) const {
+  const Index d = opposite_[edge];
+  if (d == kNone) return 1;
+  const Vec3f outer = outerNormal(edge);
+  if (squaredLength(outer) > kFoldFace2) return dot(normal, unit(outer));
+  if (between == 0 ||
+      !(squaredLength(outer) <= kNeedleWidth * kNeedleWidth * longestEdge2(d / 3))) {
+    return 1;
+  }
+  return std::min(leastCosineAcross(normal, nextCorner(d), between - 1),
+                  leastCosineAcross(normal, previousCorner(d), between - 1));
+}
+
+float Part::longestEdge2(Index t) const {
+  Vec3f p[3];
+  triangleAt(t, p);
+  return std::max(
+      {squaredLength(p[1] - p[0]), squaredLength(p[2] - p[1]), squaredLength(p[0] - p[2])});
+}
+
 float Part::sharpestBefore(std::span<const Index> merged) const {
   float sharpest = 1;
   for (const Index v : merged) {
@@ -161,10 +200,7 @@ float Part::sharpestBefore(std::span<const Index> merged) const {
       const Vec3f own = cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p);
       if (squaredLength(own) > kFoldFace2) {
         for (const Index edge : {c, nextCorner(c)}) {
-          const Vec3f outer = outerNormal(edge);
-          if (squaredLength(outer) > kFoldFace2) {
-            sharpest = std::min(sharpest, dot(unit(own), unit(outer)));
-          }
+          sharpest = std::min(sharpest, leastCosineAcross(unit(own), edge, kMostBetween));
         }
       }
       c = around(c);
@@ -210,12 +246,7 @@ Part::Link Part::linkAfterMerging(Index v) const {
 bool Part::starGuard(Index v, const Link& link) {
   if (link.count < 3 || newAxes_ >= kMostRing) return false;
   Vec3f normals[kMostRing + 1];
-  for (int i = 0; i < link.count; ++i) {
-    const Vec3f c = cross(link.to[i], link.to[i + 1 == link.count ? 0 : i + 1]);
-    const float l = length(c);
-    if (!(l > kLeastLength)) return false;
-    normals[i] = c * (1 / l);
-  }
+  if (!normalsOf(link.to, link.count, normals)) return false;
   float leastCosine;
   Vec3f axis = commonAxis(normals, link.count, leastCosine);
   if (leastCosine < kLeastCosine || !windsOnce(link.to, link.count, axis)) {

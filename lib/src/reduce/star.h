@@ -21,6 +21,9 @@ inline constexpr float kFoldCosine = -0.8f;
 inline constexpr float kSharpestCosine = -0.985f;
 /// Square of a cross product of two edges: faces of less than 0.02 square voxels make no fold.
 inline constexpr float kTinyFace2 = 0.0016f;
+/// Where an operation takes more slivers than it makes, its sharpest angle may be smaller by this
+/// in its squared sine, to a third of the one before.
+inline constexpr float kSharper2 = 0.1f;
 /// Most corners of a link that is looked at.
 inline constexpr int kMostRing = 48;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -126,6 +127,49 @@ TEST(AcuteEdges, FoldNoMoreThanTheirSheets) {
         EXPECT_EQ(countFolds(surface.mesh), 0);
         EXPECT_EQ(report.intersectionsLeft, 0U);
       });
+}
+
+// A prism along z whose edge of some degrees runs through samples, as do its ends: all that is
+// zero in the field, or nearly so, is so by rounding.
+openvdb::FloatGrid::Ptr makePrism(double degrees, int size) {
+  const double half = degrees / 2 * 3.14159265358979 / 180;
+  const auto grid = openvdb::FloatGrid::create(3);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  for (int x = -4; x <= size + 4; ++x) {
+    for (int y = -size; y <= size; ++y) {
+      for (int z = -4; z <= size + 4; ++z) {
+        const double d =
+            std::max({std::abs(y) * std::cos(half) - x * std::sin(half), x - size * std::cos(half),
+                      static_cast<double>(-z), static_cast<double>(z - size)});
+        if (d > -3 && d < 3) {
+          grid->tree().setValue(openvdb::Coord(x, y, z), static_cast<float>(d));
+        } else if (d <= -3) {
+          grid->tree().setValueOff(openvdb::Coord(x, y, z), -3.0f);
+        }
+      }
+    }
+  }
+  return grid;
+}
+
+// Where an edge lies in line with the lattice, up to four cells have their vertices at each of its
+// points, and the triangles between are needles without area.
+TEST(AcuteEdges, CoarsenInLineWithTheLattice) {
+  for (const double degrees : {20.0, 35.0, 50.0, 70.0}) {
+    const auto grid = makePrism(degrees, 40);
+    for (const double tolerance : {0.1, 0.5, 2.0}) {
+      SCOPED_TRACE(std::to_string(degrees) + " " + std::to_string(tolerance));
+      ContourOptions options;
+      options.tolerance = tolerance;
+      ContourReport report;
+      const Mesh mesh = contour(*grid, options, &report);
+      EXPECT_LE(mesh.triangles.size(), 24U);
+      EXPECT_EQ(report.intersectionsLeft, 0U);
+      if (degrees > 30) {
+        EXPECT_EQ(countFolds(mesh), 0);
+      }
+    }
+  }
 }
 
 // Conflicts there are settled along creases and over sheets where that is enough, and lone samples
