@@ -9,6 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/box.h"
+
 namespace tufa::refine {
 namespace {
 
@@ -19,6 +21,9 @@ constexpr std::size_t kSides = std::tuple_size_v<LoneComponent>;
 constexpr double kLifted = 0.1;
 // What lies deeper below the sheets of a crease, in voxels, was not made by it.
 constexpr double kDeepest = 0.75;
+// A component with a smaller diagonal, in voxels, as where a sample lies on the surface, has no
+// area that single precision could tell. It becomes a box of this diagonal.
+constexpr double kLeastDiagonal = 0.05;
 // A lifted component has at most this share of the size of the box around its sample.
 constexpr double kShare = 0.5;
 
@@ -67,6 +72,14 @@ std::vector<VertexIndex> verticesOf(const Mesh& mesh, const LoneComponent& compo
   return vertices;
 }
 
+// Of the box around vertices whose places are `at(vertex)`.
+template <class At>
+double diagonalOf(const std::vector<VertexIndex>& vertices, const At& at) {
+  base::Box box = base::Box::empty();
+  for (const VertexIndex v : vertices) box.add(at(v));
+  return box.size().length();
+}
+
 // The mass points of all components' vertices.
 class MassPoints {
  public:
@@ -87,6 +100,24 @@ class MassPoints {
   std::vector<VertexIndex> vertices_;
   std::vector<Position> points_;
 };
+
+Vec3 middleOf(const std::vector<Vec3>& points) {
+  Vec3 middle(0);
+  for (const Vec3& point : points) middle += point * (1.0 / static_cast<double>(points.size()));
+  return middle;
+}
+
+// The box of the mass points of a component's vertices, scaled, but no smaller than it may be.
+std::vector<Vec3> boxOf(const std::vector<VertexIndex>& vertices, const MassPoints& massPoint,
+                        double scale, double leastDiagonal) {
+  std::vector<Vec3> box;
+  for (const VertexIndex v : vertices) box.emplace_back(massPoint(v));
+  const Vec3 middle = middleOf(box);
+  const double diagonal = diagonalOf(vertices, [&](VertexIndex v) { return Vec3(massPoint(v)); });
+  if (diagonal > 0) scale = std::max(scale, leastDiagonal / diagonal);
+  for (Vec3& corner : box) corner = middle + (corner - middle) * scale;
+  return box;
+}
 
 // The vertices on creases, to be found by their places.
 class CreaseVertices {
@@ -138,7 +169,7 @@ class CreaseVertices {
 // solid and -1 for a bubble, which is on the sheets' other side. 0 if the box is past one already,
 // or too far behind all.
 Vec3 wayOut(const Mesh& mesh, const uniform::VertexSheets& sheets,
-            const std::vector<VertexIndex>& crease, double side, const std::vector<Position>& box,
+            const std::vector<VertexIndex>& crease, double side, const std::vector<Vec3>& box,
             double voxelSize) {
   const uniform::MeetingSheets meeting = sheets.sheets(mesh, crease.front());
   Vec3 way(0);
@@ -146,7 +177,7 @@ Vec3 wayOut(const Mesh& mesh, const uniform::VertexSheets& sheets,
   for (int i = 0; i < meeting.count; ++i) {
     const Vec3 normal = Vec3(meeting.normals[i]) * side;
     double lowest = std::numeric_limits<double>::max(), highest = -lowest;
-    for (const Position& corner : box) lowest = std::min(lowest, normal.dot(Vec3(corner)));
+    for (const Vec3& corner : box) lowest = std::min(lowest, normal.dot(corner));
     for (const VertexIndex v : crease)
       highest = std::max(highest, normal.dot(Vec3(mesh.positions[v])));
     const double length = highest + kLifted * voxelSize - lowest;
@@ -189,13 +220,16 @@ std::vector<LoneComponent> findLoneComponents(const Mesh& mesh, base::Job& job) 
 std::size_t unfoldLoneComponents(Mesh& mesh, const std::vector<LoneComponent>& components,
                                  const Source& source) {
   const MassPoints massPoint(mesh, components, source);
+  const double leastDiagonal = kLeastDiagonal * source.voxelSize;
   std::size_t moved = 0;
   for (const LoneComponent& component : components) {
-    const double is =
-        volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(mesh.positions[v]); });
+    const std::vector<VertexIndex> vertices = verticesOf(mesh, component);
+    const auto at = [&](VertexIndex v) { return Vec3(mesh.positions[v]); };
+    const double is = volumeOf(mesh, component, at);
     const double box = volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(massPoint(v)); });
-    if (is * box > 0) continue;
-    for (const VertexIndex v : verticesOf(mesh, component)) mesh.positions[v] = massPoint(v);
+    if (is * box > 0 && diagonalOf(vertices, at) >= leastDiagonal) continue;
+    const std::vector<Vec3> corners = boxOf(vertices, massPoint, 1, leastDiagonal);
+    for (std::size_t i = 0; i < kCorners; ++i) mesh.positions[vertices[i]] = corners[i];
     moved += kCorners;
   }
   return moved;
@@ -209,19 +243,15 @@ std::size_t liftLoneComponents(Mesh& mesh, uniform::VertexSheets& sheets,
   std::vector<std::pair<VertexIndex, Position>> moves;
   for (const LoneComponent& component : components) {
     const std::vector<VertexIndex> vertices = verticesOf(mesh, component);
-    Vec3 middle(0);
-    for (const VertexIndex v : vertices) middle += Vec3(massPoint(v)) * (1.0 / kCorners);
-    const std::vector<VertexIndex> crease = creases.nearTo(middle);
+    const std::vector<Vec3> box =
+        boxOf(vertices, massPoint, kShare, kLeastDiagonal * source.voxelSize);
+    const std::vector<VertexIndex> crease = creases.nearTo(middleOf(box));
     if (crease.empty()) continue;
-    std::vector<Position> box;
-    for (const VertexIndex v : vertices) {
-      box.push_back(middle + (Vec3(massPoint(v)) - middle) * kShare);
-    }
     const double volume =
         volumeOf(mesh, component, [&](VertexIndex v) { return Vec3(massPoint(v)); });
     const Vec3 way = wayOut(mesh, sheets, crease, volume < 0 ? -1.0 : 1.0, box, source.voxelSize);
     if (way == Vec3(0)) continue;
-    for (std::size_t i = 0; i < kCorners; ++i) moves.push_back({vertices[i], Vec3(box[i]) + way});
+    for (std::size_t i = 0; i < kCorners; ++i) moves.push_back({vertices[i], box[i] + way});
   }
   for (const auto& [vertex, place] : moves) {
     mesh.positions[vertex] = place;
