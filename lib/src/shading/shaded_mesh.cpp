@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "base/require_at_most.h"
 #include "base/vec3.h"
@@ -25,6 +27,7 @@ class CreaseSplitter {
         triangles_(triangulate(mesh)),
         leastCosine_(creaseAngle < 180 ? std::cos(creaseAngle * kPi / 180) : -2),
         leastAgreement_(creaseAngle < 180 ? std::cos(creaseAngle / 2 * kPi / 180) : -2),
+        leastJoinCosine_(creaseAngle < 90 ? std::cos(2 * creaseAngle * kPi / 180) : -2),
         job_(job) {}
 
   ShadedMesh split() {
@@ -64,7 +67,14 @@ class CreaseSplitter {
       VertexIndex corner;  ///< counted around the vertex
       friend auto operator<=>(const Spoke&, const Spoke&) = default;
     };
+    /// A smooth edge between two faces, by their corners.
+    struct Join {
+      double cosine;
+      VertexIndex a, b;
+    };
     std::vector<Spoke> spokes;
+    std::vector<Join> joins;
+    std::vector<Vec3> sums;  ///< of each group's areas
     std::vector<VertexIndex> labels;
   };
 
@@ -145,14 +155,41 @@ class CreaseSplitter {
       star.spokes.push_back({face[(corner + 2) % 3], i});
     }
     std::sort(star.spokes.begin(), star.spokes.end());
+    star.joins.clear();
     for (std::size_t s = 0; s + 1 < star.spokes.size(); ++s) {
       const auto [end, i] = star.spokes[s];
       const auto [nextEnd, j] = star.spokes[s + 1];
       if (end != nextEnd || !smooth(faceAt(v, i), faceAt(v, j))) continue;
-      const VertexIndex a = root(labels, i), b = root(labels, j);
-      labels[std::max(a, b)] = std::min(a, b);
+      star.joins.push_back({normals_[faceAt(v, i)].dot(normals_[faceAt(v, j)]), i, j});
     }
+    join(v, star);
     return numberRoots(labels);
+  }
+
+  /// Joins groups across smooth edges, the flattest first, as long as they face the same way on the
+  /// whole: over a few small faces that bevel a crease both of its sides are smoothly connected.
+  void join(std::size_t v, Star& star) const {
+    std::sort(star.joins.begin(), star.joins.end(), [](const Star::Join& x, const Star::Join& y) {
+      return std::tuple(-x.cosine, x.a, x.b) < std::tuple(-y.cosine, y.a, y.b);
+    });
+    star.sums.clear();
+    for (VertexIndex i = 0; i < star.labels.size(); ++i) star.sums.push_back(areaAt(v, i));
+    for (const Star::Join& join : star.joins) {
+      VertexIndex a = root(star.labels, join.a), b = root(star.labels, join.b);
+      if (a == b) continue;
+      const Vec3 &m = star.sums[a], &n = star.sums[b];
+      if (m.dot(n) < leastJoinCosine_ * m.length() * n.length()) continue;
+      if (a > b) std::swap(a, b);
+      star.labels[b] = a;
+      star.sums[a] += star.sums[b];
+    }
+  }
+
+  /// Twice a face's area along its normal.
+  [[nodiscard]] Vec3 areaAt(std::size_t v, VertexIndex i) const {
+    const auto& face = triangles_[faceAt(v, i)].vertices;
+    const Vec3 a = point(face[0]);
+    return (point(face[1]) - a).cross(point(face[2]) - a);
   }
 
   /// Numbers the trees of a forest, given as parents that precede their children.
@@ -186,7 +223,7 @@ class CreaseSplitter {
 
   const Mesh& mesh_;
   std::vector<Triangle> triangles_;
-  double leastCosine_, leastAgreement_;
+  double leastCosine_, leastAgreement_, leastJoinCosine_;
   base::Job& job_;
   std::vector<Vec3> normals_;         ///< of faces; zero for those without area
   std::vector<VertexIndex> begin_;    ///< of each vertex's corners

@@ -18,9 +18,10 @@ struct ShadedMesh {
 };
 
 /// Splits vertices where the normals of faces that share an edge differ by more than `creaseAngle`
-/// degrees. A vertex with one group keeps the mesh's normal, if there is one and it is within half
-/// that angle of the faces; the others get the mean of their faces' normals, weighted by angle.
-/// Positions that no face uses are left out.
+/// degrees, and where those of groups of faces do by more than twice that on the whole: small faces
+/// that bevel a crease do not connect its sides. A vertex with one group keeps the mesh's normal,
+/// if there is one and it is within half that angle of the faces; the others get the mean of their
+/// faces' normals, weighted by angle. Positions that no face uses are left out.
 [[nodiscard]] ShadedMesh splitAtCreases(const Mesh& mesh, double creaseAngle, base::Job& job);
 
 /// The same without splitting any, and without normals if the mesh has none.

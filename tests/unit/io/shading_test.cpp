@@ -198,5 +198,25 @@ TEST(Shading, FollowsTheFacesWhereANormalIsBent) {
   }
 }
 
+// Two large faces at a right angle, with small ones between them that turn by 30 degrees each.
+TEST(Shading, KeepsTheSidesOfACreaseApartThatSmallFacesBevel) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0},
+                    {10, 0, 0},
+                    {0, 0.3f, 0},
+                    {-0.087f, 0.3f, -0.05f},
+                    {-0.137f, 0.3f, -0.137f},
+                    {-0.137f, 0.3f, -10}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+  mesh.normals.assign(mesh.positions.size(), {0, 0, 1});
+  base::Job job(1, {});
+  const shading::ShadedMesh split = shading::splitAtCreases(mesh, 40, job);
+  ASSERT_EQ(split.sources.size(), 7U);  // the apex is two
+  const VertexIndex top = split.indices[0], wall = split.indices[9];
+  EXPECT_NE(top, wall);
+  EXPECT_GT(split.normals[top].z, 0.9);
+  EXPECT_LT(split.normals[wall].x, -0.9);
+}
+
 }  // namespace
 }  // namespace tufa
