@@ -76,5 +76,8 @@ TEST(Solids, KeepTheirPromises) {
 // Its cut had a speck too thin for the way there to bound the way back.
 TEST(Solids, KeepTheirPromisesWhereASpeckIsThinnerThanTheTolerance) { expectKeptPromises(146); }
 
+// Three vertices of a quad lie in line on a crease, so that rounding turned it over.
+TEST(Solids, KeepTheirPromisesWhereAQuadHasATriangleWithoutArea) { expectKeptPromises(1019); }
+
 }  // namespace
 }  // namespace tufa

@@ -61,12 +61,22 @@ bool hasVertexOutOfCell(const uniform::VertexSheets& sheets, const Quad& quad) {
                      [&](VertexIndex vertex) { return sheets.isOutOfCell(vertex); });
 }
 
-// Whether `inner` is behind the plane through `p` and `outer` in front, by more than `margin`.
-// Squared, so that the normal needs no square root.
-bool parts(const Vec3& normal, const Vec3& p, const Vec3& inner, const Vec3& outer, double margin) {
+// Whether `inner` is behind the plane of a triangle and `outer` in front, even if each of its
+// corners moves by half of `margin`. That moves the plane at a point by no more than the margin
+// times 1 + 2 d / h, h being the least height of the triangle and d the distance of the point from
+// a corner: the plane of a needle turns easily. All squared, so that no square root is needed.
+bool parts(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& inner, const Vec3& outer,
+           double margin) {
+  const Vec3 normal = (q - p).cross(r - p);
   const double before = normal.dot(outer - p), behind = normal.dot(p - inner);
-  const double least = margin * margin * normal.squaredLength();
-  return before > 0 && behind > 0 && before * before > least && behind * behind > least;
+  if (!(before > 0 && behind > 0)) return false;
+  const double longest2 =
+      std::max({(q - p).squaredLength(), (r - q).squaredLength(), (p - r).squaredLength()});
+  const double area2 = normal.squaredLength(), margin2 = 2 * margin * margin;
+  const auto least2 = [&](const Vec3& point) {
+    return margin2 * (area2 + 4 * (point - p).squaredLength() * longest2);
+  };
+  return before * before > least2(outer) && behind * behind > least2(inner);
 }
 
 // The sufficient condition of findCandidates() for both triangles of a quad.
@@ -77,9 +87,8 @@ bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, cons
     const Position& at = mesh.positions[quad.vertices[i]];
     p[i] = {at.x, at.y, at.z};
   }
-  const Vec3 diagonal = p[2] - p[0];
-  return parts((p[1] - p[0]).cross(diagonal), p[0], inner, outer, margin) &&
-         parts(diagonal.cross(p[3] - p[0]), p[0], inner, outer, margin);
+  return parts(p[0], p[1], p[2], inner, outer, margin) &&
+         parts(p[0], p[2], p[3], inner, outer, margin);
 }
 
 }  // namespace

@@ -185,7 +185,7 @@ class Part {
   Outcome trianglesGuard(Vec3f a, Vec3f b);
   [[nodiscard]] float sharpestAfter() const;
   [[nodiscard]] bool foldGuard(std::span<const Index> merged) const;
-  [[nodiscard]] float sharpestBefore(std::span<const Index> merged) const;
+  [[nodiscard]] float sharpestBefore(std::span<const Index> merged, int between) const;
   [[nodiscard]] float leastCosineAcross(Vec3f normal, Index edge, int between) const;
   [[nodiscard]] float longestEdge2(Index t) const;
   [[nodiscard]] Vec3f outerNormal(Index corner) const;

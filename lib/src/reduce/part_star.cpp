@@ -164,21 +164,19 @@ bool Part::foldGuard(std::span<const Index> merged) const {
   const float sharpest = sharpestAfter();
   if (sharpest >= kFoldCosine) return true;
   if (sharpest < kSharpestCosine) return false;
-  const float before = sharpestBefore(merged);
-  return sharpest >= before - kSlack && (sharpest >= kFold || before < kFold);
+  if (sharpest < kFold && sharpestBefore(merged, 0) >= kFold) return false;
+  return sharpest >= sharpestBefore(merged, kMostBetween) - kSlack;
 }
 
-// The least cosine of a normal and those of the faces next to it across an edge, with at most
-// `between` needles without width between, such as lie along creases.
+// The cosine of the normals of a face and the one next to it, or beyond the needles without width
+// next to it, as they lie along creases: `between` of them at most.
 float Part::leastCosineAcross(Vec3f normal, Index edge, int between) const {
   const Index d = opposite_[edge];
   if (d == kNone) return 1;
   const Vec3f outer = outerNormal(edge);
-  if (squaredLength(outer) > kFoldFace2) return dot(normal, unit(outer));
-  if (between == 0 ||
-      !(squaredLength(outer) <= kNeedleWidth * kNeedleWidth * longestEdge2(d / 3))) {
-    return 1;
-  }
+  const float outer2 = squaredLength(outer);
+  if (outer2 > kFoldFace2) return dot(normal, unit(outer));
+  if (between == 0 || outer2 > kNeedleWidth * kNeedleWidth * longestEdge2(d / 3)) return 1;
   return std::min(leastCosineAcross(normal, nextCorner(d), between - 1),
                   leastCosineAcross(normal, previousCorner(d), between - 1));
 }
@@ -190,7 +188,7 @@ float Part::longestEdge2(Index t) const {
       {squaredLength(p[1] - p[0]), squaredLength(p[2] - p[1]), squaredLength(p[0] - p[2])});
 }
 
-float Part::sharpestBefore(std::span<const Index> merged) const {
+float Part::sharpestBefore(std::span<const Index> merged, int between) const {
   float sharpest = 1;
   for (const Index v : merged) {
     Index c = corner_[v];
@@ -200,7 +198,7 @@ float Part::sharpestBefore(std::span<const Index> merged) const {
       const Vec3f own = cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p);
       if (squaredLength(own) > kFoldFace2) {
         for (const Index edge : {c, nextCorner(c)}) {
-          sharpest = std::min(sharpest, leastCosineAcross(unit(own), edge, kMostBetween));
+          sharpest = std::min(sharpest, leastCosineAcross(unit(own), edge, between));
         }
       }
       c = around(c);
