@@ -11,14 +11,9 @@ std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
                                    const CornersOfVertices& corners, base::Job& job) {
   std::vector<Index> opposite;
   base::resizeLarge(opposite, 3 * triangles.size(), job);
-  const auto at = [&](Index c) { return triangles[c / 3].vertices[c % 3]; };
   job.forRanges(opposite.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index c = static_cast<Index>(begin); c < end; ++c) {
-      const Index from = at(nextCorner(c)), to = at(previousCorner(c));
-      opposite[c] = kNone;
-      for (const Index d : corners.of(to)) {
-        if (at(nextCorner(d)) == from) opposite[c] = previousCorner(d);
-      }
+      opposite[c] = oppositeCorner(triangles, corners, c);
     }
   });
   return opposite;

@@ -29,7 +29,19 @@ struct CornersOfVertices {
   std::vector<Index> corners;
 };
 
-/// For every corner the corner across its edge, or kNone at a border.
+/// The corner across the edge of a corner, or kNone at a border. Where several are, the last one.
+[[nodiscard]] inline Index oppositeCorner(std::span<const Triangle> triangles,
+                                          const CornersOfVertices& corners, Index c) {
+  const auto at = [&](Index corner) { return triangles[corner / 3].vertices[corner % 3]; };
+  const Index from = at(nextCorner(c));
+  Index opposite = kNone;
+  for (const Index d : corners.of(at(previousCorner(c)))) {
+    if (at(nextCorner(d)) == from) opposite = previousCorner(d);
+  }
+  return opposite;
+}
+
+/// That of every corner.
 [[nodiscard]] std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
                                                  const CornersOfVertices& corners, base::Job& job);
 

@@ -60,8 +60,10 @@ void Partition::begin(const Surface& surface, base::Job& job) {
 
 void Partition::finish(const Surface& surface, base::Job& job) {
   numberVertices(job);
+  items_ = {};
   shareTriangles(surface, job);
   shareSamples(surface, job);
+  partOfTriangle_ = {};
 }
 
 // Items below a plane go first; the end of them. Those on it are the upper side's, but may not

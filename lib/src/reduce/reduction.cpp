@@ -67,18 +67,33 @@ Options optionsForAngle(double degrees) {
   return options;
 }
 
+Reduction::Meshes Reduction::meshesOf(MeshView input, MeshView reference,
+                                      std::span<const Index> standsFor, std::vector<float> scales,
+                                      base::Job& job) {
+  const CornersOfVertices corners(input.positions.size(), input.triangles);
+  Surface surface = makeSurface(input.positions, input.triangles, corners, job);
+  if (standsFor.empty()) {
+    ReferenceMesh own(surface, corners, std::move(scales), job);
+    return {std::move(surface), std::move(own)};
+  }
+  const Surface other = makeSurface(reference.positions, reference.triangles, job);
+  return {std::move(surface), ReferenceMesh(other, std::move(scales), job)};
+}
+
 Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor,
                      std::vector<float> scales, Options options, base::Job& job)
+    : Reduction(meshesOf(input, reference, standsFor, std::move(scales), job), standsFor.empty(),
+                std::move(options), job) {
+  locateAll(surface_, reference_, standsFor, job);
+}
+
+Reduction::Reduction(Meshes meshes, bool isReference, Options options, base::Job& job)
     : options_(std::move(options)),
       job_(job),
-      surface_(makeSurface(input.positions, input.triangles, job)),
-      reference_(standsFor.empty()
-                     ? ReferenceMesh(surface_, std::move(scales), job)
-                     : ReferenceMesh(makeSurface(reference.positions, reference.triangles, job),
-                                     std::move(scales), job)),
-      isReference_(standsFor.empty()) {
+      surface_(std::move(meshes.surface)),
+      reference_(std::move(meshes.reference)),
+      isReference_(isReference) {
   surface_.rounded = options_.rounded;
-  locateAll(surface_, reference_, standsFor, job);
 }
 
 Reduction::~Reduction() = default;

@@ -130,6 +130,10 @@ class Reduction {
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
 
  private:
+  struct Meshes {
+    Surface surface;
+    ReferenceMesh reference;
+  };
   struct State {
     Surface surface;
     float tolerance;
@@ -137,6 +141,9 @@ class Reduction {
     bool isReference;
   };
 
+  Reduction(Meshes meshes, bool isReference, Options options, base::Job& job);
+  static Meshes meshesOf(MeshView input, MeshView reference, std::span<const Index> standsFor,
+                         std::vector<float> scales, base::Job& job);
   [[nodiscard]] State state() const;
   void restore(const State& state);
   void descendTo(float tolerance, Index count);

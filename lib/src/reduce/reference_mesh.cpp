@@ -10,17 +10,22 @@ constexpr std::size_t kGrain = 16384;
 }
 
 ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job)
+    : ReferenceMesh(input, CornersOfVertices(input.position.size(), input.triangles),
+                    std::move(scales), job) {}
+
+ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corners,
+                             std::vector<float> scales, base::Job& job)
     : positions_(input.position),
       cornerOf_(input.position.size(), kNone),
       rough_(input.position.size(), 0),
       scales_(std::move(scales)) {
-  const CornersOfVertices corners(positions_.size(), input.triangles);
-  const std::vector<Index> opposite = oppositeCorners(input.triangles, corners, job);
   base::resizeLarge(faces_, input.triangles.size(), job);
   job.forRanges(faces_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
+    for (Index t = static_cast<Index>(begin); t < end; ++t) {
       faces_[t].vertex = input.triangles[t].vertices;
-      for (std::size_t i = 0; i < 3; ++i) faces_[t].opposite[i] = opposite[3 * t + i];
+      for (Index i = 0; i < 3; ++i) {
+        faces_[t].opposite[i] = oppositeCorner(input.triangles, corners, 3 * t + i);
+      }
     }
   });
   job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -25,6 +25,9 @@ class ReferenceMesh {
   /// The mesh of a surface as makeSurface() gives it. `scales`: see scaleAt(); one for each vertex,
   /// or none.
   ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job);
+  /// The same where the corners at its vertices are known.
+  ReferenceMesh(const Surface& input, const CornersOfVertices& corners, std::vector<float> scales,
+                base::Job& job);
 
   [[nodiscard]] std::span<const Vec3f> positions() const { return positions_; }
   [[nodiscard]] std::span<const Face> faces() const { return faces_; }

@@ -94,6 +94,11 @@ void findChords(Surface& s) {
 
 Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
                     base::Job& job) {
+  return makeSurface(positions, triangles, CornersOfVertices(positions.size(), triangles), job);
+}
+
+Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                    const CornersOfVertices& corners, base::Job& job) {
   Surface s;
   const std::size_t count = positions.size();
   s.position.assign(positions.begin(), positions.end());
@@ -102,7 +107,6 @@ Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> 
   for (Index i = 0; i < count; ++i) s.source[i] = i;
   base::resizeLarge(s.axis, count, job);
   s.flags.assign(count, 0);
-  const CornersOfVertices corners(count, s.triangles);
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) makeVertex(s, corners, v);
   });
@@ -114,9 +118,12 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
   s.face.assign(s.position.size(), kNone);
   s.owner.assign(reference.positions().size(), kNone);
   if (standsFor.empty()) {
-    for (Index t = 0; t < s.triangles.size(); ++t) {
-      for (const Index v : s.triangles[t].vertices) s.owner[v] = t, s.face[v] = t;
-    }
+    job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (Index v = static_cast<Index>(begin); v < end; ++v) {
+        const Index c = reference.cornerOf(v);
+        if (c != kNone) s.owner[v] = s.face[v] = c / 3;
+      }
+    });
     return;
   }
   const CornersOfVertices corners(s.position.size(), s.triangles);

@@ -73,6 +73,10 @@ struct Surface {
 /// Vertices without an axis, and those beside them, are narrow.
 [[nodiscard]] Surface makeSurface(std::span<const Vec3f> positions,
                                   std::span<const Triangle> triangles, base::Job& job);
+/// The same where the corners at its vertices are known.
+[[nodiscard]] Surface makeSurface(std::span<const Vec3f> positions,
+                                  std::span<const Triangle> triangles,
+                                  const CornersOfVertices& corners, base::Job& job);
 
 /// Gives every reference vertex an owner at the vertex that stands for it, and every vertex a face
 /// of the reference. `standsFor`: for each reference vertex a vertex; empty if the two meshes are

@@ -19,6 +19,7 @@ using base::Vec3f;
 
 constexpr std::size_t kGrain = 16384;
 
+// The triangles of quads, two for each.
 std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
   std::vector<Triangle> faces(2 * mesh.quads.size());
   job.forRanges(mesh.quads.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -29,6 +30,12 @@ std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
     }
   });
   return faces;
+}
+
+// One of those, by its number.
+Triangle faceOf(const Mesh& mesh, std::size_t face) {
+  const auto& v = mesh.quads[face / 2].vertices;
+  return face % 2 == 0 ? Triangle{v[0], v[1], v[2]} : Triangle{v[0], v[2], v[3]};
 }
 
 // The normal of the uniform mesh at the point of a face next to p.
@@ -51,7 +58,7 @@ Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
 
 SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutRule& rule,
                                    base::Job& job)
-    : model_(model), rule_(rule), job_(job), faces_(facesOf(model.mesh(), job)) {
+    : model_(model), rule_(rule), job_(job) {
   const Mesh& mesh = model.mesh();
   base::Box box = base::Box::empty();
   for (const Position& p : mesh.positions) box.add(Vec3(p));
@@ -64,7 +71,8 @@ SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutR
       positions[i] = Vec3f((Vec3(mesh.positions[i]) - middle_) * perVoxel);
     }
   });
-  const reduce::MeshView view{positions, faces_};
+  const std::vector<Triangle> faces = facesOf(mesh, job);
+  const reduce::MeshView view{positions, faces};
   reduce::Options options = reduce::optionsForAngle(rule.minAngle);
   if (model.repairs()) {
     options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
@@ -161,7 +169,7 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
     mesh.positions[i] = positionOf(reduced, i);
     mesh.normals[i] = source != reduce::kNone
                           ? base.normals[source]
-                          : normalOn(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
+                          : normalOn(base, faceOf(base, reduced.faces[i]), Vec3(mesh.positions[i]));
   }
   mesh.triangles = reduced.triangles;
   extracted.baseQuads.assign(mesh.triangles.size(), octree::kNone);
@@ -203,6 +211,11 @@ void SurfaceReduction::findComponents() {
   }
   const auto largest = std::max_element(counts.begin(), counts.end()) - counts.begin();
   components_[static_cast<std::size_t>(largest)].scale = 0;
+}
+
+std::uint32_t SurfaceReduction::componentAt(const reduce::ReducedMesh& reduced,
+                                            std::size_t vertex) const {
+  return componentOf_[faceOf(model_.mesh(), reduced.faces[vertex]).vertices[0]];
 }
 
 std::vector<std::size_t> SurfaceReduction::trianglesOfComponents(

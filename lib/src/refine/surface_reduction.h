@@ -49,16 +49,13 @@ class SurfaceReduction {
   void drop(const std::vector<std::uint8_t>& isDropped, const reduce::ReducedMesh& reduced,
             AdaptiveMesh& adaptive);
   [[nodiscard]] std::uint32_t componentAt(const reduce::ReducedMesh& reduced,
-                                          std::size_t vertex) const {
-    return componentOf_[faces_[reduced.faces[vertex]].vertices[0]];
-  }
+                                          std::size_t vertex) const;
 
   const SurfaceModel& model_;
   const octree::CutRule& rule_;
   base::Job& job_;
-  Vec3 middle_{0.0};             ///< of the mesh, counted like its positions
-  double size_ = 0;              ///< diagonal of the mesh's box, voxels
-  std::vector<Triangle> faces_;  ///< the uniform mesh's, two for each quad
+  Vec3 middle_{0.0};  ///< of the mesh, counted like its positions
+  double size_ = 0;   ///< diagonal of the mesh's box, voxels
   std::optional<reduce::Reduction> reduction_;
   bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
   std::vector<std::uint32_t> componentOf_;  ///< of each uniform vertex
