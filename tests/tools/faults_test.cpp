@@ -51,7 +51,7 @@ TEST_F(Faults, TellOfTooLittleMemory) {
        {"mesh s.vdb --uniform --quiet -o m.ply --threads 2",
         "mesh s.vdb --quiet -o m.ply --threads 1 --check", "make sphere --voxel 0.005 -o v.vdb"}) {
     // With less, libraries that are loaded at the start cannot begin their threads.
-    for (const int megabytes : {200, 300, 450}) {
+    for (const int megabytes : {200, 300}) {
       const std::string limit = "ulimit -v " + std::to_string(megabytes * 1024) + "; ";
       const Outcome outcome = run(arguments, "", limit);
       if (outcome.exitCode == 0) continue;

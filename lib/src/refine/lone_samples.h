@@ -17,8 +17,10 @@ using LoneComponent = std::array<std::uint32_t, 6>;
 /// All of them, by their first quads.
 [[nodiscard]] std::vector<LoneComponent> findLoneComponents(const Mesh& mesh, base::Job& job);
 
-/// Unfolds components that a weak field has folded flat or turned inside out: their vertices go to
-/// their mass points, the corners of a box around the sample. Returns how many vertices moved.
+/// Unfolds components that a weak field has folded flat or turned inside out, or that have hardly
+/// any size, as around a sample on the surface: their vertices go to their mass points, the corners
+/// of a box around the sample, or to those of a larger box with the same middle. Returns how many
+/// moved.
 std::size_t unfoldLoneComponents(Mesh& mesh, const std::vector<LoneComponent>& components,
                                  const Source& source);
 
