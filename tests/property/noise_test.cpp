@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Rules, Noise,
 
 TEST_P(Noise, GivesAClosedManifoldAndTheSameBytesForAnyThreads) {
   const auto [rule, seed] = GetParam();
-  const auto grid = test::noise<FloatGrid>({.size = 48, .seed = seed});
+  const auto grid = test::noise<FloatGrid>({.size = 40, .seed = seed});
   const bool repair = seed == 1;  // takes most of the time
   ContourReport one, two;
   const Mesh mesh = meshOf(*grid, rule, 1, &one, repair);
