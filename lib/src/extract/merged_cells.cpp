@@ -89,7 +89,7 @@ class CellMerger {
     const std::size_t count = topology_.blocks.size();
     levels_.resize(count);
     forBlocks([&](std::size_t i, const BlockCells& cells, BlockTable& table) {
-      if (isOpen(topology_.blocks[i])) return;
+      if (topology_.isOpenAt(topology_.blocks[i])) return;
       const grid::CornerWords corners = volume_.blocks.cornerWords(topology_.blocks[i].neighbours);
       findLeaves({0, 0, 0}, kMostLevel, {cells, table.table(), corners}, levels_[i]);
     });
@@ -122,16 +122,6 @@ class CellMerger {
         body(i, cells, table);
       }
     });
-  }
-
-  // Whether the data ends in the block or in one beside it.
-  [[nodiscard]] bool isOpen(const SurfaceBlock& block) const {
-    if (topology_.openEdges == 0) return false;
-    for (int n = 0; n < 27; ++n) {
-      const auto index = topology_.neighbour(block, n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
-      if (index != uniform::kNoSurfaceBlock && topology_.blocks[index].special >= 0) return true;
-    }
-    return false;
   }
 
   // What is asked of a block to find its leaves.

@@ -71,23 +71,13 @@ class Merger {
     block_ = &block;
     leaves_ = &leaves;
     leaves.inside = volume_.blocks.inside(block.block);
-    if (!(tolerance_ > 0) || isOpen(block)) return;
+    if (!(tolerance_ > 0) || topology_.isOpenAt(block)) return;
     gather(block);
     mergeFrom({0, 0, 0}, kMostLevel);
   }
 
  private:
   using Place = std::array<int, 3>;
-
-  /// Whether the data ends in the block or in one beside it.
-  [[nodiscard]] bool isOpen(const SurfaceBlock& block) const {
-    if (topology_.openEdges == 0) return false;
-    for (int n = 0; n < 27; ++n) {
-      const auto index = topology_.neighbour(block, n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
-      if (index != uniform::kNoSurfaceBlock && topology_.blocks[index].special >= 0) return true;
-    }
-    return false;
-  }
 
   void gather(const SurfaceBlock& block) {
     const grid::SampleReader reader(volume_.blocks, volume_.scale, block.block, block.neighbours,

@@ -15,7 +15,7 @@ namespace tufa::refine {
 namespace {
 
 // How often misplaced components are put back.
-constexpr int kMostReturns = 3;
+constexpr int kMostPutBack = 3;
 
 class UniformRepair {
  public:
@@ -40,7 +40,7 @@ class UniformRepair {
     report_.movedVertices += withdrawn.vertices;
     if (withdrawn.left > 0) {
       repairCandidates();
-      for (int i = 0; i < kMostReturns; ++i) {
+      for (int i = 0; i < kMostPutBack; ++i) {
         const std::vector<VertexIndex> misplaced = putBackComponents();
         if (misplaced.empty()) break;
         addCandidates(quadsAt(misplaced));

@@ -26,6 +26,15 @@ std::array<std::uint64_t, 3> crossedEdges(const CornerWords& corners, int x) {
 }
 
 // The rank of the cell among the surface cells, and what cells before it have beyond one vertex.
+bool CellTopology::isOpenAt(const SurfaceBlock& block) const {
+  if (openEdges == 0) return false;
+  for (int n = 0; n < 27; ++n) {
+    const SurfaceBlockIndex index = neighbour(block, n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+    if (index != kNoSurfaceBlock && blocks[index].special >= 0) return true;
+  }
+  return false;
+}
+
 std::uint32_t CellTopology::firstVertexInBlock(const SurfaceBlock& block, int cell) const {
   const int slab = cell >> 6;
   const std::uint64_t before = block.cells.slabs[slab] & base::bitsBelow(cell & 63);

@@ -66,6 +66,8 @@ struct CellTopology {
     const grid::BlockRef block = from.neighbours[grid::neighbourIndex(dx, dy, dz)];
     return block < 0 ? kNoSurfaceBlock : surfaceBlockOf[block];
   }
+  /// Whether the data ends in the block or in one beside it.
+  [[nodiscard]] bool isOpenAt(const SurfaceBlock& block) const;
   /// Number of the first vertex of a surface cell, counted inside its block.
   [[nodiscard]] std::uint32_t firstVertexInBlock(const SurfaceBlock& block, int cell) const;
   /// A bit for each ambiguous face of a cell whose inside corners are joined; the bits of other
