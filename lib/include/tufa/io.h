@@ -59,10 +59,10 @@ struct WriteOptions {
   std::string name = "mesh";  ///< of the object inside formats that name objects (.obj, .glb)
   /// .glb, .obj and .usda: where the normals of two faces at an edge differ by more than this
   /// angle, each side keeps a normal of its own; so do sides that turn by more than twice the angle
-  /// over small faces between. In .glb, which has one normal a vertex, the
-  /// vertices there become several at one position. A normal that is more than half this angle off
-  /// the faces around it gives way to theirs. Degrees, 0 to 180; 180, or a mesh without normals,
-  /// splits and changes none.
+  /// over small faces between. In .glb, which has one normal a vertex, the vertices there become
+  /// several at one position. A normal that is more than half this angle off the faces around it
+  /// gives way to theirs. Degrees, 0 to 180; 180, or a mesh without normals, splits and changes
+  /// none.
   double creaseAngle = 40;
   UpAxis up = UpAxis::Y;  ///< .glb, .usda and .3mf: of the volume
   double scale = 1;       ///< .glb, .usda and .3mf: metres in a world unit; above 0
