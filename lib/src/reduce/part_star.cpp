@@ -156,8 +156,9 @@ float Part::sharpestAfter() const {
 }
 
 // A sharper turn than kFoldCosine passes only where the old star had one as sharp, which it has on
-// a wedge of the solid, and one that counts as a fold only where the old star had a fold. Small
-// faces do not count there: a fold of theirs must not grow.
+// a wedge of the solid, be it with needles between its sides, and one that counts as a fold only
+// where the old star had a fold without any between. Small faces do not count there: a fold of
+// theirs must not grow.
 bool Part::foldGuard(std::span<const Index> merged) const {
   constexpr float kSlack = 0.01f;
   constexpr float kFold = -0.8655f;  // 149.9 degrees: places are still to be rounded
