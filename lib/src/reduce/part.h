@@ -278,7 +278,7 @@ class Part {
   float turns_[kMostRing] = {};   ///< of the spokes, rising
   int first_ = 0;                 ///< the spoke with the least turn
 
-  bool isKnot_ = false;                  ///< at hand, with more guards than a cluster
+  bool isContraction_ = false;           ///< the attempt at hand
   std::vector<std::uint8_t> wasInKnot_;  ///< vertices of knots that were tried
 
   Index done_ = 0;                   ///< vertices that are gone

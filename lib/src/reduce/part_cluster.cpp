@@ -5,8 +5,8 @@
 // last star alone, by the same guards: the cluster's triangles make a disk, the new star has the
 // same border, and what is inside counts for nothing else. Cubes of eight voxels are tried first;
 // where a cluster is refused, those of the cubes of half the size are (as in vertex clustering,
-// Rossignac and Borrel 1993). What is left is for the queue. Places that are narrow or rough, and
-// vertices of borders and lines, are left to it altogether.
+// Rossignac and Borrel 1993). What is left is for the queue. Places that are narrow, and vertices
+// of borders and lines, are left to it altogether.
 //
 // Cost: 4 to 10 microseconds a contraction, which takes up to some 70 vertices.
 
@@ -37,7 +37,9 @@ void Part::contractClusters() {
   clusterOf_.assign(vertexCount_, 0);
   sortByCubes();
   nextCluster_ = 0;
+  isContraction_ = true;
   contractRange(0, static_cast<Index>(cubes_.size()), kHalvings + 1);
+  isContraction_ = false;
 }
 
 // Vertices by their cubes, in such an order that those of larger cubes follow each other, too.
@@ -116,7 +118,6 @@ void Part::gatherCluster(Index first, Index open) {
 }
 
 Outcome Part::tryContraction() {
-  isKnot_ = false;
   if (done_ + cluster_.size() - 1 > limits_.quota) return Outcome::Place;
   Vec3f exact;
   if (!solveCluster(exact)) return Outcome::Sample;
@@ -130,14 +131,17 @@ Outcome Part::tryContraction() {
     place_ = surface_->roundedPlace(exact);
     if (!box_.hasInside(place_)) return Outcome::Place;
   }
-  const Index kept = nearestMember();
+  const Index nearest = nearestMember();
   if (hasLines_ && surface_->mayHold &&
-      !surface_->mayHold(region_[at_[0] / 3], kNone, place_, position_[kept], position_[kept])) {
+      !surface_->mayHold(region_[at_[0] / 3], kNone, place_, position_[nearest],
+                         position_[nearest])) {
     return Outcome::Place;
   }
   if (const Outcome o = clusterShapeGuard(); o != Outcome::Done) return o;
   if (!ringGuard()) return Outcome::Star;
-  if (const Outcome o = clusterDistanceGuard(kept); o != Outcome::Done) return o;
+  kept_ = cluster_[0];
+  ++now_;  // samples taken in an attempt before are not taken
+  if (const Outcome o = clusterDistanceGuard(nearest); o != Outcome::Done) return o;
   if (!sideGuard()) return Outcome::Side;
   sum_.moveBy(place_ - exact);
   applyContraction();
@@ -265,7 +269,7 @@ Outcome Part::clusterShapeGuard() {
   return Outcome::Done;
 }
 
-// As distanceGuard(). Clusters are left alone where the reference is rough.
+// As distanceGuard().
 Outcome Part::clusterDistanceGuard(Index nearest) {
   taken_.clear();
   roughFaces_.clear();
@@ -285,13 +289,12 @@ Outcome Part::clusterDistanceGuard(Index nearest) {
   }
   if (!apexNear(nearest, nearest)) return Outcome::Apex;
   if (!crossingsNear()) return Outcome::Crossing;
-  return (isKnot_ ? facesNear() : roughFaces_.empty()) ? Outcome::Done : Outcome::Face;
+  return facesNear() ? Outcome::Done : Outcome::Face;
 }
 
 // As samplesNear(); the new triangle of a sample is found by its angle.
 bool Part::clusterSamplesNear(Index t) {
   for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
-    if (!isKnot_ && isRough_[s] != 0) return false;
     const Vec3f p = samples_[s].p - place_;
     const float* const next =
         std::upper_bound(turns_, turns_ + size_, turnOf(dot(p, frame_.x), dot(p, frame_.y)));
@@ -303,10 +306,9 @@ bool Part::clusterSamplesNear(Index t) {
 }
 
 void Part::applyContraction() {
-  const Index kept = cluster_[0];
   for (int i = 0; i < size_; ++i) {
     const Index c = at_[i], next = at_[i + 1 == size_ ? 0 : i + 1];
-    vertex_[c] = kept;
+    vertex_[c] = kept_;
     corner_[ring_[i]] = nextCorner(c);
     firstSample_[c / 3] = kNone;
     opposite_[nextCorner(c)] = previousCorner(next);
@@ -317,10 +319,10 @@ void Part::applyContraction() {
     firstSample_[t] = kNone;
   }
   giveSamples();
-  corner_[kept] = at_[0];
-  position_[kept] = place_, quadric_[kept] = sum_, face_[kept] = apexFace_;
-  axis_[kept] = n_;
-  moved_[kept] = 1;
+  corner_[kept_] = at_[0];
+  position_[kept_] = place_, quadric_[kept_] = sum_, face_[kept_] = apexFace_;
+  axis_[kept_] = n_;
+  moved_[kept_] = 1;
   for (int i = 0; i < newAxes_; ++i) axis_[newAxis_[i].vertex] = newAxis_[i].axis;
 }
 

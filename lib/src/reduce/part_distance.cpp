@@ -229,7 +229,7 @@ struct Part::Changed {
   [[nodiscard]] Index across(Index t, int i) const {
     const Index c = 3 * t + static_cast<Index>(i);
     const Index d = part.flip_[0] != kNone ? afterFlip(c)
-                    : part.isKnot_         ? afterContraction(c)
+                    : part.isContraction_  ? afterContraction(c)
                                            : afterCollapse(part.opposite_[c]);
     return d == kNone ? kNone : d / 3;
   }

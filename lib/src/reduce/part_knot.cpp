@@ -26,12 +26,14 @@ constexpr float kWorstSine2 = 3e-4f;  // squared sine of 1 degree
 bool Part::contractKnots() {
   wasInKnot_.assign(vertexCount_, 0);
   bool any = false;
+  isContraction_ = true;
   for (Index c = 0; c < 3 * triangleCount_; ++c) {
     if (isDead(c / 3)) continue;
     const Index a = vertex_[nextCorner(c)], b = vertex_[previousCorner(c)];
     if (a > b || squaredLength(position_[a] - position_[b]) > kShort * kShort) continue;
     if (wasInKnot_[a] == 0) any |= contractKnot(a);
   }
+  isContraction_ = false;
   if (any) countSlivers();
   return any;
 }
@@ -77,7 +79,6 @@ void Part::gatherKnot(Index v, float radius) {
 }
 
 Outcome Part::tryKnot() {
-  isKnot_ = true;
   const Outcome outcome = [&] {
     if (done_ + cluster_.size() - 1 > limits_.quota) return Outcome::Place;
     Vec3f exact;
@@ -104,7 +105,6 @@ Outcome Part::tryKnot() {
     return Outcome::Done;
   }();
   if (outcome == Outcome::Done) applyKnot();
-  isKnot_ = false;
   return outcome;
 }
 

@@ -12,9 +12,13 @@ namespace tufa::reduce {
 namespace {
 
 constexpr float kRadians = 0.01745329252f;
-// PhaseLimits::errorShare of most phases, and of one that tries harder.
+// PhaseLimits::errorShare of most phases, and of one that tries harder. Above that no collapse
+// passes the distance guard.
 constexpr float kErrorShare = 1;
-constexpr float kLargeErrorShare = 2;
+constexpr float kLargeErrorShare = 1.4f;
+// Phases that contract clusters. The second and third ones find them along borders of parts before,
+// but make slivers: where none are wanted there is one.
+constexpr int kClusterPhases = 3;
 // On the way to a large tolerance each is this share of the next, down to kRampEnd voxels.
 constexpr float kRamp = 0.25f;
 constexpr float kRampEnd = 0.09f;
@@ -45,6 +49,13 @@ constexpr float kLooseTolerance = 4;
 // What was beyond the tolerance is held within so many tolerances and voxels.
 constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 2;
+
+// The share of the vertices on the lower side of each cut between parts. It differs in all phases,
+// so that no two have borders at the same places: multiples of the golden ratio are far apart.
+float shareOf(Index phase) {
+  const float turns = 0.08f + 0.618034f * static_cast<float>(phase);
+  return 0.3f + 0.4f * (turns - std::floor(turns));
+}
 
 Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::Job& job) {
   std::vector<Triangle> triangles(reference.faces().size());
@@ -198,7 +209,8 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
     limits.distance = tolerance * options_.margin * (i == 0 ? options_.firstShare : 1);
     limits.errorShare = isLast ? kLargeErrorShare : kErrorShare;
     limits.allPlaces = isLast;
-    limits.clusters = options_.clusters && isFirst && i == 0 && lines_ == LineMode::Free;
+    limits.clusters = options_.clusters && isFirst && lines_ == LineMode::Free &&
+                      i < (limits.keepsAngle() ? 1 : kClusterPhases);
     const Index before = triangleCount();
     buildParts();
     if (i == 0) markNarrow(surface_, partition_, options_.clearance * tolerance, job_);
@@ -214,8 +226,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
 // near what is held.
 void Reduction::buildParts() {
   if (nextTree_ == trees_.size()) {
-    partition_.build(surface_, options_.partVertices, phaseNumber_ % 2 == 0 ? 1.0f / 3 : 0.5f,
-                     job_);
+    partition_.build(surface_, options_.partVertices, shareOf(phaseNumber_), job_);
     trees_.push_back(partition_.tree());
   } else {
     partition_.build(surface_, trees_[nextTree_], job_);

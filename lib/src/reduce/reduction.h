@@ -43,14 +43,14 @@ struct Options {
   /// A place as the caller will write it, say rounded to single precision in world space: guards
   /// judge what is written. Called from several threads. Empty: places are written as they are.
   std::function<Vec3f(const Vec3f&)> rounded;
-  Index partVertices = 4096;  ///< most vertices of a part; the result depends on it
+  Index partVertices = 8192;  ///< most vertices of a part; the result depends on it
   float leastAngle = 10;      ///< degrees under which a triangle is a sliver
   /// Of the triangles that may become slivers nevertheless. 0: a collapse makes none but in the
   /// place of as many. Clusters do, in the first phase; later ones take those away.
   float sliverShare = 0.08f;
   float mostTurn = 60;      ///< degrees by which a triangle's normal may turn at a time
   int phases = 8;           ///< most at one tolerance
-  float firstShare = 0.5f;  ///< of the tolerance, for the first phase
+  float firstShare = 0.7f;  ///< of the tolerance, for the first phase
   bool clusters = true;     ///< whether clusters are contracted first
   bool flips = true;
   /// Triangles of a result that may not be, say as they intersect once they are written in another
