@@ -1,7 +1,6 @@
 // Small grids of any topology and any values through contour(), uniform and adaptive. The oracle is
 // the promise: a closed 2-manifold where the data is closed, the same topology at every tolerance,
-// and the error as certified. TUFA_FUZZ_SIDE is the most samples along an edge of a grid: with few,
-// many more grids go through in the same time, and one fault in a cell shows as well.
+// and the error as certified.
 
 #include <tufa/contour.h>
 #include <tufa/error.h>

@@ -7,11 +7,7 @@
 #include <limits>
 
 #include "grid/openvdb_templates.h"
-
-/// The most samples along an edge of a grid. Few, and the grids go through at a thousand a second.
-#ifndef TUFA_FUZZ_SIDE
-#define TUFA_FUZZ_SIDE 4
-#endif
+#include "side.h"
 
 namespace tufa::fuzz {
 
@@ -65,18 +61,18 @@ Value valueFrom(Source& source, bool wild) {
 template <class GridT>
 typename GridT::Ptr gridOfType(Source& source) {
   using Value = typename GridT::ValueType;
-  constexpr int kSmallest = TUFA_FUZZ_SIDE < 4 ? 1 : 2;
-  constexpr int kSizes = TUFA_FUZZ_SIDE - kSmallest + 1;
-  constexpr bool kHasTiles = TUFA_FUZZ_SIDE >= 8;
+  const int smallest = kSide < 4 ? 1 : 2;
+  const int bound = kSide - smallest + 1;
+  const bool hasTiles = kSide >= 8;
   const bool wild = source.coin();
   auto grid = GridT::create(source.coin() ? Value(3) : Value(-3));
   // Most small grids lie in one node of the root: each more costs as much as all else.
-  const int least = TUFA_FUZZ_SIDE >= 8 || source.below(16) == 0 ? -8 : 0;
+  const int least = kSide >= 8 || source.below(16) == 0 ? -8 : 0;
   const openvdb::Coord first =
       openvdb::Coord(least).offsetBy(source.below(16), source.below(16), source.below(16));
-  const int sizes[3] = {kSmallest + source.below(kSizes), kSmallest + source.below(kSizes),
-                        kSmallest + source.below(kSizes)};
-  for (int tiles = kHasTiles ? source.below(3) : 0; tiles > 0; --tiles) {
+  const int sizes[3] = {smallest + source.below(bound), smallest + source.below(bound),
+                        smallest + source.below(bound)};
+  for (int tiles = hasTiles ? source.below(3) : 0; tiles > 0; --tiles) {
     const openvdb::Coord at((source.below(4) - 2) * 8, (source.below(4) - 2) * 8,
                             (source.below(4) - 2) * 8);
     grid->tree().addTile(1, at, valueFrom<Value>(source, wild), source.coin());

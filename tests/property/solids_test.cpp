@@ -36,8 +36,9 @@ void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform,
   EXPECT_TRUE(found.watertight());
   EXPECT_EQ(found.selfIntersectingPairs, 0u);
   EXPECT_EQ(found.eulerCharacteristic, check(uniform).eulerCharacteristic);
-  // A wedge of 20 degrees folds its own edges.
-  if (test::foldedEdges(uniform, kVoxel) == 0) {
+  // A wedge of less than 30 degrees folds its own edges. In the uniform mesh small faces may lie on it.
+  constexpr double kSmall = 0.005;
+  if (test::foldedEdges(uniform, kVoxel, kSmall) == 0) {
     EXPECT_EQ(test::foldedEdges(mesh, kVoxel), 0u);
   }
 

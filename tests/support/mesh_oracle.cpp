@@ -154,7 +154,7 @@ double area(const Mesh& mesh) {
   return sum;
 }
 
-std::size_t foldedEdges(const Mesh& mesh, double voxelSize) {
+std::size_t foldedEdges(const Mesh& mesh, double voxelSize, double leastArea) {
   struct Side {
     VertexIndex low, high;
     Vec3 normal;
@@ -163,7 +163,7 @@ std::size_t foldedEdges(const Mesh& mesh, double voxelSize) {
   for (const Triangle& t : triangulate(mesh)) {
     const auto [a, b, c] = t.vertices;
     Vec3 normal = (at(mesh, b) - at(mesh, a)).cross(at(mesh, c) - at(mesh, a));
-    if (normal.length() <= 2 * 0.05 * voxelSize * voxelSize) continue;
+    if (normal.length() <= 2 * leastArea * voxelSize * voxelSize) continue;
     normal = normal * (1 / normal.length());
     for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
       sides.push_back({std::min(from, to), std::max(from, to), normal});

@@ -49,8 +49,9 @@ struct MeshTopology {
 /// Enclosed volume by the divergence theorem, positive if the faces look outward.
 [[nodiscard]] double volume(const Mesh& mesh);
 
-/// Edges folded by more than 150 degrees between two faces that both have over 0.05 square voxels.
-[[nodiscard]] std::size_t foldedEdges(const Mesh& mesh, double voxelSize);
+/// Edges folded by more than 150 degrees between two faces that both have over `leastArea` square
+/// voxels.
+[[nodiscard]] std::size_t foldedEdges(const Mesh& mesh, double voxelSize, double leastArea = 0.05);
 
 /// Bit-equal in every array.
 [[nodiscard]] bool sameBytes(const Mesh& a, const Mesh& b);
