@@ -177,6 +177,10 @@ class ChunkBuilder {
     job_.beginStage("cut", kCutEnd);
     chunks::CutMesh cut =
         chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, isSingle, job_);
+    if (std::exchange(report_.intersectionsLeft, 0) > 0) {
+      cut.isNew.assign(cut.isNew.size(), 1);  // triangles of the uniform mesh intersect
+      cut.isParted = false;
+    }
     chunks::partRounded(cut, model.affine(), isSingle, job_);
     chunks::keepApart(cut, model.affine(), isSingle, job_);
     // The farthest that a vertex moves to the lattice.

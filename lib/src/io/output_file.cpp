@@ -25,6 +25,8 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
 /// The file that a path leads to, so that a symbolic link survives the renaming.
 std::filesystem::path resolve(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return path;
   std::error_code error;
   const auto resolved = std::filesystem::weakly_canonical(path, error);
   return error ? path : resolved;

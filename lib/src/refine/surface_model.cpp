@@ -27,6 +27,7 @@ void SurfaceModel::settle(base::Job& job) {
       repairRounded(surface_.mesh, candidates_, sourceOf(surface_, job), affine(), job);
   report_.movedVertices += repaired.movedVertices;
   report_.flippedDiagonals += repaired.flippedDiagonals;
+  report_.intersectionsLeft = repaired.left.size();
   std::vector<std::uint32_t> all;
   std::set_union(candidates_.begin(), candidates_.end(), repaired.changed.begin(),
                  repaired.changed.end(), std::back_inserter(all));

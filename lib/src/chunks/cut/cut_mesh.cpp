@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -36,6 +37,8 @@ constexpr double kRoundedEdges[] = {2e-3, 4e-3, 8e-3};
 // Voxels; lower caps are flipped.
 constexpr double kLeastHeight = 1e-4;
 
+constexpr std::size_t kGrain = 16384;
+
 class Cutter {
  public:
   Cutter(const Mesh& uniform, const grid::Affine& affine, int size, bool singlePrecision,
@@ -56,7 +59,7 @@ class Cutter {
       joinAll(kLeastEdge, [](VertexIndex) { return true; });
       flipAllCaps();
     }
-    joinWhereRounded();
+    out_.isParted = joinWhereRounded();
     out_.moved += joined_ + kLeastHeight * voxelsOfStep();
     finish();
     return std::move(out_);
@@ -83,6 +86,11 @@ class Cutter {
     return true;
   }
 
+  [[nodiscard]] Position positionOf(VertexIndex v) const {
+    if (v < uniform_.positions.size() && moved_[v] == 0) return uniform_.positions[v];
+    return affine_.position(affine_.origin(), at_[v][0], at_[v][1], at_[v][2]);
+  }
+
   // Of a step of length 1 in the lattice, at most.
   [[nodiscard]] double voxelsOfStep() const {
     double most = 0;
@@ -94,30 +102,35 @@ class Cutter {
     out_.mesh.triangles = triangulate(uniform_);
     out_.mesh.normals = uniform_.normals;
     at_.resize(uniform_.positions.size());
-    job_.forRanges(at_.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         at_[v] = affine_.latticePoint(uniform_.positions[v], affine_.origin());
       }
     });
     moved_.assign(at_.size(), 0);
+    out_.isNew.assign(at_.size(), 0);
     place_.resize(at_.size());
   }
 
   // Of all vertices: those that were made on planes of other axes too.
   void setPlaces(int axis) {
     const auto a = static_cast<std::size_t>(axis);
-    for (std::size_t v = 0; v < at_.size(); ++v) place_[v][a] = placeOf(axis, at_[v][axis]);
+    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) place_[v][a] = placeOf(axis, at_[v][axis]);
+    });
   }
 
   void moveToPlanes(int axis, const Move& move) {
     constexpr double kStays = std::numeric_limits<double>::infinity();
     std::vector<double> target(at_.size(), kStays);
-    for (std::size_t v = 0; v < at_.size(); ++v) {
-      const double voxel = at_[v][axis] + static_cast<double>(affine_.origin()[axis]);
-      const double plane = coordinateOf(axis, std::llround(voxel / static_cast<double>(size_)));
-      if (plane != at_[v][axis] && std::abs(plane - at_[v][axis]) < move.distance)
-        target[v] = plane;
-    }
+    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const double voxel = at_[v][axis] + static_cast<double>(affine_.origin()[axis]);
+        const double plane = coordinateOf(axis, std::llround(voxel / static_cast<double>(size_)));
+        if (plane != at_[v][axis] && std::abs(plane - at_[v][axis]) < move.distance)
+          target[v] = plane;
+      }
+    });
     std::vector<std::uint32_t> touched;
     for (std::uint32_t t = 0; t < out_.mesh.triangles.size(); ++t) {
       const auto& v = out_.mesh.triangles[t].vertices;
@@ -157,6 +170,7 @@ class Cutter {
     for (std::size_t v = 0; v < at_.size(); ++v) {
       if (before[v] == kStays) continue;
       moved_[v] += std::abs(at_[v][axis] - before[v]) * perVoxel;
+      if (moved_[v] > 0) out_.isNew[v] = 1;
       out_.moved = std::max(out_.moved, moved_[v]);
       place_[v][static_cast<std::size_t>(axis)] = placeOf(axis, at_[v][axis]);
     }
@@ -189,8 +203,9 @@ class Cutter {
   void unlessIntersecting(const Change& change) {
     const std::vector<Triangle> before = out_.mesh.triangles;
     std::vector<std::uint8_t> stays(at_.size(), 0);
+    std::vector<VertexIndex> changed;
     for (bool isAny = true; isAny;) {
-      std::vector<VertexIndex> changed;
+      changed.clear();
       change([&](VertexIndex v) { return stays[v] != 0; }, changed);
       std::vector<std::uint8_t> isChanged(at_.size(), 0);
       for (const VertexIndex v : changed) isChanged[v] = 1;
@@ -204,24 +219,22 @@ class Cutter {
       }
       if (isAny) out_.mesh.triangles = before;
     }
+    for (const VertexIndex v : changed) out_.isNew[v] = 1;
   }
 
   // Where triangles that were cut intersect once they are rounded, collapses their short edges.
-  // Those of the uniform mesh are known not to.
-  void joinWhereRounded() {
+  // Those of the uniform mesh are known not to. Whether none is known to intersect at the end.
+  bool joinWhereRounded() {
     std::vector<Vec3> rounded(at_.size());
-    for (std::size_t v = 0; v < at_.size(); ++v) {
-      const Position world =
-          affine_.toWorld(affine_.position(affine_.origin(), at_[v][0], at_[v][1], at_[v][2]));
-      rounded[v] = Vec3(singlePrecision_ ? base::toSingle(world) : world);
-    }
-    std::vector<std::uint8_t> isNew(at_.size(), 0);
-    for (std::size_t v = 0; v < at_.size(); ++v) {
-      isNew[v] = v >= uniform_.positions.size() || moved_[v] > 0 ? 1 : 0;
-    }
+    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const Position world = affine_.toWorld(positionOf(static_cast<VertexIndex>(v)));
+        rounded[v] = Vec3(singlePrecision_ ? base::toSingle(world) : world);
+      }
+    });
     for (const double least : kRoundedEdges) {
-      const std::vector<intersect::PolygonPair> pairs = pairsAt(rounded, isNew);
-      if (pairs.empty()) return;
+      const std::vector<intersect::PolygonPair> pairs = pairsAt(rounded, out_.isNew);
+      if (pairs.empty()) return true;
       std::vector<std::uint8_t> isMeeting(at_.size(), 0);
       for (const intersect::PolygonPair& pair : pairs) {
         for (const std::uint32_t t : {pair.a, pair.b}) {
@@ -230,6 +243,7 @@ class Cutter {
       }
       joinAll(least, [&](VertexIndex v) { return isMeeting[v] != 0; });
     }
+    return false;
   }
 
   // Pairs of which one triangle has a marked vertex.
@@ -348,6 +362,7 @@ class Cutter {
     at_.push_back(p);
     place_.push_back(place);
     moved_.push_back(std::max(moved_[a], moved_[b]));  // of a point between: no more
+    out_.isNew.push_back(1);
     if (!uniform_.normals.empty()) {
       const Vec3 m = Vec3(out_.mesh.normals[a]) * (1 - share) + Vec3(out_.mesh.normals[b]) * share;
       const Vec3 n = m.unitOrX();
@@ -359,21 +374,18 @@ class Cutter {
 
   void finish() {
     Mesh& mesh = out_.mesh;
-    mesh.positions = uniform_.positions;
     mesh.positions.resize(at_.size());
-    for (std::size_t v = 0; v < at_.size(); ++v) {
-      if (v < uniform_.positions.size() && moved_[v] == 0) continue;
-      mesh.positions[v] = affine_.position(affine_.origin(), at_[v][0], at_[v][1], at_[v][2]);
-    }
+    for (VertexIndex v = 0; v < at_.size(); ++v) mesh.positions[v] = positionOf(v);
     std::vector<Coord> chunkOf(mesh.triangles.size());
-    job_.forRanges(chunkOf.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) chunkOf[t] = chunkAt(mesh.triangles[t]);
     });
-    out_.chunks = chunkOf;
+    // Neighbours are mostly of one chunk.
+    std::unique_copy(chunkOf.begin(), chunkOf.end(), std::back_inserter(out_.chunks));
     std::sort(out_.chunks.begin(), out_.chunks.end());
     out_.chunks.erase(std::unique(out_.chunks.begin(), out_.chunks.end()), out_.chunks.end());
     out_.chunkOf.resize(chunkOf.size());
-    job_.forRanges(chunkOf.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto found = std::lower_bound(out_.chunks.begin(), out_.chunks.end(), chunkOf[t]);
         out_.chunkOf[t] = static_cast<std::uint32_t>(found - out_.chunks.begin());

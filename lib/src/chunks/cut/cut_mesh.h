@@ -31,6 +31,10 @@ struct CutMesh {
   std::vector<std::array<std::uint32_t, 3>> planesOf;
   /// The positions that distances are measured to, where some are others than the mesh's.
   std::vector<Position> reference;
+  /// For each vertex whether it or a triangle at it is not as in the uniform mesh.
+  std::vector<std::uint8_t> isNew;
+  /// Whether no triangle with a new vertex intersects another one once positions are rounded.
+  bool isParted = false;
   double moved = 0;  ///< how far vertices were moved at most: to planes, and apart; voxels
 };
 

@@ -1,5 +1,6 @@
 #include "chunks/cut/flip_caps.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
@@ -11,6 +12,8 @@ namespace {
 constexpr int kMostPasses = 4;
 // The triangle across the edge must be so many times as high.
 constexpr double kHigher = 8;
+// The square of a height over that of a cap's, above all rounding.
+constexpr double kClearlyHigh = 1.001;
 
 std::uint64_t keyOf(VertexIndex from, VertexIndex to) { return std::uint64_t{from} << 32 | to; }
 
@@ -55,8 +58,18 @@ class CapFlipper {
     return length > 0 ? along.cross(points_[r] - points_[p]).length() / length : 0;
   }
 
+  // Whether the triangle is higher over its longest edge, and so over all, by the square of that.
+  [[nodiscard]] bool isHigh(const Triangle& t) const {
+    const Vec3 a = points_[t.vertices[0]], x = points_[t.vertices[1]] - a,
+               y = points_[t.vertices[2]] - a;
+    const double longest =
+        std::max({x.squaredLength(), y.squaredLength(), (y - x).squaredLength()});
+    return x.cross(y).squaredLength() > kClearlyHigh * height_ * height_ * longest;
+  }
+
   // The corner of a cap opposite its longest edge, or kNone.
   [[nodiscard]] std::size_t apexOf(const Triangle& t) const {
+    if (isHigh(t)) return kNone;
     for (std::size_t i = 0; i < 3; ++i) {
       const VertexIndex r = t.vertices[i], p = t.vertices[(i + 1) % 3], q = t.vertices[(i + 2) % 3];
       const Vec3 along = points_[q] - points_[p], to = points_[r] - points_[p];

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -65,6 +64,7 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
 }
 
 void partRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job) {
+  if (cut.isParted) return;
   std::vector<Position>& positions = cut.mesh.positions;
   Mesh rounded;
   rounded.positions.resize(positions.size());
@@ -86,9 +86,12 @@ void partRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision,
   source.voxelSize = affine.voxelSize();
   source.singlePrecision = singlePrecision;
   source.lastResort = false;
-  std::vector<intersect::PolygonIndex> all(rounded.triangles.size());
-  std::iota(all.begin(), all.end(), 0);
-  if (refine::repairIntersections(rounded, all, source, job).movedVertices == 0) return;
+  std::vector<intersect::PolygonIndex> candidates;
+  for (std::uint32_t t = 0; t < rounded.triangles.size(); ++t) {
+    const auto& v = rounded.triangles[t].vertices;
+    if ((cut.isNew[v[0]] | cut.isNew[v[1]] | cut.isNew[v[2]]) != 0) candidates.push_back(t);
+  }
+  if (refine::repairIntersections(rounded, candidates, source, job).movedVertices == 0) return;
   cut.reference = positions;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (!(rounded.positions[v] == before[v])) positions[v] = affine.fromWorld(rounded.positions[v]);

@@ -9,7 +9,8 @@ namespace tufa::chunks {
 /// Parts triangles of a cut mesh that nearly touch, so that they do not intersect once positions
 /// are rounded as they will be written, to single precision in world space if `singlePrecision`.
 /// Moves vertices that are on no plane a little, and keeps all positions as they were before as
-/// `reference` if there are any.
+/// `reference` if there are any. Looks at triangles that have a new vertex: those of the uniform
+/// mesh do not intersect each other.
 void partRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job);
 
 /// Gives vertices that would be at the place of another one in world space, rounded as above, a
