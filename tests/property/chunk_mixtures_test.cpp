@@ -185,7 +185,7 @@ TEST(ChunkFaces, CostFewTrianglesAtAnyLevel) {
   lods.levels = options.levels;
   const LodChain chain = buildLods(*grid, lods);
   ASSERT_EQ(chain.levels.size(), made.index.tolerances.size());
-  const double most[] = {1.15, 1.25, 2.2, 6};
+  const double most[] = {1.15, 1.25, 2.2, 7};
   for (std::size_t level = 0; level < chain.levels.size(); ++level) {
     EXPECT_LT(static_cast<double>(trianglesOf(made.index, level)),
               most[level] * static_cast<double>(chain.levels[level].mesh.triangleCount()))
