@@ -1,9 +1,11 @@
 #include "support/mesh_oracle.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -154,30 +156,81 @@ double area(const Mesh& mesh) {
   return sum;
 }
 
-std::size_t foldedEdges(const Mesh& mesh, double voxelSize, double leastArea) {
+namespace {
+
+constexpr double kFolded = -0.8660254;  // cosine of 150 degrees
+
+struct Fold {
+  Vec3 middle;
+  std::array<Vec3, 2> normals;
+};
+
+// The normal of a face of more than so many square voxels, or nothing.
+std::optional<Vec3> normalOf(const Mesh& mesh, const Triangle& t, double leastArea) {
+  const auto [a, b, c] = t.vertices;
+  const Vec3 normal = (at(mesh, b) - at(mesh, a)).cross(at(mesh, c) - at(mesh, a));
+  if (normal.length() <= 2 * leastArea) return {};
+  return normal * (1 / normal.length());
+}
+
+std::vector<Fold> foldsOf(const Mesh& mesh, double voxelSize) {
   struct Side {
     VertexIndex low, high;
     Vec3 normal;
   };
   std::vector<Side> sides;
   for (const Triangle& t : triangulate(mesh)) {
+    const std::optional<Vec3> normal = normalOf(mesh, t, 0.05 * voxelSize * voxelSize);
+    if (!normal) continue;
     const auto [a, b, c] = t.vertices;
-    Vec3 normal = (at(mesh, b) - at(mesh, a)).cross(at(mesh, c) - at(mesh, a));
-    if (normal.length() <= 2 * leastArea * voxelSize * voxelSize) continue;
-    normal = normal * (1 / normal.length());
     for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-      sides.push_back({std::min(from, to), std::max(from, to), normal});
+      sides.push_back({std::min(from, to), std::max(from, to), *normal});
     }
   }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::pair(a.low, a.high) < std::pair(b.low, b.high);
   });
-  std::size_t folds = 0;
+  std::vector<Fold> folds;
   for (std::size_t i = 1; i < sides.size(); ++i) {
     const Side &a = sides[i - 1], &b = sides[i];
-    folds += a.low == b.low && a.high == b.high && a.normal.dot(b.normal) < -0.8660254 ? 1 : 0;
+    if (a.low != b.low || a.high != b.high || a.normal.dot(b.normal) >= kFolded) continue;
+    folds.push_back({(at(mesh, a.low) + at(mesh, a.high)) * 0.5, {a.normal, b.normal}});
   }
   return folds;
+}
+
+// Whether two faces of a solid near a fold are as sharp.
+bool isSharpAt(const Fold& fold, const Mesh& solid, double voxelSize) {
+  constexpr double kAlike = 0.906;
+  std::array<std::vector<Vec3>, 2> normals;
+  for (const Triangle& t : triangulate(solid)) {
+    const auto isNear = [&](VertexIndex v) {
+      return (at(solid, v) - fold.middle).length() < 2 * voxelSize;
+    };
+    if (!std::any_of(t.vertices.begin(), t.vertices.end(), isNear)) continue;
+    const std::optional<Vec3> normal = normalOf(solid, t, 1e-3 * voxelSize * voxelSize);
+    if (!normal) continue;
+    for (const std::size_t i : {0, 1}) {
+      if (normal->dot(fold.normals[i]) > kAlike) normals[i].push_back(*normal);
+    }
+  }
+  return std::any_of(normals[0].begin(), normals[0].end(), [&](const Vec3& a) {
+    return std::any_of(normals[1].begin(), normals[1].end(),
+                       [&](const Vec3& b) { return a.dot(b) < kFolded; });
+  });
+}
+
+}  // namespace
+
+std::size_t foldedEdges(const Mesh& mesh, double voxelSize) {
+  return foldsOf(mesh, voxelSize).size();
+}
+
+std::size_t foldedEdges(const Mesh& mesh, const Mesh& solid, double voxelSize) {
+  const std::vector<Fold> folds = foldsOf(mesh, voxelSize);
+  return static_cast<std::size_t>(std::count_if(folds.begin(), folds.end(), [&](const Fold& fold) {
+    return !isSharpAt(fold, solid, voxelSize);
+  }));
 }
 
 double volume(const Mesh& mesh) {

@@ -49,9 +49,13 @@ struct MeshTopology {
 /// Enclosed volume by the divergence theorem, positive if the faces look outward.
 [[nodiscard]] double volume(const Mesh& mesh);
 
-/// Edges folded by more than 150 degrees between two faces that both have over `leastArea` square
-/// voxels.
-[[nodiscard]] std::size_t foldedEdges(const Mesh& mesh, double voxelSize, double leastArea = 0.05);
+/// Edges folded by more than 150 degrees between two faces that both have over 0.05 square voxels.
+[[nodiscard]] std::size_t foldedEdges(const Mesh& mesh, double voxelSize);
+
+/// Those of them where `solid`, a uniform mesh, is not as sharp: where it has no two faces over a
+/// thousandth of a square voxel, within two voxels, that are as far apart and face as the two of
+/// the fold do, to 25 degrees.
+[[nodiscard]] std::size_t foldedEdges(const Mesh& mesh, const Mesh& solid, double voxelSize);
 
 /// Bit-equal in every array.
 [[nodiscard]] bool sameBytes(const Mesh& a, const Mesh& b);

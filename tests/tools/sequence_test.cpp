@@ -56,7 +56,7 @@ TEST_F(Sequence, MeshesEveryFrameAndTellsOfEach) {
   }
   EXPECT_FALSE(exists("m.0003.ply"));
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 5) << outcome.out;
-  EXPECT_EQ(outcome.out.rfind("[1/4] f.0001.vdb: 436 triangles, within ", 0), 0u) << outcome.out;
+  EXPECT_EQ(outcome.out.rfind("[1/4] f.0001.vdb: 458 triangles, within ", 0), 0u) << outcome.out;
   EXPECT_NE(outcome.out.find("\n[3/4] f.0003.vdb: missing\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("\n4 frames: 3 done, 1 missing, in "), std::string::npos)
       << outcome.out;
