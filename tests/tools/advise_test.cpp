@@ -1,7 +1,6 @@
 // `tufa advise`.
 
-#include <nlohmann/json.hpp>
-
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa::test {
@@ -17,7 +16,7 @@ TEST_F(AdviseCommand, SaysWhatVoxelSizeItWouldTake) {
   EXPECT_NE(text.out.find("it would take"), std::string::npos) << text.out;
   const Outcome object = run("advise b.vdb --json");
   EXPECT_EQ(object.exitCode, 1);
-  const auto json = nlohmann::json::parse(object.out);
+  const auto json = test::parseJson(object.out);
   EXPECT_EQ(json["enough"], false);
   EXPECT_LT(json["voxel_size_needed"], json["voxel_size"]);
   EXPECT_GT(json["thin_sharp_cells"], 0);

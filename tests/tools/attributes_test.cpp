@@ -6,8 +6,8 @@
 #include <tufa/chunks.h>
 #include <tufa/io.h>
 #include <tufa/shapes.h>
-#include <nlohmann/json.hpp>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -37,8 +37,8 @@ class AttributeOptions : public CommandTest {
 TEST_F(AttributeOptions, ArePropertiesOfPly) {
   const Outcome outcome = run("mesh a.vdb -o m.ply --attribute heat --attribute vel=color --json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  const Json json = Json::parse(outcome.out);
-  EXPECT_EQ(json["attributes"], Json::parse(R"([{"name": "heat", "width": 1},
+  const Json json = test::parseJson(outcome.out);
+  EXPECT_EQ(json["attributes"], test::parseJson(R"([{"name": "heat", "width": 1},
                                                 {"name": "vel", "width": 3}])"));
   const std::string bytes = readBytes(folder / "m.ply");
   EXPECT_NE(bytes.find("property float heat\nproperty uchar red\n"), std::string::npos);
@@ -63,8 +63,8 @@ TEST_F(AttributeOptions, AreInEveryLod) {
 TEST_F(AttributeOptions, AreInChunks) {
   const Outcome outcome = run("chunks a.vdb -o c --chunk 16 --levels 2 --attribute vel --json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  EXPECT_EQ(Json::parse(outcome.out)["attributes"],
-            Json::parse(R"([{"name": "vel", "width": 3}])"));
+  EXPECT_EQ(test::parseJson(outcome.out)["attributes"],
+            test::parseJson(R"([{"name": "vel", "width": 3}])"));
   const ChunkIndex index = readChunkIndex((folder / "c").string());
   ASSERT_EQ(index.attributes.size(), 1u);
   EXPECT_EQ(index.attributes[0].width, 3);
@@ -98,7 +98,7 @@ TEST_F(AttributeOptions, OfVelocitiesAreMorphTargets) {
   }
   EXPECT_NE(readBytes(folder / "m.glb").find("\"targetNames\":[\"vel\"]"), std::string::npos);
   const Outcome outcome = run("mesh a.vdb -o m.glb --velocity vel --shutter 0.25 --json");
-  EXPECT_EQ(Json::parse(outcome.out)["attributes"][0]["shutter"], 0.25);
+  EXPECT_EQ(test::parseJson(outcome.out)["attributes"][0]["shutter"], 0.25);
   expectFailure("mesh a.vdb -o m.ply --velocity vel --shutter 1", 2, "for .glb only");
   expectFailure("chunks a.vdb -o c --format ply --velocity vel --shutter 1", 2, "for .glb only");
   expectFailure("mesh a.vdb -o n.glb --velocity vel", 2, "--velocity needs --shutter");

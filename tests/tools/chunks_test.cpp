@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -57,7 +57,7 @@ TEST_F(ChunksCommand, GivesTheKeysOfItsReport) {
   const Outcome outcome = run("chunks v.vdb -o d --chunk 16 --levels 2 --json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  const auto json = nlohmann::json::parse(outcome.out);
+  const auto json = test::parseJson(outcome.out);
   for (const char* key :
        {"file", "grid", "output", "isovalue", "inside", "active_voxels", "voxel_size", "chunk_size",
         "chunks", "levels", "seconds", "peak_memory_bytes", "threads"}) {
@@ -85,7 +85,7 @@ TEST_F(ChunksCommand, AssemblesTheLevelsItSays) {
   const auto lodsOf = [&](const std::string& lods) {
     const Outcome outcome = run("chunks --assemble d -o m.ply --json --lods " + lods);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out)["lods"].get<std::vector<std::size_t>>();
+    return test::parseJson(outcome.out)["lods"].get<std::vector<std::size_t>>();
   };
   const ChunkIndex index = readChunkIndex((folder / "d").string());
   EXPECT_EQ(lodsOf("all:1"), std::vector<std::size_t>(index.chunks.size(), 1));

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -46,7 +46,7 @@ TEST_F(Command, MeshGivesTheKeysOfItsReport) {
   const Outcome outcome = run("mesh s.vdb -o m.obj --check --json --threads 2");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  const auto json = nlohmann::json::parse(outcome.out);
+  const auto json = test::parseJson(outcome.out);
   for (const char* key : {"active_voxels", "surface_cells", "vertices", "triangles", "quads",
                           "seconds", "peak_memory_bytes", "threads", "check", "isovalue", "inside",
                           "crease_cells", "open_edges", "face_flips"}) {
@@ -69,7 +69,7 @@ TEST_F(Command, LodGivesTheKeysOfItsReport) {
   makeSphere();
   const Outcome outcome = run("lod s.vdb -o s.glb --levels 3 --check --json --threads 2");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
+  const auto json = test::parseJson(outcome.out);
   ASSERT_EQ(json["levels"].size(), 3u);
   EXPECT_EQ(json["outputs"], nlohmann::json({"s.glb"}));
   EXPECT_EQ(json["levels"][2]["tolerance_voxels"], 0.1 * 4 * 4);
@@ -89,7 +89,7 @@ TEST_F(Command, JoinsTrianglesToQuads) {
   const auto meshed = [&](const std::string& options) {
     const Outcome outcome = run("mesh b.vdb -o b.obj --check --json" + options);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out);
+    return test::parseJson(outcome.out);
   };
   const auto any = meshed(" --target any"), quads = meshed(" --target quads");
   EXPECT_EQ(any["quads"], 0);
@@ -109,7 +109,7 @@ TEST_F(Command, CutsWithoutCollapseIfItIsToBeFast) {
   ASSERT_EQ(fast.exitCode, 0) << fast.err;
   ASSERT_EQ(run("mesh t.vdb -o cut.ply --no-simplify").exitCode, 0);
   EXPECT_EQ(test::readBytes(folder / "fast.ply"), test::readBytes(folder / "cut.ply"));
-  EXPECT_LE(nlohmann::json::parse(fast.out)["certificate"]["max_error_voxels"], 0.1);
+  EXPECT_LE(test::parseJson(fast.out)["certificate"]["max_error_voxels"], 0.1);
 }
 
 /// The figures are those of the checker, and of the text.
@@ -118,7 +118,7 @@ TEST_F(Command, TellsWhatCameOfAnAngle) {
   const auto meshed = [&](const std::string& options) {
     const Outcome outcome = run("mesh b.vdb -o b.ply --check --json" + options);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out);
+    return test::parseJson(outcome.out);
   };
   const auto any = meshed(""), kept = meshed(" --min-angle 10");
   EXPECT_EQ(any["certificate"]["triangles_under_min_angle"], 0);
@@ -139,7 +139,7 @@ TEST_F(Command, TellsWhatCameOfAnAngle) {
   EXPECT_NE(table.out.find("under 20 degrees"), std::string::npos) << table.out;
   const Outcome chunks = run("chunks b.vdb -o c --min-angle 20 --levels 2 --json");
   ASSERT_EQ(chunks.exitCode, 0) << chunks.err;
-  for (const auto& level : nlohmann::json::parse(chunks.out)["levels"]) {
+  for (const auto& level : test::parseJson(chunks.out)["levels"]) {
     EXPECT_GT(level["triangles_under_min_angle"], 0);
     EXPECT_GT(level["smallest_angle_degrees"], 0);
   }
@@ -366,14 +366,14 @@ TEST_F(Command, ChoosesAmongSeveralGrids) {
   const auto gridOf = [&](const std::string& arguments) {
     const Outcome outcome = run("mesh all.vdb -o m.ply --json " + arguments);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out).at("grid").get<std::string>();
+    return test::parseJson(outcome.out).at("grid").get<std::string>();
   };
   EXPECT_EQ(gridOf(""), "sphere");
   EXPECT_EQ(gridOf("--grid fog --iso 0.5"), "fog");
   EXPECT_EQ(gridOf("--grid box"), "box");
   expectFailure("mesh all.vdb -o n.ply --grid bow", 3, "\"fog\", \"sphere\", \"box\"");
   const Outcome info = run("info all.vdb --json");
-  const auto grids = nlohmann::json::parse(info.out).at("grids");
+  const auto grids = test::parseJson(info.out).at("grids");
   ASSERT_EQ(grids.size(), 3U);
   for (const char* key : {"name", "class", "value_type", "transform", "voxel_size", "active_voxels",
                           "tiles", "non_finite_values", "meshable"}) {
@@ -395,7 +395,7 @@ TEST_F(Command, CheckComparesWithTheVolume) {
   ASSERT_EQ(run("mesh s.vdb --uniform -o m.ply --quiet").exitCode, 0);
   const Outcome outcome = run("check m.ply --against s.vdb --json");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-  const auto distance = nlohmann::json::parse(outcome.out).at("distance");
+  const auto distance = test::parseJson(outcome.out).at("distance");
   for (const char* side : {"mesh_to_surface", "surface_to_mesh"}) {
     EXPECT_LT(distance.at(side).at("largest").get<double>(), 0.1) << side;
     EXPECT_GT(distance.at(side).at("samples").get<int>(), 1000) << side;
@@ -413,7 +413,7 @@ TEST_F(Command, NamesTheEdgeOfTheDataAndCapsIt) {
   EXPECT_EQ(open.exitCode, 1);
   EXPECT_NE(open.err.find("runs out of the data"), std::string::npos) << open.err;
   EXPECT_NE(open.err.find("boundary edges"), std::string::npos) << open.err;
-  const auto json = nlohmann::json::parse(open.out);
+  const auto json = test::parseJson(open.out);
   EXPECT_GT(json.at("open_edges"), 0);
   EXPECT_GT(json.at("check").at("boundary_edges"), 0);
   EXPECT_EQ(run("mesh cut.vdb -o m.ply --check --cap").exitCode, 0);

@@ -1,8 +1,8 @@
 // `tufa compare`.
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa::test {
@@ -16,7 +16,7 @@ TEST_F(CompareCommand, WritesReportsOfAllKindsWithTheSameFigures) {
       run("compare s.vdb --methods mc,volume-to-mesh-0 --truth sphere -o r.html -o r.json -o r.md "
           "--json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
+  const auto json = test::parseJson(outcome.out);
   EXPECT_EQ(readBytes(folder / "r.json"), outcome.out);
   EXPECT_EQ(json["file"], "s.vdb");
   EXPECT_EQ(json["trilinear_euler_characteristic"], 2);

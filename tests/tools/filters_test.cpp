@@ -7,8 +7,8 @@
 
 #include <tufa/io.h>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -37,7 +37,7 @@ class FilterOptions : public CommandTest {
   Json report(const std::string& arguments) {
     const Outcome outcome = run(arguments + " --json");
     EXPECT_EQ(outcome.exitCode, 0) << arguments << "\n" << outcome.err;
-    return Json::parse(outcome.out);
+    return test::parseJson(outcome.out);
   }
 };
 

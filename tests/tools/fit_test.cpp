@@ -1,9 +1,8 @@
 // `tufa fit`.
 
-#include <nlohmann/json.hpp>
-
 #include <tufa/fit.h>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa::test {
@@ -21,7 +20,7 @@ class FitCommand : public CommandTest {
 TEST_F(FitCommand, WritesAScene) {
   const Outcome outcome = run("fit t.ply -o t.json --blobs 8 --json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  const auto json = nlohmann::json::parse(outcome.out);
+  const auto json = test::parseJson(outcome.out);
   EXPECT_EQ(json["blobs"], 8);
   EXPECT_EQ(json["steps"].size(), 8u);
   EXPECT_LT(json["rms_distance"], 0.02 * json["diagonal"].get<double>());

@@ -6,8 +6,8 @@
 #include <tufa/io.h>
 #include <tufa/shapes.h>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -63,7 +63,7 @@ TEST_F(Hostile, NamesOfGridsAreShownEscaped) {
   expectEscaped("lod m.vdb -o m.glb --levels 2", 0);
   expectEscaped("chunks m.vdb -o d", 0);
   expectEscaped("chunks m.vdb -o d2 --grid none", 3);
-  const Json json = Json::parse(run("info m.vdb --json").out);
+  const Json json = test::parseJson(run("info m.vdb --json").out);
   EXPECT_EQ(json["grids"][0]["name"].get<std::string>().substr(0, 5), name.substr(0, 5));
 }
 
@@ -79,7 +79,7 @@ TEST_F(Hostile, ManyTilesAtTheRootTakeNoTime) {
   const auto begin = std::chrono::steady_clock::now();
   const Outcome info = run("info t.vdb --json");
   ASSERT_EQ(info.exitCode, 0) << info.err;
-  const Json json = Json::parse(info.out)["grids"][0];
+  const Json json = test::parseJson(info.out)["grids"][0];
   EXPECT_EQ(json["tiles"], 32768);
   EXPECT_EQ(json["active_voxels"], 32768ull << 36);
   EXPECT_EQ(json["max_value"], 1);
@@ -106,7 +106,7 @@ TEST_F(Hostile, FilesLargerThanMemoryNameThemselves) {
 TEST_F(Hostile, FoldersWithoutChunksAreOneError) {
   makeSphere();
   ASSERT_EQ(run("chunks s.vdb -o d --quiet --levels 2").exitCode, 0);
-  Json index = Json::parse(readBytes(folder / "d/chunks.json"));
+  Json index = test::parseJson(readBytes(folder / "d/chunks.json"));
   index["chunks"] = Json::array();
   writeBytes(folder / "d/chunks.json", index.dump());
   for (const char* lods : {"all:0", "all:1", "random", "random:7", "camera:1,2,3"}) {
@@ -121,7 +121,7 @@ TEST_F(Hostile, FoldersWithoutChunksAreOneError) {
 TEST_F(Hostile, LinksOutOfAFolderOfChunksAreRefused) {
   makeSphere();
   ASSERT_EQ(run("chunks s.vdb -o d --quiet --levels 2").exitCode, 0);
-  const Json index = Json::parse(readBytes(folder / "d/chunks.json"));
+  const Json index = test::parseJson(readBytes(folder / "d/chunks.json"));
   const std::string file = index["chunks"][0]["levels"][0]["file"];
   const std::filesystem::path chunk = folder / "d" / file;
   std::filesystem::rename(chunk, folder / "outside.glb");

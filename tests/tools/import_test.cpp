@@ -9,10 +9,10 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -82,7 +82,7 @@ TEST_F(Import, EveryTypeGivesTheSameVolume) {
       }
     }
     EXPECT_EQ(grid->activeVoxelCount(), active);
-    EXPECT_EQ(Json::parse(made.out).at("active_voxels"), active);
+    EXPECT_EQ(test::parseJson(made.out).at("active_voxels"), active);
   }
   EXPECT_EQ(run("mesh v.vdb -o v.ply --iso 100 --check").exitCode, 0);
 }

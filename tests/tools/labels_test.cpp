@@ -8,13 +8,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -56,7 +56,7 @@ class LabelMeshes : public CommandTest {
 TEST_F(LabelMeshes, AreClosedEachOfItsOwn) {
   const Outcome made = run("mesh l.vdb -o 'm_{}.ply' --labels all --check --json --uniform");
   ASSERT_EQ(made.exitCode, 0) << made.err;
-  const auto json = nlohmann::json::parse(made.out);
+  const auto json = test::parseJson(made.out);
   const std::vector<std::string> names = {"label_2", "label_7", "label_300"};
   // Voxels of each, less what the corners and edges lose.
   const std::vector<double> voxels = {4 * 4 * 4, 12 * 12 * 12 - 64 - 5 * 9, 8 * 9};
@@ -133,7 +133,7 @@ TEST_F(LabelMeshes, ShareTheirInterfacesToTheBit) {
             "--check --threads " +
             threads);
     // Noise touches itself everywhere, so that inside and outside of pieces are not told apart.
-    const auto json = nlohmann::json::parse(made.out);
+    const auto json = test::parseJson(made.out);
     std::vector<std::map<std::vector<std::array<double, 3>>, int>> faces;
     for (int label = 1; label < 4; ++label) {
       const Mesh mesh = readMesh(folder / ("n_label_" + std::to_string(label) + ".ply"));
@@ -165,7 +165,7 @@ TEST_F(LabelMeshes, ShareTheirInterfacesToTheBit) {
   // Parts that do not touch themselves bound their volumes.
   const Outcome blocks = run("mesh l.vdb -o m.obj --labels all --share-interfaces --check --json");
   ASSERT_EQ(blocks.exitCode, 0) << blocks.err;
-  for (const auto& told : nlohmann::json::parse(blocks.out).at("grids")) {
+  for (const auto& told : test::parseJson(blocks.out).at("grids")) {
     EXPECT_EQ(told.at("check").at("bounds_volume"), true);
     EXPECT_GT(told.at("interfaces").at("shared_vertices"), 20);
   }

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -35,22 +35,22 @@ TEST_F(Model, SampleScenesBecomeClosedMeshes) {
     ++scenes;
     const std::string scene = entry.path().string();
     all += readBytes(scene);
-    const double voxel = Json::parse(readBytes(scene)).at("voxel").get<double>();
+    const double voxel = test::parseJson(readBytes(scene)).at("voxel").get<double>();
     const Outcome made =
         run("model " + scene + " -o s.vdb --json --voxel " + std::to_string(2 * voxel));
     ASSERT_EQ(made.exitCode, 0) << scene << made.err;
-    const Json json = Json::parse(made.out);
+    const Json json = test::parseJson(made.out);
     EXPECT_EQ(json.at("grid"), entry.path().stem().string());
     EXPECT_GE(json.at("samples"), json.at("active_voxels"));
     const Outcome meshed = run("mesh s.vdb -o s.ply --check --json");
     ASSERT_EQ(meshed.exitCode, 0) << scene << meshed.err << meshed.out;
-    EXPECT_GT(Json::parse(meshed.out).at("triangles"), 100) << scene;
+    EXPECT_GT(test::parseJson(meshed.out).at("triangles"), 100) << scene;
     // Rays to the formulas see what was meshed.
     const Outcome seen =
         run("picture " + scene + " -o s.png --size 48x36 --samples 1 --json --compare s.ply " +
             "--voxel " + std::to_string(2 * voxel));
     ASSERT_EQ(seen.exitCode, 0) << scene << seen.err;
-    const Json picture = Json::parse(seen.out);
+    const Json picture = test::parseJson(seen.out);
     EXPECT_GT(picture.at("covered"), 0.1) << scene;
     EXPECT_LT(picture.at("compare").at("share"), 0.05) << scene;
   }
@@ -70,7 +70,7 @@ TEST_F(Model, LooksAtAPoint) {
   EXPECT_EQ(text.exitCode, 0) << text.err;
   EXPECT_EQ(text.out, "outside, value 1\ngradient (0, 0, 1)\nnormal (0, 0, 1)\n");
   const Outcome json = run("model s.json --at 1,0,0 --json");
-  const Json point = Json::parse(json.out);
+  const Json point = test::parseJson(json.out);
   EXPECT_EQ(point.at("inside"), true);
   EXPECT_EQ(point.at("value"), -1.0);
   EXPECT_EQ(point.at("normal"), Json({1.0, 0.0, 0.0}));
@@ -85,7 +85,7 @@ TEST_F(Model, TakesOptionsBeforeTheScene) {
   const auto voxels = [&](const std::string& options) {
     const Outcome made = run("model s.json -o s.vdb --json " + options);
     EXPECT_EQ(made.exitCode, 0) << made.err;
-    return Json::parse(made.out).at("active_voxels").get<int>();
+    return test::parseJson(made.out).at("active_voxels").get<int>();
   };
   const int own = voxels("");
   EXPECT_GT(voxels("--voxel 0.1"), 3 * own);
@@ -106,7 +106,7 @@ TEST_F(Model, NamesWhatNoSampleShows) {
   EXPECT_EQ(made.exitCode, 0);
   EXPECT_NE(made.err.find(" parts of the surface that no sample shows, near (2"), std::string::npos)
       << made.err;
-  EXPECT_GT(Json::parse(made.out).at("hidden_voxels"), 0);
+  EXPECT_GT(test::parseJson(made.out).at("hidden_voxels"), 0);
 }
 
 TEST_F(Model, ReadsMeshesFromFiles) {
@@ -115,13 +115,13 @@ TEST_F(Model, ReadsMeshesFromFiles) {
   writeBytes(folder / "sub/t.off", tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
   writeScene("sub/s.json", R"({"type": "mesh", "file": "t.off"})");
   const Outcome inside = run("model sub/s.json --at 0.5,0.4,0.3 --json");
-  EXPECT_NEAR(Json::parse(inside.out).at("value").get<double>(), -0.3, 1e-12) << inside.err;
+  EXPECT_NEAR(test::parseJson(inside.out).at("value").get<double>(), -0.3, 1e-12) << inside.err;
   ASSERT_EQ(run("model sub/s.json -o s.vdb --voxel 0.05").exitCode, 0);
   EXPECT_EQ(run("mesh s.vdb -o s.ply --check").exitCode, 0);
   const Outcome picture =
       run("picture sub/s.json -o s.png --size 160x120 --samples 2 --compare s.ply --json");
   ASSERT_EQ(picture.exitCode, 0) << picture.err;
-  EXPECT_LT(Json::parse(picture.out).at("compare").at("share"), 0.02);
+  EXPECT_LT(test::parseJson(picture.out).at("compare").at("share"), 0.02);
   const auto refused = [&](const std::string& bytes, const std::string& part) {
     writeBytes(folder / "sub/m.off", bytes);
     writeScene("sub/s.json", R"({"type": "mesh", "file": "m.off"})");
@@ -149,7 +149,7 @@ TEST_F(Model, ReadsBallsFromFiles) {
     writeScene("sub/s.json", R"({"type": "metaballs", "radius": 0.5, "file": ")" + file + "\"}");
     const Outcome inside = run("model sub/s.json --at 3,0.1,0 --json");
     EXPECT_EQ(inside.exitCode, 0) << inside.err;
-    EXPECT_EQ(Json::parse(inside.out).at("inside"), true) << file;
+    EXPECT_EQ(test::parseJson(inside.out).at("inside"), true) << file;
     EXPECT_EQ(run("model sub/s.json --at 0.7,0,0").out.rfind("outside", 0), 0u) << file;
   }
   const auto refused = [&](const std::string& file, const std::string& bytes,

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -44,7 +44,7 @@ TEST_F(PictureCommand, ShowsScenesAndVolumesAndComparesMeshes) {
   const Outcome scene = run("picture s.json -o s.png --json" + small);
   ASSERT_EQ(scene.exitCode, 0) << scene.err;
   EXPECT_EQ(sizeOf(readBytes(folder / "s.png")), Json({64, 48}));
-  const Json told = Json::parse(scene.out);
+  const Json told = test::parseJson(scene.out);
   EXPECT_EQ(told.at("size"), Json({64, 48}));
   EXPECT_GT(told.at("covered"), 0.3);
 
@@ -53,7 +53,7 @@ TEST_F(PictureCommand, ShowsScenesAndVolumesAndComparesMeshes) {
   for (const std::string input : {"s.json", "s.vdb"}) {
     const Outcome same = run("picture " + input + " --compare s.ply --json --size 160x120");
     ASSERT_EQ(same.exitCode, 0) << same.err;
-    const Json compared = Json::parse(same.out).at("compare");
+    const Json compared = test::parseJson(same.out).at("compare");
     EXPECT_GT(compared.at("pixels"), 8000);
     EXPECT_LT(compared.at("share"), 0.004) << input;
     EXPECT_EQ(compared.at("tolerance"), 0.025);
@@ -62,7 +62,7 @@ TEST_F(PictureCommand, ShowsScenesAndVolumesAndComparesMeshes) {
   writeBytes(folder / "b.json",
              R"({"tufa_scene": 1, "objects": [{"type": "box", "size": [2, 2, 1]}]})");
   const Outcome other = run("picture b.json --voxel 0.05 --compare s.ply --json --size 160x120");
-  EXPECT_GT(Json::parse(other.out).at("compare").at("share"), 0.05) << other.err;
+  EXPECT_GT(test::parseJson(other.out).at("compare").at("share"), 0.05) << other.err;
   const Outcome text =
       run("picture s.vdb -o - --compare s.ply --camera "
           "azimuth=10,elevation=80,fov=40,up=y" +

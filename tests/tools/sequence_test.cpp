@@ -8,11 +8,11 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -68,7 +68,7 @@ TEST_F(Sequence, FramesAreRangesStepsAndLists) {
                                 (frames.empty() ? "" : " --frames " + frames));
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     std::vector<int> found;
-    const Json json = Json::parse(outcome.out);
+    const Json json = test::parseJson(outcome.out);
     for (const Json& frame : json.at("frames")) found.push_back(frame.at("frame"));
     return found;
   };
@@ -88,7 +88,7 @@ TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
   const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --jobs 3 --report all.csv --json");
   EXPECT_EQ(outcome.exitCode, 1);
   EXPECT_NE(outcome.err.find("f.0002.vdb"), std::string::npos) << outcome.err;
-  const Json json = Json::parse(outcome.out);
+  const Json json = test::parseJson(outcome.out);
   EXPECT_EQ(statesOf(json), (States{"done", "failed", "done"}));
   EXPECT_EQ(json["frames"][1]["error"]["code"], "unreadable_file");
   EXPECT_EQ(json["failed"], 1);
@@ -108,7 +108,7 @@ TEST_F(Sequence, EmptyFramesAreWrittenEmpty) {
   EXPECT_NE(outcome.out.find("no surface, an empty mesh: m.0001.ply"), std::string::npos)
       << outcome.out;
   EXPECT_EQ(readMesh(folder / "m.0001.ply").triangleCount(), 0u);
-  const Json json = Json::parse(readBytes(folder / "all.json"));
+  const Json json = test::parseJson(readBytes(folder / "all.json"));
   EXPECT_EQ(statesOf(json), (States{"empty", "empty", "empty"}));
 }
 
@@ -132,7 +132,7 @@ TEST_F(Sequence, ResumeLeavesOutWhatIsNewer) {
   std::filesystem::last_write_time(folder / "f.0002.vdb", now + std::chrono::hours(1));
   std::filesystem::last_write_time(folder / "f.0004.vdb", now - std::chrono::hours(1));
   const Json json =
-      Json::parse(run("mesh 'f.####.vdb' -o 'm.####.ply' --resume --json --frames 1-4").out);
+      test::parseJson(run("mesh 'f.####.vdb' -o 'm.####.ply' --resume --json --frames 1-4").out);
   EXPECT_EQ(statesOf(json), (States{"skipped", "done", "missing", "skipped"}));
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <tufa/io.h>
-#include <nlohmann/json.hpp>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -39,7 +39,7 @@ TEST_F(Pipes, SummariesGoToStandardErrorBesideData) {
   makeSphere();
   const Outcome outcome = run("mesh s.vdb -o - --format ply --json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  EXPECT_EQ(Json::parse(outcome.err).at("output"), "-");
+  EXPECT_EQ(test::parseJson(outcome.err).at("output"), "-");
   EXPECT_EQ(outcome.out.rfind("ply\n", 0), 0u);
   EXPECT_EQ(run("mesh s.vdb -o - --format ply --quiet").err, "");
   // A failure leaves standard output empty.
@@ -75,7 +75,7 @@ TEST_F(Pipes, ReadVolumesAsFilesAre) {
   makeSphere();
   const Outcome fromPipe = runOn("s.vdb", "info - --json");
   const Outcome fromFile = run("info s.vdb --json");
-  EXPECT_EQ(Json::parse(fromPipe.out).at("grids"), Json::parse(fromFile.out).at("grids"));
+  EXPECT_EQ(test::parseJson(fromPipe.out).at("grids"), test::parseJson(fromFile.out).at("grids"));
   ASSERT_EQ(run("mesh s.vdb -o s.ply --quiet").exitCode, 0);
   EXPECT_EQ(runOn("s.vdb", "check s.ply --against - --quiet").exitCode, 0);
   EXPECT_EQ(runOn("s.vdb", "chunks - -o d --quiet --levels 1").exitCode, 0);
@@ -111,8 +111,8 @@ TEST_F(Pipes, InfoAndCheckTakeSeveralFiles) {
   ASSERT_EQ(run("mesh s.vdb -o b.off --quiet").exitCode, 0);
   const Outcome info = run("info s.vdb s.vdb --json");
   EXPECT_EQ(info.exitCode, 0);
-  ASSERT_EQ(Json::parse(info.out).at("files").size(), 2u);
-  EXPECT_EQ(Json::parse(info.out)["files"][1]["grids"][0]["name"], "sphere");
+  ASSERT_EQ(test::parseJson(info.out).at("files").size(), 2u);
+  EXPECT_EQ(test::parseJson(info.out)["files"][1]["grids"][0]["name"], "sphere");
 
   const Outcome check = run("check a.ply b.off --against s.vdb");
   EXPECT_EQ(check.exitCode, 0) << check.err;
@@ -123,7 +123,7 @@ TEST_F(Pipes, InfoAndCheckTakeSeveralFiles) {
   writeBytes(folder / "bad.ply", "ply\nformat");
   const Outcome mixed = run("check bad.ply a.ply --json");
   EXPECT_EQ(mixed.exitCode, 3);
-  const Json files = Json::parse(mixed.out).at("files");
+  const Json files = test::parseJson(mixed.out).at("files");
   ASSERT_EQ(files.size(), 2u);
   EXPECT_EQ(files[0]["error"]["code"], "unreadable_file");
   EXPECT_EQ(files[1]["watertight"], true);

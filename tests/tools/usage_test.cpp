@@ -6,11 +6,11 @@
 #include <tufa/extract.h>
 #include <tufa/io.h>
 #include <tufa/shapes.h>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/json.h"
 #include "tools/command_fixture.h"
 
 namespace tufa {
@@ -35,8 +35,8 @@ class Usage : public CommandTest {
 
   [[nodiscard]] Json documentOf(const std::string& glb) const {
     const std::string bytes = readBytes(folder / glb);
-    return Json::parse(bytes.substr(20, static_cast<unsigned char>(bytes.at(12)) +
-                                            256u * static_cast<unsigned char>(bytes.at(13))));
+    return test::parseJson(bytes.substr(20, static_cast<unsigned char>(bytes.at(12)) +
+                                                256u * static_cast<unsigned char>(bytes.at(13))));
   }
 };
 
@@ -54,7 +54,7 @@ TEST_F(Usage, MeshSplitsNormalsAtCreases) {
     const Outcome outcome = run("mesh " + arguments + " -o m.glb --json");
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     return documentOf("m.glb")["accessors"][0]["count"].get<int>() -
-           Json::parse(outcome.out).at("vertices").get<int>();
+           test::parseJson(outcome.out).at("vertices").get<int>();
   };
   EXPECT_GT(added("box.vdb"), 0);
   EXPECT_EQ(added("box.vdb --crease 180"), 0);
@@ -148,7 +148,7 @@ TEST_F(Usage, FogNeedsAnIsovalue) {
   const Outcome given = run("mesh fog.vdb -o m.ply --iso 0.3 --json");
   EXPECT_EQ(given.exitCode, 0);
   EXPECT_EQ(given.err, "");
-  EXPECT_EQ(Json::parse(given.out).at("isovalue"), 0.3);
+  EXPECT_EQ(test::parseJson(given.out).at("isovalue"), 0.3);
 }
 
 TEST_F(Usage, NamesTheGridThatItTook) {
@@ -165,7 +165,7 @@ TEST_F(Usage, MeshesSeveralGrids) {
   writeShapes("all.vdb", {Shape::Sphere, Shape::Box, Shape::Torus});
   const Outcome outcome = run("mesh all.vdb -o m.glb --grid '*o*' --check --json");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-  const Json grids = Json::parse(outcome.out).at("grids");
+  const Json grids = test::parseJson(outcome.out).at("grids");
   ASSERT_EQ(grids.size(), 2u);
   EXPECT_EQ(grids[0]["grid"], "box");
   EXPECT_EQ(grids[1]["grid"], "torus");
@@ -219,7 +219,7 @@ TEST_F(Usage, TellsOfFailuresInJson) {
   const auto errorOf = [&](const std::string& arguments, int exitCode) {
     const Outcome outcome = run(arguments + " --json");
     EXPECT_EQ(outcome.exitCode, exitCode);
-    const Json error = Json::parse(outcome.out).at("error");
+    const Json error = test::parseJson(outcome.out).at("error");
     EXPECT_EQ("tufa: " + error.at("message").get<std::string>() + "\n", outcome.err);
     return error.at("code").get<std::string>();
   };
@@ -238,7 +238,7 @@ TEST_F(Usage, WritesEmptyFramesIfAllowed) {
       const Outcome outcome =
           run(std::string("mesh ") + volume + " --allow-empty --check --json -o " + output);
       EXPECT_EQ(outcome.exitCode, 0) << volume << " " << output << outcome.err;
-      EXPECT_EQ(Json::parse(outcome.out).at("triangles"), 0);
+      EXPECT_EQ(test::parseJson(outcome.out).at("triangles"), 0);
       EXPECT_TRUE(std::filesystem::exists(folder / output));
       std::filesystem::remove(folder / output);
     }
@@ -265,10 +265,10 @@ TEST_F(Usage, SaysInItsLastLineWhatItWrote) {
 
 TEST_F(Usage, MakeAndVoxelizeAreQuietOrSpeakJson) {
   const Outcome made = run("make sphere --voxel 0.1 -o s.vdb --json");
-  EXPECT_EQ(Json::parse(made.out).at("output"), "s.vdb");
+  EXPECT_EQ(test::parseJson(made.out).at("output"), "s.vdb");
   ASSERT_EQ(run("mesh s.vdb --quiet -o m.ply").exitCode, 0);
   const Outcome voxelized = run("voxelize m.ply --voxel 0.1 -o v.vdb --json");
-  const Json json = Json::parse(voxelized.out);
+  const Json json = test::parseJson(voxelized.out);
   EXPECT_EQ(json.at("file"), "m.ply");
   EXPECT_GT(json.at("active_voxels"), 0);
   for (const char* arguments : {"make sphere --voxel 0.1 -o s.vdb --quiet",
@@ -285,7 +285,7 @@ TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
     const Outcome outcome =
         run("mesh s.vdb -o m.ply --check --json --method " + std::string(method));
     EXPECT_EQ(outcome.exitCode, 0) << method << outcome.err;
-    EXPECT_EQ(Json::parse(outcome.out)["method"], method);
+    EXPECT_EQ(test::parseJson(outcome.out)["method"], method);
     std::filesystem::remove(folder / "m.ply");
   }
   expectFailure("mesh s.vdb -o m.ply --method cubes", 2, "cubes");
@@ -294,7 +294,7 @@ TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
     const Outcome outcome = run("mesh s.vdb -o m.ply --check --json --method " + method);
     EXPECT_EQ(outcome.exitCode, 0) << method << outcome.err;
     std::filesystem::remove(folder / "m.ply");
-    return Json::parse(outcome.out)["triangles"].get<int>();
+    return test::parseJson(outcome.out)["triangles"].get<int>();
   };
   EXPECT_LT(2 * trianglesOf("cms --tolerance 0.5"), trianglesOf("cms"));
   expectFailure("mesh s.vdb -o m.ply --method mc --sharp-angle 20", 2, "--sharp-angle");
@@ -312,7 +312,7 @@ TEST_F(Usage, RepairMakesASoupWatertightOrSaysWhatIsLeft) {
   ASSERT_EQ(run("mesh s.vdb -o m.stl --quiet").exitCode, 0);  // a format without shared vertices
   const Outcome whole = run("repair m.stl -o r.ply --json");
   EXPECT_EQ(whole.exitCode, 0) << whole.err;
-  const Json json = Json::parse(whole.out);
+  const Json json = test::parseJson(whole.out);
   EXPECT_EQ(json["after"]["watertight"], true);
   EXPECT_EQ(json["kept_input"], false);
   writeBytes(folder / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

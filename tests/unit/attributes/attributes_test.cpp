@@ -14,10 +14,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "support/expect_error.h"
+#include "support/json.h"
 
 namespace tufa {
 namespace {
@@ -198,7 +198,7 @@ struct Glb {
   explicit Glb(std::string file) : bytes(std::move(file)) {
     std::uint32_t size = 0;
     std::memcpy(&size, bytes.data() + 12, sizeof size);
-    document = Json::parse(bytes.substr(20, size));
+    document = test::parseJson(bytes.substr(20, size));
     binary_ = 20 + size + 8;
   }
   [[nodiscard]] std::vector<float> floats(std::size_t accessor, std::size_t width) const {

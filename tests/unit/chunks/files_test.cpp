@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <set>
 
 #include "support/expect_error.h"
+#include "support/json.h"
 #include "support/scratch_folder.h"
 #include "unit/chunks/hand_made.h"
 
@@ -200,7 +200,7 @@ TEST_P(CompressedChunks, AreReadBackToTheBit) {
 TEST_P(CompressedChunks, AreExactInFloats) {
   write(ChunkFormat::Glb);
   const std::string bytes = readBytes(folder / index.chunks[0].levels[0].file);
-  const auto json = nlohmann::json::parse(bytes.substr(20, bytes.rfind("BIN") - 4 - 20));
+  const auto json = test::parseJson(bytes.substr(20, bytes.rfind("BIN") - 4 - 20));
   const nlohmann::json& node = json["nodes"][0];
   EXPECT_EQ(node["scale"], (std::array{0.0625, 0.0625, 0.0625}));
   for (const double x : node["translation"].get<std::array<double, 3>>()) {
@@ -252,7 +252,7 @@ TEST_F(ChunkFiles, GlbHasAPrimitiveForEachPartAndOneVertexBuffer) {
   write(ChunkFormat::Glb);
   const std::string bytes = readBytes(folder / index.chunks[0].levels[0].file);
   const std::size_t end = bytes.rfind("BIN");
-  const auto json = nlohmann::json::parse(bytes.substr(20, end - 4 - 20));
+  const auto json = test::parseJson(bytes.substr(20, end - 4 - 20));
   std::vector<std::string> names;
   for (const auto& primitive : json["meshes"][0]["primitives"]) {
     names.push_back(primitive["extras"]["name"]);
@@ -307,7 +307,7 @@ TEST_F(ChunkFiles, IndexKeepsEveryBit) {
 
 TEST_F(ChunkFiles, IndexTellsTheNeighbours) {
   writeChunkIndex(index, name);
-  const auto json = nlohmann::json::parse(readBytes(folder / "chunks.json"));
+  const auto json = test::parseJson(readBytes(folder / "chunks.json"));
   EXPECT_EQ(json["tufa_chunks"], 1);
   EXPECT_EQ(json["chunks"][0]["neighbours"], nlohmann::json({-1, 1, -1, -1, -1, -1}));
   EXPECT_EQ(json["chunks"][1]["neighbours"], nlohmann::json({0, -1, -1, -1, -1, -1}));
@@ -315,7 +315,7 @@ TEST_F(ChunkFiles, IndexTellsTheNeighbours) {
 
 TEST_F(ChunkFiles, IndexThatSaysWhatCannotBeIsRefused) {
   write(ChunkFormat::Glb);
-  const auto good = nlohmann::json::parse(readBytes(folder / "chunks.json"));
+  const auto good = test::parseJson(readBytes(folder / "chunks.json"));
   const auto expectRefused = [&](const char* pointer, const nlohmann::json& value,
                                  const std::string& part) {
     nlohmann::json json = good;

@@ -15,6 +15,7 @@
 
 #include "io/grid/tree_walker.h"
 #include "support/expect_error.h"
+#include "support/openvdb_templates.h"
 #include "support/scratch_folder.h"
 
 namespace tufa {

@@ -11,12 +11,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "base/job.h"
 #include "base/vec3.h"
 #include "shading/shaded_mesh.h"
+#include "support/json.h"
 #include "support/scratch_folder.h"
 
 namespace tufa {
@@ -40,7 +40,7 @@ class GlbFile {
  public:
   explicit GlbFile(const std::filesystem::path& path) : bytes_(readBytes(path)) {
     const auto length = number<std::uint32_t>(12);
-    json_ = Json::parse(bytes_.substr(20, length));
+    json_ = test::parseJson(bytes_.substr(20, length));
     binary_ = 20 + length + 8;
   }
 

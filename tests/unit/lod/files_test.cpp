@@ -10,9 +10,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "support/expect_error.h"
+#include "support/json.h"
 #include "support/scratch_folder.h"
 
 namespace tufa {
@@ -40,7 +40,7 @@ std::uint32_t wordAt(const std::string& bytes, std::size_t offset) {
 }
 
 Json documentOf(const std::string& bytes) {
-  return Json::parse(bytes.substr(20, wordAt(bytes, 12)));
+  return test::parseJson(bytes.substr(20, wordAt(bytes, 12)));
 }
 
 /// The file with another document, which must not be longer.
