@@ -12,8 +12,8 @@ const [viewer, chunks, part, tufa, chromium, folder] = process.argv.slice(2);
 const puppeteer = createRequire(join(viewer, "package.json"))("puppeteer-core");
 const { serve } = await import(pathToFileURL(join(viewer, "server.mjs")));
 
-const kWidth = 1280;
-const kHeight = 720;
+const kWidth = 960;
+const kHeight = 540;
 const kErrorSlider = 1.6; // 3 pixels: so much that cracks could not be missed
 
 const server = await serve([chunks, part], 0);
