@@ -201,11 +201,11 @@ std::vector<Fold> foldsOf(const Mesh& mesh, double voxelSize) {
 
 // Whether two faces of a solid near a fold are as sharp.
 bool isSharpAt(const Fold& fold, const Mesh& solid, double voxelSize) {
-  constexpr double kAlike = 0.906;
+  constexpr double kAlike = 0.819;
   std::array<std::vector<Vec3>, 2> normals;
   for (const Triangle& t : triangulate(solid)) {
     const auto isNear = [&](VertexIndex v) {
-      return (at(solid, v) - fold.middle).length() < 2 * voxelSize;
+      return (at(solid, v) - fold.middle).length() < 3 * voxelSize;
     };
     if (!std::any_of(t.vertices.begin(), t.vertices.end(), isNear)) continue;
     const std::optional<Vec3> normal = normalOf(solid, t, 1e-3 * voxelSize * voxelSize);

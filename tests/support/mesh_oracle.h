@@ -53,8 +53,8 @@ struct MeshTopology {
 [[nodiscard]] std::size_t foldedEdges(const Mesh& mesh, double voxelSize);
 
 /// Those of them where `solid`, a uniform mesh, is not as sharp: where it has no two faces over a
-/// thousandth of a square voxel, within two voxels, that are as far apart and face as the two of
-/// the fold do, to 25 degrees.
+/// thousandth of a square voxel, within three voxels, that are as far apart and face as the two of
+/// the fold do, to 35 degrees.
 [[nodiscard]] std::size_t foldedEdges(const Mesh& mesh, const Mesh& solid, double voxelSize);
 
 /// Bit-equal in every array.
