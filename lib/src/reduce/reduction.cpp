@@ -12,8 +12,8 @@ namespace tufa::reduce {
 namespace {
 
 constexpr float kRadians = 0.01745329252f;
-// PhaseLimits::errorShare of most phases, and of one that tries harder. Above that no collapse
-// passes the distance guard.
+// PhaseLimits::errorShare of most phases, and of one that tries harder. Above that hardly a
+// collapse passes the distance guard.
 constexpr float kErrorShare = 1;
 constexpr float kLargeErrorShare = 1.4f;
 // Phases that contract clusters. The second and third ones find them along borders of parts before,

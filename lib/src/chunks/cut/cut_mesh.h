@@ -33,7 +33,8 @@ struct CutMesh {
   std::vector<Position> reference;
   /// For each vertex whether it or a triangle at it is not as in the uniform mesh.
   std::vector<std::uint8_t> isNew;
-  /// Whether no triangle with a new vertex intersects another one once positions are rounded.
+  /// Whether a search has shown that no triangle with a new vertex intersects another one once
+  /// positions are rounded.
   bool isParted = false;
   double moved = 0;  ///< how far vertices were moved at most: to planes, and apart; voxels
 };
