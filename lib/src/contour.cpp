@@ -39,7 +39,7 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
   report = model.report();
   refine::ExtractedMesh extracted;
   if (options.uniform || model.mesh().positions.empty()) {
-    extracted.candidates = model.candidates();
+    extracted.closePairs = model.closePairs();
     extracted.mesh = model.takeMesh();
   } else {
     refine::AdaptiveMesh adaptive = makeAdaptive(model, rule, options, job);

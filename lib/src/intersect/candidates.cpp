@@ -91,45 +91,90 @@ bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, cons
          parts(p[0], p[2], p[3], inner, outer, margin);
 }
 
+// Tells the candidates of one block after another.
+class CandidateTest {
+ public:
+  CandidateTest(const uniform::SurfaceView& context, const Mesh& mesh, double margin)
+      : context_(context), mesh_(mesh), margin_(margin) {}
+
+  void enter(const SurfaceBlock& block) {
+    shared_.fill(context_.topology, block);
+    origin_ = context_.blocks.origin(block.block);
+  }
+
+  [[nodiscard]] bool isCandidate(const QuadPlace& place) const {
+    const Quad& quad = mesh_.quads[place.quad];
+    if (hasVertexOutOfCell(context_.sheets, quad) || shared_.touch(place)) return true;
+    const auto [x, y, z] = place.start;
+    const Position start = context_.affine.position(origin_, x, y, z);
+    const Vec3 lower(start.x, start.y, start.z);
+    const Vec3 upper = lower + context_.affine.axis(place.axis);
+    return !staysInEnvelope(mesh_, quad, place.upward ? lower : upper, place.upward ? upper : lower,
+                            margin_);
+  }
+
+ private:
+  const uniform::SurfaceView& context_;
+  const Mesh& mesh_;
+  double margin_;
+  SharedCells shared_;
+  Coord origin_;
+};
+
+// Candidates found in ranges of blocks, on any thread.
+class Found {
+ public:
+  void add(const std::vector<std::uint32_t>& some) {
+    const std::scoped_lock lock(mutex_);
+    all_.insert(all_.end(), some.begin(), some.end());
+  }
+  [[nodiscard]] std::vector<std::uint32_t> sorted() {
+    base::parallelSort(all_.begin(), all_.end(), std::less<>());
+    return std::move(all_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::uint32_t> all_;
+};
+
 }  // namespace
 
 std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context, const Mesh& mesh,
-                                          double margin, base::Job& job,
-                                          const std::vector<std::uint8_t>* marked) {
-  const auto isMeant = [&](const Quad& quad) {
-    return marked == nullptr || std::any_of(quad.vertices.begin(), quad.vertices.end(),
-                                            [&](VertexIndex v) { return (*marked)[v] != 0; });
-  };
-  std::vector<std::uint32_t> candidates;
-  std::mutex mutex;
+                                          double margin, base::Job& job) {
+  Found found;
   job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> found;
-    SharedCells shared;
+    std::vector<std::uint32_t> own;
+    CandidateTest test(context, mesh, margin);
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = context.topology.blocks[i];
-      const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
-      if (std::none_of(first, first + block.quadCount, isMeant)) continue;
-      shared.fill(context.topology, block);
-      const Coord& origin = context.blocks.origin(block.block);
+      test.enter(block);
       forQuads(context, block, [&](const QuadPlace& place) {
-        const Quad& quad = mesh.quads[place.quad];
-        if (!isMeant(quad)) return;
-        const auto [x, y, z] = place.start;
-        const Position start = context.affine.position(origin, x, y, z);
-        const Vec3 lower(start.x, start.y, start.z);
-        const Vec3 upper = lower + context.affine.axis(place.axis);
-        if (hasVertexOutOfCell(context.sheets, quad) || shared.touch(place) ||
-            !staysInEnvelope(mesh, quad, place.upward ? lower : upper, place.upward ? upper : lower,
-                             margin)) {
-          found.push_back(static_cast<std::uint32_t>(place.quad));
-        }
+        if (test.isCandidate(place)) own.push_back(static_cast<std::uint32_t>(place.quad));
       });
     }
-    const std::scoped_lock lock(mutex);
-    candidates.insert(candidates.end(), found.begin(), found.end());
+    found.add(own);
   });
-  base::parallelSort(candidates.begin(), candidates.end(), std::less<>());
-  return candidates;
+  return found.sorted();
+}
+
+std::vector<std::uint32_t> findCandidatesAmong(const std::vector<std::uint32_t>& quads,
+                                               const uniform::SurfaceView& context,
+                                               const Mesh& mesh, double margin, base::Job& job) {
+  const std::vector<uniform::BlockRange> ranges = uniform::blocksOfQuads(context.topology, quads);
+  Found found;
+  job.forRanges(ranges.size(), 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> own;
+    CandidateTest test(context, mesh, margin);
+    for (std::size_t i = begin; i < end; ++i) {
+      test.enter(context.topology.blocks[ranges[i].block]);
+      forQuadsAmong(context, quads, ranges[i], [&](const QuadPlace& place, std::size_t) {
+        if (test.isCandidate(place)) own.push_back(static_cast<std::uint32_t>(place.quad));
+      });
+    }
+    found.add(own);
+  });
+  return found.sorted();
 }
 
 }  // namespace tufa::intersect

@@ -23,9 +23,14 @@ namespace tufa::intersect {
 ///
 /// Candidates are the quads that fail this, that touch a cell of several vertices, or that have a
 /// vertex out of its cell. Every intersecting pair contains one. Cost: one pass over the quads, two
-/// planes each. With `marked`, only quads with a marked vertex are looked at.
-[[nodiscard]] std::vector<std::uint32_t> findCandidates(
-    const uniform::SurfaceView& context, const Mesh& mesh, double margin, base::Job& job,
-    const std::vector<std::uint8_t>* marked = nullptr);
+/// planes each.
+[[nodiscard]] std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context,
+                                                        const Mesh& mesh, double margin,
+                                                        base::Job& job);
+
+/// Those among some quads, given in rising order.
+[[nodiscard]] std::vector<std::uint32_t> findCandidatesAmong(
+    const std::vector<std::uint32_t>& quads, const uniform::SurfaceView& context, const Mesh& mesh,
+    double margin, base::Job& job);
 
 }  // namespace tufa::intersect

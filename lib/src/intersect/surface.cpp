@@ -33,11 +33,15 @@ std::vector<VertexIndex> verticesOf(const Mesh& mesh, const std::vector<PolygonI
 
 Surface::Surface(Mesh& mesh, base::Job& job) : mesh_(mesh) {
   runs_.resize((size() + kRun - 1) / kRun);
-  job.forRanges(runs_.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t run = begin; run < end; ++run) {
-      Box all = Box::empty();
-      for (PolygonIndex p = runBegin(run); p < runEnd(run); ++p) all.add(box(p));
-      runs_[run] = all;
+  sections_.resize((runs_.size() + kSection - 1) / kSection, Box::empty());
+  job.forRanges(sections_.size(), 2, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t section = begin; section < end; ++section) {
+      for (std::size_t run = section * kSection; run < sectionEnd(section); ++run) {
+        Box all = Box::empty();
+        for (PolygonIndex p = runBegin(run); p < runEnd(run); ++p) all.add(box(p));
+        runs_[run] = all;
+        sections_[section].add(all);
+      }
     }
   });
 }
@@ -81,7 +85,11 @@ void Surface::fan(PolygonIndex quad, const Position& centre) {
 void Surface::update(PolygonIndex polygon) {
   const std::size_t run = polygon / kRun;
   if (run >= runs_.size()) runs_.resize(run + 1, Box::empty());
-  runs_[run].add(box(polygon));
+  const std::size_t section = run / kSection;
+  if (section >= sections_.size()) sections_.resize(section + 1, Box::empty());
+  const Box own = box(polygon);
+  runs_[run].add(own);
+  sections_[section].add(own);
 }
 
 void Surface::finish() {

@@ -37,6 +37,11 @@ inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
 /// The polygons of pairs, each as often as it occurs.
 [[nodiscard]] std::vector<PolygonIndex> polygonsOf(const std::vector<PolygonPair>& pairs);
 
+/// Those of some pairs of a mesh's polygons that intersect with other positions of the vertices.
+[[nodiscard]] std::vector<PolygonPair> intersectingAmong(const std::vector<PolygonPair>& pairs,
+                                                         const Mesh& mesh,
+                                                         std::span<const Position> positions);
+
 /// The vertices of polygons of a mesh, sorted.
 [[nodiscard]] std::vector<VertexIndex> verticesOf(const Mesh& mesh,
                                                   const std::vector<PolygonIndex>& polygons);
@@ -49,8 +54,9 @@ inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
 /// The polygons of a mesh while they change, with an index of where they lie.
 ///
 /// Neighbours in a mesh are mostly neighbours in its arrays too, so runs of consecutive polygons
-/// have small boxes, and these boxes are the whole index. Boxes only grow: one that a polygon has
-/// left is too large but never wrong. Quads keep their indices while others are removed.
+/// have small boxes; these, and the boxes of sections of runs, are the whole index. Boxes only
+/// grow: one that a polygon has left is too large but never wrong. Quads keep their indices while
+/// others are removed.
 class Surface {
  public:
   Surface(Mesh& mesh, base::Job& job);
@@ -81,7 +87,15 @@ class Surface {
   /// call.
   void finish();
 
-  static constexpr std::size_t kRun = 32;
+  static constexpr std::size_t kRun = 32;      ///< polygons
+  static constexpr std::size_t kSection = 32;  ///< runs
+  [[nodiscard]] std::size_t sectionCount() const { return sections_.size(); }
+  [[nodiscard]] const base::Box& sectionBox(std::size_t section) const {
+    return sections_[section];
+  }
+  [[nodiscard]] std::size_t sectionEnd(std::size_t section) const {
+    return std::min((section + 1) * kSection, runs_.size());
+  }
   [[nodiscard]] std::size_t runCount() const { return runs_.size(); }
   [[nodiscard]] const base::Box& runBox(std::size_t run) const { return runs_[run]; }
   [[nodiscard]] PolygonIndex runBegin(std::size_t run) const {
@@ -94,8 +108,22 @@ class Surface {
  private:
   Mesh& mesh_;
   std::vector<base::Box> runs_;
+  std::vector<base::Box> sections_;
   bool fanned_ = false;
 };
+
+/// What findClosePairs() finds.
+struct ClosePairs {
+  std::vector<PolygonPair> intersecting;
+  /// These, and those that may come to intersect if each vertex moves by half of the margin.
+  std::vector<PolygonPair> close;
+};
+
+/// Of the pairs of which at least one polygon is among `candidates`, those that intersect and those
+/// that are close to it. Both sorted. `matters` as for findPairs(), whose cost it has.
+[[nodiscard]] ClosePairs findClosePairs(
+    const Surface& surface, const std::vector<PolygonIndex>& candidates, double margin,
+    base::Job& job, const std::function<bool(PolygonIndex, PolygonIndex)>& matters = nullptr);
 
 /// All pairs of which at least one polygon is among `candidates`, sorted; if there is a function
 /// `matters`, only those for which it is true. The result does not depend on the number of threads.

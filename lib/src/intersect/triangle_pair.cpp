@@ -19,6 +19,9 @@ using Corners = std::array<Position, 3>;
 constexpr double kRounding = 1e-15;
 // Sine of an angle far above all rounding.
 constexpr double kClearly = 1e-6;
+// What is taken off for what moves, as a factor of its square: more than any of its terms of higher
+// order.
+constexpr double kSpare = 2;
 
 Vec3 between(const Position& from, const Position& to) {
   return {to.x - from.x, to.y - from.y, to.z - from.z};
@@ -130,8 +133,10 @@ bool isFoldedOver(const Corners& a, const Corners& b) {
 
 }  // namespace
 
+// Points that move, and a plane that moves with `at`, come nearer to each other by `margin` at
+// most.
 bool arePartedAt(const Position& at, std::span<const Position> a, std::span<const Position> b,
-                 bool common) {
+                 bool common, double margin) {
   Vec3 toA(0), toB(0);
   for (const Position& p : a) toA += between(at, p);
   for (const Position& p : b) toB += between(at, p);
@@ -148,12 +153,17 @@ bool arePartedAt(const Position& at, std::span<const Position> a, std::span<cons
   };
   for (const Position& p : a) leastA = std::min(leastA, along(p));
   for (const Position& p : b) mostB = std::max(mostB, along(p));
-  const double margin = kRounding * terms;
-  return common ? leastA > margin && mostB < -margin : leastA - mostB > 2 * margin;
+  // Off the plane; and half the distance of the two sets.
+  double least = kRounding * terms;
+  if (margin > 0) least += (common ? 1.0 : 0.5) * margin * way.length();
+  return common ? leastA > least && mostB < -least : leastA - mostB > 2 * least;
 }
 
+// The plane through the line moves by half of `margin` at `from` and turns by no more than `margin`
+// over the length of the edge: with the point's own half that is margin * (1 + distance / length).
+// The square of the sum is at most twice the sum of the squares.
 bool arePartedAlong(const Position& from, const Position& to, std::span<const Position> a,
-                    std::span<const Position> b) {
+                    std::span<const Position> b, double margin) {
   const Vec3 edge = between(from, to);
   const double length = edge.squaredLength();
   if (!(length > 0)) return false;
@@ -167,13 +177,14 @@ bool arePartedAlong(const Position& from, const Position& to, std::span<const Po
   // Rounding keeps `way` from being exactly perpendicular to the edge. If it tilts by less than
   // kClearly / 2, the plane that does contain the edge has the same points on each side, as each
   // point is off this one by an angle of kClearly.
-  const double squared = kClearly * kClearly * way.squaredLength();
+  const double way2 = way.squaredLength(), squared = kClearly * kClearly * way2;
   const double along = way.dot(edge);
   if (!(4 * along * along < squared * length)) return false;
   const auto isBeyond = [&](const Position& p, double side) {
     const Vec3 offset = between(from, p);
-    const double height = side * way.dot(offset);
-    return height > 0 && height * height > squared * offset.squaredLength();
+    const double height = side * way.dot(offset), distance2 = offset.squaredLength();
+    const double turned2 = 2 * margin * margin * (1 + distance2 / length);
+    return height > 0 && height * height > squared * distance2 + kSpare * way2 * turned2;
   };
   return std::all_of(a.begin(), a.end(), [&](const Position& p) { return isBeyond(p, 1); }) &&
          std::all_of(b.begin(), b.end(), [&](const Position& p) { return isBeyond(p, -1); });

@@ -17,8 +17,9 @@ struct ExtractedMesh {
   std::vector<VertexIndex> baseVertices;
   /// Uniform quad of each polygon, quads first. Empty: the polygons are those of the uniform mesh.
   std::vector<std::uint32_t> baseQuads;
-  std::vector<intersect::PolygonIndex>
-      candidates;  ///< polygons, sorted; each intersecting pair contains one
+  /// Each intersecting pair contains one of these polygons, or is one of these pairs. Sorted.
+  std::vector<intersect::PolygonIndex> candidates;
+  std::vector<intersect::PolygonPair> closePairs;
 };
 
 }  // namespace tufa::refine

@@ -64,6 +64,16 @@ Source worldSource(const SurfaceModel& model, const ExtractedMesh& extracted, ba
   return source;
 }
 
+// The candidates for what intersects now that the mesh is rounded.
+std::vector<intersect::PolygonIndex> candidatesOf(const ExtractedMesh& extracted) {
+  std::vector<intersect::PolygonIndex> candidates = intersect::polygonsOf(
+      intersect::intersectingAmong(extracted.closePairs, extracted.mesh, extracted.mesh.positions));
+  candidates.insert(candidates.end(), extracted.candidates.begin(), extracted.candidates.end());
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  return candidates;
+}
+
 }  // namespace
 
 double finishMesh(const SurfaceModel& model, const ContourOptions& options,
@@ -72,12 +82,14 @@ double finishMesh(const SurfaceModel& model, const ContourOptions& options,
   Mesh& mesh = extracted.mesh;
   double moved = 0;
   const bool single = takeToWorld(mesh, affine, job);
-  if (options.repair) {
+  const std::vector<intersect::PolygonIndex> candidates =
+      options.repair ? candidatesOf(extracted) : std::vector<intersect::PolygonIndex>();
+  if (options.repair) report.intersectionsLeft = 0;
+  if (!candidates.empty()) {
     Source source = worldSource(model, extracted, job);
     source.singlePrecision = single;
-    const std::vector<Position> before =
-        extracted.candidates.empty() ? std::vector<Position>() : mesh.positions;
-    const RepairReport repaired = repairIntersections(mesh, extracted.candidates, source, job);
+    const std::vector<Position> before = mesh.positions;
+    const RepairReport repaired = repairIntersections(mesh, candidates, source, job);
     report.intersectionsLeft = repaired.left.size();
     report.movedVertices += repaired.movedVertices;
     report.flippedDiagonals += repaired.flippedDiagonals;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "uniform/block_ranges.h"
 #include "uniform/quads.h"
 
 namespace tufa::refine {
@@ -292,19 +293,21 @@ class CreaseOrder {
   }
 
   std::size_t apply() {
-    std::vector<std::uint8_t> moved(mesh_.positions.size(), 0);
-    std::size_t count = 0;
+    std::vector<std::uint8_t> marks(mesh_.positions.size(), 0);
+    std::vector<VertexIndex> moved;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       if (slides_[i] == 0) continue;
       const Vec3 to =
           Vec3(mesh_.positions[vertices_[i]]) + directions_[i] * (slides_[i] * voxelSize_);
       mesh_.positions[vertices_[i]] = to;
       surface_.sheets.setOutOfCell(vertices_[i]);
-      moved[vertices_[i]] = 1;
-      ++count;
+      marks[vertices_[i]] = 1;
+      moved.push_back(vertices_[i]);
     }
-    if (count > 0) uniform::splitAgain(surface_.view(), moved, mesh_, job_);
-    return count;
+    uniform::splitAgain(surface_.view(),
+                        uniform::quadsAt(surface_.topology, mesh_, moved, marks, job_), mesh_,
+                        job_);
+    return moved.size();
   }
 
   uniform::UniformSurface& surface_;

@@ -1,18 +1,24 @@
 #include "refine/repair_rounded.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "refine/rounding.h"
 
 namespace tufa::refine {
 
-RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonIndex>& candidates,
+RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>& closePairs,
                            Source source, const grid::Affine& affine, base::Job& job) {
   Mesh world;
   world.positions = mesh.positions;
+  source.singlePrecision = takeToWorld(world, affine, job);
+  std::vector<intersect::PolygonIndex> candidates =
+      intersect::polygonsOf(intersect::intersectingAmong(closePairs, mesh, world.positions));
+  if (candidates.empty()) return {};
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   world.quads = mesh.quads;
   world.triangles = mesh.triangles;
-  source.singlePrecision = takeToWorld(world, affine, job);
   source.massPoints = [&affine,
                        points = source.massPoints](const std::vector<VertexIndex>& vertices) {
     std::vector<Position> all = points(vertices);

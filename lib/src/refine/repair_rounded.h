@@ -7,7 +7,8 @@ namespace tufa::refine {
 
 /// repairIntersections() of a mesh as it will be written: in world space, and in single precision
 /// where that moves nothing far. What is not moved keeps its position; nothing becomes a fan.
-RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonIndex>& candidates,
+/// `closePairs` must hold every pair that intersects then.
+RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>& closePairs,
                            Source source, const grid::Affine& affine, base::Job& job);
 
 }  // namespace tufa::refine

@@ -1,8 +1,6 @@
 #include "refine/surface_model.h"
 #include "octree/build_forest.h"
 
-#include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "refine/repair_rounded.h"
@@ -16,7 +14,7 @@ SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
       report_(uniform::reportOf(surface_)) {
   job.beginStage("repair", ends.repair);
   if (!repairs_) return;
-  candidates_ = repairUniform(surface_, report_, job);
+  closePairs_ = repairUniform(surface_, report_, job);
   if (!options.uniform) settle(job);
 }
 
@@ -24,14 +22,10 @@ SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
 // for a mesh that is measured against this one.
 void SurfaceModel::settle(base::Job& job) {
   const RepairReport repaired =
-      repairRounded(surface_.mesh, candidates_, sourceOf(surface_, job), affine(), job);
+      repairRounded(surface_.mesh, closePairs_, sourceOf(surface_, job), affine(), job);
   report_.movedVertices += repaired.movedVertices;
   report_.flippedDiagonals += repaired.flippedDiagonals;
   report_.intersectionsLeft = repaired.left.size();
-  std::vector<std::uint32_t> all;
-  std::set_union(candidates_.begin(), candidates_.end(), repaired.changed.begin(),
-                 repaired.changed.end(), std::back_inserter(all));
-  candidates_ = std::move(all);
 }
 
 void SurfaceModel::buildClusters(const octree::CutRule& rule, base::Job& job) {

@@ -2,10 +2,10 @@
 
 #include <tufa/contour.h>
 
-#include <cstdint>
 #include <vector>
 
 #include "base/job.h"
+#include "intersect/surface.h"
 #include "octree/cluster_forest.h"
 #include "octree/cut_rule.h"
 #include "uniform/uniform_surface.h"
@@ -30,9 +30,11 @@ class SurfaceModel {
   [[nodiscard]] uniform::SurfaceView view() const { return surface_.view(); }
   [[nodiscard]] const Mesh& mesh() const { return surface_.mesh; }
   [[nodiscard]] const grid::Affine& affine() const { return surface_.affine(); }
-  /// Candidates of the uniform mesh: each pair of its quads that intersects, even after rounding,
-  /// contains one. Sorted.
-  [[nodiscard]] const std::vector<std::uint32_t>& candidates() const { return candidates_; }
+  /// Pairs of quads of the uniform mesh; all that still intersect, even after rounding, are among
+  /// them. Sorted.
+  [[nodiscard]] const std::vector<intersect::PolygonPair>& closePairs() const {
+    return closePairs_;
+  }
   /// Whether intersections are to be repaired.
   [[nodiscard]] bool repairs() const { return repairs_; }
   /// What was read and found, without the times of stages.
@@ -46,7 +48,7 @@ class SurfaceModel {
 
   bool repairs_;
   uniform::UniformSurface surface_;
-  std::vector<std::uint32_t> candidates_;
+  std::vector<intersect::PolygonPair> closePairs_;
   ContourReport report_;
   octree::ClusterForest forest_;
 };

@@ -22,32 +22,31 @@ class UniformRepair {
   UniformRepair(uniform::UniformSurface& surface, ContourReport& report, base::Job& job)
       : surface_(surface), mesh_(surface.mesh), report_(report), job_(job) {}
 
-  std::vector<std::uint32_t> run() {
+  std::vector<intersect::PolygonPair> run() {
     const std::vector<LoneComponent> lone = findLoneComponents(mesh_, job_);
     const Source own = sourceOf(surface_, job_);
     report_.movedVertices = unfoldLoneComponents(mesh_, lone, own);
     report_.movedVertices += liftLoneComponents(mesh_, surface_.sheets, lone, own);
     // Rounding may move both polygons of a pair. Flat faces on lattice planes lie a thousandth of a
     // voxel off their samples: a larger margin than is needed makes all their quads candidates.
-    const double margin =
-        2 * std::min(kMostRounding * surface_.affine().leastHeight(),
-                     largestRounding(surface_.volume.blocks, surface_.volume.transform));
+    margin_ = 2 * std::min(kMostRounding * surface_.affine().leastHeight(),
+                           largestRounding(surface_.volume.blocks, surface_.volume.transform));
     report_.movedVertices += orderAlongCreases(surface_, job_);
-    const Withdrawal withdrawn =
-        withdrawPlacements(surface_, margin, job_, [this] { return putBackComponents(); });
-    candidates_ = withdrawn.candidates;
+    Withdrawal withdrawn =
+        withdrawPlacements(surface_, margin_, job_, [this] { return putBackComponents(); });
     report_.intersectionsFound = withdrawn.pairsFound;
     report_.movedVertices += withdrawn.vertices;
-    if (withdrawn.left > 0) {
+    if (withdrawn.left == 0) return std::move(withdrawn.close);
+    candidates_ = std::move(withdrawn.candidates);
+    repairCandidates();
+    for (int i = 0; i < kMostPutBack; ++i) {
+      const std::vector<VertexIndex> misplaced = putBackComponents();
+      if (misplaced.empty()) break;
+      addCandidates(quadsAt(misplaced));
       repairCandidates();
-      for (int i = 0; i < kMostPutBack; ++i) {
-        const std::vector<VertexIndex> misplaced = putBackComponents();
-        if (misplaced.empty()) break;
-        addCandidates(quadsAt(misplaced));
-        repairCandidates();
-      }
     }
-    return std::move(candidates_);
+    return intersect::findClosePairs(intersect::Surface(mesh_, job_), candidates_, margin_, job_)
+        .close;
   }
 
  private:
@@ -107,6 +106,7 @@ class UniformRepair {
   Mesh& mesh_;
   ContourReport& report_;
   base::Job& job_;
+  double margin_ = 0;  // twice the largest rounding
   std::vector<std::uint32_t> candidates_;
 };
 
@@ -126,8 +126,8 @@ Source sourceOf(const uniform::UniformSurface& surface, base::Job& job) {
   return source;
 }
 
-std::vector<std::uint32_t> repairUniform(uniform::UniformSurface& surface, ContourReport& report,
-                                         base::Job& job) {
+std::vector<intersect::PolygonPair> repairUniform(uniform::UniformSurface& surface,
+                                                  ContourReport& report, base::Job& job) {
   return UniformRepair(surface, report, job).run();
 }
 

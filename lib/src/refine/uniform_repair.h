@@ -2,7 +2,6 @@
 
 #include <tufa/contour.h>
 
-#include <cstdint>
 #include <vector>
 
 #include "base/job.h"
@@ -16,9 +15,10 @@ namespace tufa::refine {
 [[nodiscard]] Source sourceOf(const uniform::UniformSurface& surface, base::Job& job);
 
 /// Removes self-intersections of a uniform mesh, as far as no additional vertices are needed, and
-/// returns the candidates that remain: each pair of quads that still intersects, even after
-/// rounding, contains one; sorted. Adds to the counts of the repair in `report`.
-[[nodiscard]] std::vector<std::uint32_t> repairUniform(uniform::UniformSurface& surface,
-                                                       ContourReport& report, base::Job& job);
+/// returns the pairs of quads that remain close: all that still intersect, even after rounding, are
+/// among them; sorted. Adds to the counts of the repair in `report`.
+[[nodiscard]] std::vector<intersect::PolygonPair> repairUniform(uniform::UniformSurface& surface,
+                                                                ContourReport& report,
+                                                                base::Job& job);
 
 }  // namespace tufa::refine

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "intersect/surface.h"
 #include "uniform/uniform_surface.h"
 
 namespace tufa::refine {
@@ -17,6 +18,8 @@ struct Withdrawal {
   std::size_t left = 0;        ///< folds and pairs all of whose vertices are at their mass points
   /// The candidates of the mesh as it is now, see intersect::findCandidates(). Sorted.
   std::vector<std::uint32_t> candidates;
+  /// Pairs of quads that intersect, or may once each vertex moves by half of the margin. Sorted.
+  std::vector<intersect::PolygonPair> close;
 };
 
 /// Accepts as many places of vertices as stand together: withdraws those that fold the surface or

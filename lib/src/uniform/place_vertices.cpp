@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "base/huge_pages.h"
+#include "uniform/block_ranges.h"
 #include "uniform/block_vertices.h"
 
 namespace tufa::uniform {
@@ -71,21 +72,16 @@ FallbackPoints fallbackPoints(const grid::Blocks& blocks, const grid::FieldScale
                               const std::vector<VertexIndex>& vertices, base::Job& job) {
   FallbackPoints points{std::vector<Position>(vertices.size()),
                         std::vector<Position>(vertices.size())};
-  if (vertices.empty()) return points;
-  job.forRanges(topology.blocks.size(), 16, [&](std::size_t begin, std::size_t end) {
+  const std::vector<BlockRange> ranges = blocksOfVertices(topology, vertices);
+  job.forRanges(ranges.size(), 16, [&](std::size_t begin, std::size_t end) {
     const auto accessor = blocks.accessor();
     BlockVertices work(scale);
     for (std::size_t i = begin; i < end; ++i) {
-      const SurfaceBlock& block = topology.blocks[i];
-      const std::uint64_t last = i + 1 < topology.blocks.size() ? topology.blocks[i + 1].firstVertex
-                                                                : topology.vertexCount;
-      auto next = std::lower_bound(vertices.begin(), vertices.end(), block.firstVertex);
-      if (next == vertices.end() || *next >= last) continue;
+      const SurfaceBlock& block = topology.blocks[ranges[i].block];
+      const Coord& origin = blocks.origin(block.block);
       work.gather(blocks, topology, block, *accessor);
-      for (; next != vertices.end() && *next < last; ++next) {
-        const std::size_t vertex = *next - block.firstVertex;
-        const auto slot = static_cast<std::size_t>(next - vertices.begin());
-        const Coord& origin = blocks.origin(block.block);
+      for (std::size_t slot = ranges[i].begin; slot < ranges[i].end; ++slot) {
+        const std::size_t vertex = vertices[slot] - block.firstVertex;
         points.plain[slot] = inCell(affine, origin, work.cells()[vertex], work.plainPoint(vertex));
         const Vector point = work.massPoint(vertex);
         points.mass[slot] =

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "base/bits.h"
+#include "uniform/block_ranges.h"
 #include "uniform/quads.h"
 
 namespace tufa::uniform {
@@ -35,6 +38,16 @@ void forQuads(const SurfaceView& context, const SurfaceBlock& block, const Body&
       });
     }
   }
+}
+
+/// Calls body(place, i) for the quads of one block among some, given in rising order: for the i-th.
+template <class Body>
+void forQuadsAmong(const SurfaceView& context, const std::vector<std::uint32_t>& quads,
+                   const BlockRange& range, const Body& body) {
+  std::size_t next = range.begin;
+  forQuads(context, context.topology.blocks[range.block], [&](const QuadPlace& place) {
+    if (next < range.end && quads[next] == place.quad) body(place, next++);
+  });
 }
 
 /// Whether one of a quad's vertices lies near or on a crease.

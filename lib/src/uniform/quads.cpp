@@ -134,27 +134,15 @@ LatticeCrossing crossingOf(const SurfaceView& context, const SurfaceBlock& block
   return {{point.x, point.y, point.z}, context.affine.axis(axis) * (place.upward ? 1.0 : -1.0)};
 }
 
-// Chooses the diagonals of the quads that `isMeant`.
-template <class IsMeant>
-void splitWhere(const SurfaceView& context, const IsMeant& isMeant, Mesh& mesh, base::Job& job) {
-  const CellTopology& topology = context.topology;
-  job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-    const auto accessor = context.blocks.accessor();
-    for (std::size_t i = begin; i < end; ++i) {
-      const SurfaceBlock& block = topology.blocks[i];
-      const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
-      if (std::none_of(first, first + block.quadCount, isMeant)) continue;
-      forQuads(context, block, [&](const QuadPlace& place) {
-        Quad& quad = mesh.quads[place.quad];
-        if (!isMeant(quad)) return;
-        const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
-        if (chooser.isSecondDiagonalBetterAtCrease(
-                context.sheets, [&] { return crossingOf(context, block, place, *accessor); })) {
-          turn(quad);
-        }
-      });
-    }
-  });
+// Makes a quad near creases start at an end of its better diagonal.
+void split(const SurfaceView& context, const SurfaceBlock& block, const QuadPlace& place,
+           grid::Accessor& accessor, Mesh& mesh) {
+  Quad& quad = mesh.quads[place.quad];
+  const SplitChooser chooser(mesh, quad, context.affine.voxelSize());
+  if (chooser.isSecondDiagonalBetterAtCrease(
+          context.sheets, [&] { return crossingOf(context, block, place, accessor); })) {
+    turn(quad);
+  }
 }
 
 }  // namespace
@@ -184,35 +172,46 @@ void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job) {
 }
 
 void splitAtCreases(const SurfaceView& context, Mesh& mesh, base::Job& job) {
-  splitWhere(
-      context, [&](const Quad& quad) { return isNearCrease(context.sheets, quad); }, mesh, job);
+  const CellTopology& topology = context.topology;
+  const auto isMeant = [&](const Quad& quad) { return isNearCrease(context.sheets, quad); };
+  job.forRanges(topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+    const auto accessor = context.blocks.accessor();
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = topology.blocks[i];
+      const auto first = mesh.quads.begin() + static_cast<std::ptrdiff_t>(block.firstQuad);
+      if (std::none_of(first, first + block.quadCount, isMeant)) continue;
+      forQuads(context, block, [&](const QuadPlace& place) {
+        if (isMeant(mesh.quads[place.quad])) split(context, block, place, *accessor, mesh);
+      });
+    }
+  });
 }
 
-void splitAgain(const SurfaceView& context, const std::vector<std::uint8_t>& marked, Mesh& mesh,
+void splitAgain(const SurfaceView& context, const std::vector<std::uint32_t>& quads, Mesh& mesh,
                 base::Job& job) {
-  splitWhere(
-      context,
-      [&](const Quad& quad) {
-        return std::any_of(quad.vertices.begin(), quad.vertices.end(),
-                           [&](VertexIndex vertex) { return marked[vertex] != 0; });
-      },
-      mesh, job);
+  const std::vector<BlockRange> ranges = blocksOfQuads(context.topology, quads);
+  job.forRanges(ranges.size(), 32, [&](std::size_t begin, std::size_t end) {
+    const auto accessor = context.blocks.accessor();
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceBlock& block = context.topology.blocks[ranges[i].block];
+      forQuadsAmong(context, quads, ranges[i], [&](const QuadPlace& place, std::size_t) {
+        split(context, block, place, *accessor, mesh);
+      });
+    }
+  });
 }
 
 std::vector<Position> quadCrossings(const SurfaceView& context,
                                     const std::vector<std::uint32_t>& quads, base::Job& job) {
   std::vector<Position> crossings(quads.size());
-  job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
+  const std::vector<BlockRange> ranges = blocksOfQuads(context.topology, quads);
+  job.forRanges(ranges.size(), 32, [&](std::size_t begin, std::size_t end) {
     const auto accessor = context.blocks.accessor();
     for (std::size_t i = begin; i < end; ++i) {
-      const SurfaceBlock& block = context.topology.blocks[i];
-      auto next = std::lower_bound(quads.begin(), quads.end(), block.firstQuad);
-      if (next == quads.end() || *next >= block.firstQuad + block.quadCount) continue;
-      forQuads(context, block, [&](const QuadPlace& place) {
-        if (next == quads.end() || *next != place.quad) return;
+      const SurfaceBlock& block = context.topology.blocks[ranges[i].block];
+      forQuadsAmong(context, quads, ranges[i], [&](const QuadPlace& place, std::size_t slot) {
         const Vec3 point = crossingOf(context, block, place, *accessor).point;
-        crossings[static_cast<std::size_t>(next - quads.begin())] = {point[0], point[1], point[2]};
-        ++next;
+        crossings[slot] = {point[0], point[1], point[2]};
       });
     }
   });

@@ -18,8 +18,8 @@ void connectQuads(const SurfaceView& context, Mesh& mesh, base::Job& job);
 /// where they will stay.
 void splitAtCreases(const SurfaceView& context, Mesh& mesh, base::Job& job);
 
-/// The same for all quads with a marked vertex.
-void splitAgain(const SurfaceView& context, const std::vector<std::uint8_t>& marked, Mesh& mesh,
+/// The same for some quads, given in rising order.
+void splitAgain(const SurfaceView& context, const std::vector<std::uint32_t>& quads, Mesh& mesh,
                 base::Job& job);
 
 /// Where the surface crosses the lattice edges of some quads, given in rising order, by linear

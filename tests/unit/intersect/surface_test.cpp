@@ -158,6 +158,59 @@ TEST(FindPairs, FindsAllPairsOfARandomSoup) {
   EXPECT_EQ(findPairs(surface, allOf(surface), job), expected);
 }
 
+// A crumpled sheet: most pairs of its quads share an edge or a vertex. What intersects once its
+// vertices are moved was close before.
+TEST(FindClosePairs, HoldsWhatComesToIntersect) {
+  constexpr int kSide = 12;
+  constexpr double kMargin = 0.2;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> place(-0.45, 0.45), height(-1, 1), way(-1, 1);
+  std::size_t later = 0, all = 0, close = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    Mesh mesh;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      mesh.positions.emplace_back(i % kSide + place(random), i / kSide + place(random),
+                                  height(random));
+    }
+    for (int y = 0; y + 1 < kSide; ++y) {
+      for (int x = 0; x + 1 < kSide; ++x) {
+        const auto at = static_cast<VertexIndex>(y * kSide + x);
+        mesh.quads.emplace_back(at, at + 1, at + kSide + 1, at + kSide);
+      }
+    }
+    base::Job job(2, {});
+    const Surface surface(mesh, job);
+    const ClosePairs found = findClosePairs(surface, allOf(surface), kMargin, job);
+    EXPECT_EQ(found.intersecting, findPairs(surface, allOf(surface), job));
+    const std::vector<PolygonPair>& pairs = found.close;
+    EXPECT_TRUE(std::includes(pairs.begin(), pairs.end(), found.intersecting.begin(),
+                              found.intersecting.end()));
+    EXPECT_EQ(intersectingAmong(pairs, mesh, mesh.positions), found.intersecting);
+    close += pairs.size();
+    for (int jitter = 0; jitter < 20; ++jitter) {
+      Mesh moved = mesh;
+      for (Position& p : moved.positions) {
+        Vec3 to(way(random), way(random), way(random));
+        if (!to.normalize()) continue;
+        p = Vec3(p) + to * (kMargin / 2);
+      }
+      const Surface other(moved, job);
+      const std::vector<PolygonPair> after = findPairs(other, allOf(other), job);
+      EXPECT_TRUE(std::includes(pairs.begin(), pairs.end(), after.begin(), after.end()));
+      EXPECT_EQ(intersectingAmong(pairs, mesh, moved.positions), after);
+      all += after.size();
+      for (const PolygonPair& pair : after) {
+        later += std::binary_search(found.intersecting.begin(), found.intersecting.end(), pair)
+                     ? 0U
+                     : 1U;
+      }
+    }
+  }
+  EXPECT_GT(later, 100U) << "pairs that only moving made";
+  EXPECT_GT(all, later);
+  EXPECT_LT(close, std::size_t{20} * kSide * kSide * 4) << "most pairs of neighbours are not";
+}
+
 TEST(PolygonsOf, AreThoseOfPairsAsOftenAsTheyOccur) {
   const Polygons polygons = polygonsOf({{1, 4}, {1, 1}, {2, 4}});
   EXPECT_EQ(std::count(polygons.begin(), polygons.end(), 4U), 2);

@@ -19,7 +19,7 @@ Mesh finished(const ContourOptions& options = {}, double moved = 0) {
   test::ModelOf model(grid, options);
   ExtractedMesh extracted;
   extracted.mesh = model.mesh();
-  extracted.candidates = model.model().candidates();
+  extracted.closePairs = model.model().closePairs();
   ContourReport report;
   finishMesh(model.model(), options, extracted, report, model.job());
   return std::move(extracted.mesh);
