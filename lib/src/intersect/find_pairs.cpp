@@ -2,6 +2,7 @@
 #include <array>
 #include <functional>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 #include "base/parallel.h"
@@ -80,8 +81,9 @@ struct Candidate {
   Box box;
 };
 
-// Polygons of a run that are compared with the candidates near them at once.
-constexpr PolygonIndex kGroup = 4;
+// Runs, and polygons of a run, that are compared with the candidates near them at once.
+constexpr std::size_t kRunsAtOnce = 8;
+constexpr PolygonIndex kAtOnce = 4;
 
 using Matters = std::function<bool(PolygonIndex, PolygonIndex)>;
 
@@ -105,57 +107,109 @@ void test(const Search& search, const PolygonPair& pair, ClosePairs& found) {
   if (intersectElsewhere(positions, a, b, same)) found.intersecting.push_back(pair);
 }
 
-// The pairs of the polygons of one run with the candidates near it. Boxes are compared in three
-// steps: run, group, polygon; so a candidate is compared with few polygons of a run that it does
-// not touch.
-void pairsOfRun(const Search& search, std::size_t run, const std::vector<Candidate>& near,
-                ClosePairs& found) {
-  const Surface& surface = search.surface;
-  const PolygonIndex begin = surface.runBegin(run), end = surface.runEnd(run);
-  std::array<bool, Surface::kRun> isCandidate{};
-  for (const Candidate& candidate : near) {
-    if (candidate.polygon >= begin && candidate.polygon < end)
-      isCandidate[candidate.polygon - begin] = true;
+// Without branches: which of two neighbours meet is hard to foretell.
+bool meet(const Box& a, const Box& b) {
+  int apart = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    apart |= static_cast<int>(a.lower[axis] > b.upper[axis]);
+    apart |= static_cast<int>(b.lower[axis] > a.upper[axis]);
   }
-  std::vector<Candidate> nearer;
-  for (PolygonIndex group = begin; group < end; group += kGroup) {
-    const PolygonIndex groupEnd = std::min(group + kGroup, end);
-    std::array<Box, kGroup> boxes;
-    Box all = Box::empty();
-    for (PolygonIndex p = group; p < groupEnd; ++p) {
-      boxes[p - group] = surface.box(p);
-      all.add(boxes[p - group]);
-    }
-    nearer.clear();
-    for (const Candidate& candidate : near) {
-      if (all.meets(candidate.box)) nearer.push_back(candidate);
-    }
-    for (PolygonIndex p = group; p < groupEnd; ++p) {
-      for (const Candidate& other : nearer) {
-        // Of two candidates, the higher one is found from the lower one.
-        if (!boxes[p - group].meets(other.box) || (isCandidate[p - begin] && other.polygon < p)) {
-          continue;
-        }
-        if (search.matters && !search.matters(p, other.polygon)) continue;
-        test(search, {std::min(p, other.polygon), std::max(p, other.polygon)}, found);
+  return apart == 0;
+}
+
+// Finds the pairs of the polygons of one section after another with the candidates around it. Boxes
+// are compared in steps, each of a part of what the step before has left: section, several runs,
+// run, several polygons, polygon. So a candidate is compared with few polygons that it does not
+// touch.
+class SectionSearch {
+ public:
+  SectionSearch(const Search& search, const base::Bvh& tree,
+                const std::vector<PolygonIndex>& candidates)
+      : search_(search), surface_(search.surface), tree_(tree), candidates_(candidates) {}
+
+  void run(std::size_t section) {
+    around_.clear();
+    tree_.itemsMeeting(surface_.sectionBox(section), [&](std::uint32_t i, const Box& box) {
+      around_.push_back({candidates_[i], box});
+    });
+    if (around_.empty()) return;
+    std::vector<std::uint32_t>& all = near_[0];
+    all.resize(around_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    const std::size_t end = surface_.sectionEnd(section);
+    for (std::size_t first = section * Surface::kSection; first < end; first += kRunsAtOnce) {
+      const std::size_t last = std::min(first + kRunsAtOnce, end);
+      Box box = Box::empty();
+      for (std::size_t run = first; run < last; ++run) box.add(surface_.runBox(run));
+      if (!narrow(1, box)) continue;
+      for (std::size_t run = first; run < last; ++run) {
+        if (narrow(2, surface_.runBox(run))) pairsOfRun(run);
       }
     }
   }
-}
+  [[nodiscard]] const ClosePairs& found() const { return found_; }
 
-}  // namespace
+ private:
+  // Takes those of the step before that meet a box. Whether there are any.
+  bool narrow(std::size_t step, const Box& box) {
+    const std::vector<std::uint32_t>& before = near_[step - 1];
+    std::vector<std::uint32_t>& near = near_[step];
+    near.resize(before.size());
+    std::size_t count = 0;
+    for (const std::uint32_t i : before) {
+      near[count] = i;
+      count += meet(box, around_[i].box) ? 1 : 0;
+    }
+    near.resize(count);
+    return count > 0;
+  }
 
-namespace {
+  void pairsOfRun(std::size_t run) {
+    const PolygonIndex begin = surface_.runBegin(run), end = surface_.runEnd(run);
+    std::array<bool, Surface::kRun> isCandidate{};
+    for (const std::uint32_t i : near_[2]) {
+      const PolygonIndex polygon = around_[i].polygon;
+      if (polygon >= begin && polygon < end) isCandidate[polygon - begin] = true;
+    }
+    for (PolygonIndex first = begin; first < end; first += kAtOnce) {
+      const PolygonIndex last = std::min(first + kAtOnce, end);
+      std::array<Box, kAtOnce> boxes;
+      Box all = Box::empty();
+      for (PolygonIndex p = first; p < last; ++p) {
+        boxes[p - first] = surface_.box(p);
+        all.add(boxes[p - first]);
+      }
+      if (!narrow(3, all)) continue;
+      for (PolygonIndex p = first; p < last; ++p) {
+        if (!narrow(4, boxes[p - first])) continue;
+        for (const std::uint32_t i : near_[4]) {
+          const PolygonIndex other = around_[i].polygon;
+          // Of two candidates, the higher one is found from the lower one.
+          if (isCandidate[p - begin] && other < p) continue;
+          if (search_.matters && !search_.matters(p, other)) continue;
+          test(search_, {std::min(p, other), std::max(p, other)}, found_);
+        }
+      }
+    }
+  }
+
+  const Search& search_;
+  const Surface& surface_;
+  const base::Bvh& tree_;
+  const std::vector<PolygonIndex>& candidates_;
+  std::vector<Candidate> around_;
+  std::array<std::vector<std::uint32_t>, 5> near_;  // of these, after each step
+  ClosePairs found_;
+};
 
 ClosePairs find(const Search& search, const std::vector<PolygonIndex>& candidates, base::Job& job) {
   const Surface& surface = search.surface;
-  const double margin = search.margin;
   std::vector<Box> boxes(candidates.size());
   job.forRanges(candidates.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       boxes[i] = surface.box(candidates[i]);
-      boxes[i].lower -= Vec3(margin);
-      boxes[i].upper += Vec3(margin);
+      boxes[i].lower -= Vec3(search.margin);
+      boxes[i].upper += Vec3(search.margin);
     }
   });
   // The tree is over the candidates, which are few; sections of all polygons are looked up in it.
@@ -164,23 +218,9 @@ ClosePairs find(const Search& search, const std::vector<PolygonIndex>& candidate
   ClosePairs all;
   std::mutex mutex;
   job.forRanges(surface.sectionCount(), 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<Candidate> around, near;
-    ClosePairs found;
-    for (std::size_t section = begin; section < end; ++section) {
-      around.clear();
-      tree.itemsMeeting(surface.sectionBox(section), [&](std::uint32_t i, const Box& box) {
-        around.push_back({candidates[i], box});
-      });
-      if (around.empty()) continue;
-      for (std::size_t run = section * Surface::kSection; run < surface.sectionEnd(section);
-           ++run) {
-        near.clear();
-        for (const Candidate& candidate : around) {
-          if (candidate.box.meets(surface.runBox(run))) near.push_back(candidate);
-        }
-        if (!near.empty()) pairsOfRun(search, run, near, found);
-      }
-    }
+    SectionSearch some(search, tree, candidates);
+    for (std::size_t section = begin; section < end; ++section) some.run(section);
+    const ClosePairs& found = some.found();
     const std::scoped_lock lock(mutex);
     all.intersecting.insert(all.intersecting.end(), found.intersecting.begin(),
                             found.intersecting.end());

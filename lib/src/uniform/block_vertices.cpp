@@ -66,6 +66,26 @@ void BlockVertices::gather(const grid::Blocks& blocks, const CellTopology& topol
   const CornerWords corners = blocks.cornerWords(block.neighbours);
   samples_.gather(blocks, scale_, block.block, block.neighbours, accessor);
   numberVertices(topology, block, corners);
+  isPart_ = false;
+  addAllEdges(corners);
+}
+
+void BlockVertices::gatherFor(std::span<const VertexIndex> vertices, const grid::Blocks& blocks,
+                              const CellTopology& topology, const SurfaceBlock& block,
+                              grid::Accessor& accessor) {
+  const CornerWords corners = blocks.cornerWords(block.neighbours);
+  samples_.gather(blocks, scale_, block.block, block.neighbours, accessor);
+  numberVertices(topology, block, corners);
+  isPart_ = true;
+  grid::BlockBits wanted{};
+  for (const VertexIndex vertex : vertices) wanted.set(cells_[vertex]);
+  for (const std::uint16_t cell : cells_) {
+    if (!wanted.get(cell)) firstVertexOf_[slotOf(cell)] = kNobody;
+  }
+  addAllEdges(corners);
+}
+
+void BlockVertices::addAllEdges(const CornerWords& corners) {
   addEdges<0>(corners);
   addEdges<1>(corners);
   addEdges<2>(corners);
@@ -127,8 +147,26 @@ void BlockVertices::collectEdges(const CornerWords& corners) {
 }
 
 template <int axis>
+void BlockVertices::dropEdgesOfNobody() {
+  constexpr auto kOther = otherAxes(axis);
+  constexpr int kBack0 = BlockSamples::stride(kOther[0]), kBack1 = BlockSamples::stride(kOther[1]);
+  int kept = 0;
+  for (int i = 0; i < edgeCount_; ++i) {
+    const int cell = edges_[i];
+    edges_[kept] = edges_[i];
+    kept += firstVertexOf_[cell] != kNobody || firstVertexOf_[cell - kBack0] != kNobody ||
+                    firstVertexOf_[cell - kBack1] != kNobody ||
+                    firstVertexOf_[cell - kBack0 - kBack1] != kNobody
+                ? 1
+                : 0;
+  }
+  edgeCount_ = kept;
+}
+
+template <int axis>
 void BlockVertices::addEdges(const CornerWords& corners) {
   collectEdges<axis>(corners);
+  if (isPart_) dropEdgesOfNobody<axis>();
   CrossingBatch batch;
   for (int first = 0; first < edgeCount_; first += CrossingBatch::kSize) {
     const int count = std::min(edgeCount_ - first, CrossingBatch::kSize);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "grid/field.h"
@@ -28,6 +29,9 @@ class BlockVertices {
   /// The first half of place(): what massPoint() and plainPoint() need.
   void gather(const grid::Blocks& blocks, const CellTopology& topology, const SurfaceBlock& block,
               grid::Accessor& accessor);
+  /// The same for some of the block's vertices alone, counted inside it.
+  void gatherFor(std::span<const VertexIndex> vertices, const grid::Blocks& blocks,
+                 const CellTopology& topology, const SurfaceBlock& block, grid::Accessor& accessor);
 
   /// Surface cell of each vertex of the block, in their order.
   [[nodiscard]] const std::vector<std::uint16_t>& cells() const { return cells_; }
@@ -62,12 +66,15 @@ class BlockVertices {
   static constexpr int kMostEdges =
       grid::kBlockSize * (grid::kBlockSize + 1) * (grid::kBlockSize + 1);
 
+  void addAllEdges(const grid::CornerWords& corners);
   void numberVertices(const CellTopology& topology, const SurfaceBlock& block,
                       const grid::CornerWords& corners);
   template <int axis>
   void addEdges(const grid::CornerWords& corners);
   template <int axis>
   void collectEdges(const grid::CornerWords& corners);
+  template <int axis>
+  void dropEdgesOfNobody();
   template <int axis>
   void addCrossing(int slot, const Qef& plane, Kink kink);
   void solveVertices();
@@ -78,6 +85,7 @@ class BlockVertices {
   CrossingFinder finder_;
   CreaseCell creaseCell_;
   bool special_ = false;
+  bool isPart_ = false;  ///< not all cells have a vertex in firstVertexOf_
   std::array<std::uint16_t, kSlots> firstVertexOf_{};                   ///< kNobody, or number + 1
   std::array<Components, kSlots> componentsOf_{};                       ///< if special_
   std::array<std::uint16_t, kSlots> openEdgesOf_{};                     ///< if special_

@@ -76,10 +76,15 @@ FallbackPoints fallbackPoints(const grid::Blocks& blocks, const grid::FieldScale
   job.forRanges(ranges.size(), 16, [&](std::size_t begin, std::size_t end) {
     const auto accessor = blocks.accessor();
     BlockVertices work(scale);
+    std::vector<VertexIndex> wanted;
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = topology.blocks[ranges[i].block];
       const Coord& origin = blocks.origin(block.block);
-      work.gather(blocks, topology, block, *accessor);
+      wanted.clear();
+      for (std::size_t slot = ranges[i].begin; slot < ranges[i].end; ++slot) {
+        wanted.push_back(static_cast<VertexIndex>(vertices[slot] - block.firstVertex));
+      }
+      work.gatherFor(wanted, blocks, topology, block, *accessor);
       for (std::size_t slot = ranges[i].begin; slot < ranges[i].end; ++slot) {
         const std::size_t vertex = vertices[slot] - block.firstVertex;
         points.plain[slot] = inCell(affine, origin, work.cells()[vertex], work.plainPoint(vertex));
