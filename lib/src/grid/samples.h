@@ -62,6 +62,7 @@ class SampleReader {
 class BlockSamples {
  public:
   static constexpr int kSize = kBlockSize + 3;
+  static constexpr int kCount = kSize * kSize * kSize;
   static constexpr int kStrideX = kSize * kSize;
   static constexpr int kStrideY = kSize;
 
@@ -80,7 +81,7 @@ class BlockSamples {
               const Neighbours& neighbours, Accessor& accessor);
 
  private:
-  std::array<float, kSize * kSize * kSize> values_;
+  std::array<float, kCount> values_;
 };
 
 }  // namespace tufa::grid

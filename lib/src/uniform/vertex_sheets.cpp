@@ -15,7 +15,7 @@ MeetingSheets VertexSheets::sheets(const Mesh& mesh, VertexIndex vertex) const {
     case Kind::Unknown:
       return {};
     case Kind::Meeting:
-      return meeting_.at(vertex);
+      return entries_[entryOf_[vertex] - 1];
     default:
       break;
   }

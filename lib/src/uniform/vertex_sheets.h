@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "base/vec3.h"
@@ -21,7 +20,8 @@ struct MeetingSheets {
 /// The smooth sheets of the surface that each vertex of a mesh lies on.
 ///
 /// Almost every vertex lies on one, whose normal is the vertex's own; only vertices on creases and
-/// corners have an entry. Cost: two bytes a vertex, and the entries.
+/// corners have an entry. Cost: two bytes a vertex; where there are creases four more, and the
+/// entries.
 class VertexSheets {
  public:
   /// How a vertex lies to creases.
@@ -47,20 +47,24 @@ class VertexSheets {
   /// May be called from several threads.
   void setOutOfCell(VertexIndex vertex) { outOfCell_[vertex] = 1; }
   void setMeeting(VertexIndex vertex, const MeetingSheets& sheets) {
+    if (entryOf_.empty()) entryOf_.resize(kinds_.size(), 0);
+    std::uint32_t& entry = entryOf_[vertex];
+    if (entry == 0) {
+      entries_.emplace_back();
+      entry = static_cast<std::uint32_t>(entries_.size());
+    }
+    entries_[entry - 1] = sheets;
     kinds_[vertex] = Kind::Meeting;
-    meeting_[vertex] = sheets;
   }
   /// Takes back a place at a crease: the vertex is in its cell again, and on no known crease.
   void withdraw(VertexIndex vertex) {
     outOfCell_[vertex] = 0;
     if (isSharp(vertex)) kinds_[vertex] = Kind::Unknown;
-    meeting_.erase(vertex);
   }
   /// The vertex has left its cell for a place on no crease.
   void moveOffCrease(VertexIndex vertex) {
     outOfCell_[vertex] = 1;
     kinds_[vertex] = Kind::Near;
-    meeting_.erase(vertex);
   }
   /// The sheets of a vertex; count 0 if they are unknown.
   [[nodiscard]] MeetingSheets sheets(const Mesh& mesh, VertexIndex vertex) const;
@@ -70,7 +74,8 @@ class VertexSheets {
  private:
   std::vector<Kind> kinds_;
   std::vector<std::uint8_t> outOfCell_;  // bytes, as threads set their own
-  std::unordered_map<VertexIndex, MeetingSheets> meeting_;
+  std::vector<std::uint32_t> entryOf_;  // of vertices on creases, counted from 1; empty: none is
+  std::vector<MeetingSheets> entries_;
 };
 
 /// The sheets around one quad: those of its corners, equal ones merged.
