@@ -19,6 +19,7 @@ template <class ForPairs>
     return i;
   };
   forPairs([&](std::uint32_t first, std::uint32_t second) {
+    if (parents[first] == parents[second]) return;
     const std::uint32_t a = rootOf(first), b = rootOf(second);
     parents[std::max(a, b)] = std::min(a, b);
   });

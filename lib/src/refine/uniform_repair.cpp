@@ -16,6 +16,9 @@ namespace {
 
 // How often misplaced components are put back.
 constexpr int kMostPutBack = 3;
+// Vertices of the largest component that may be passed. Vertices move by less than two voxels; what
+// they can pass as a whole lies in five cells along each axis, of up to four vertices each.
+constexpr std::size_t kMostSmall = 500;
 
 class UniformRepair {
  public:
@@ -69,7 +72,7 @@ class UniformRepair {
         surface_.volume.blocks.isPart()) {
       return {};
     }
-    std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_);
+    std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_, kMostSmall);
     if (misplaced.empty()) return misplaced;
     const std::vector<Position> fallbacks = sourceOf(surface_, job_).massPoints(misplaced);
     for (std::size_t i = 0; i < misplaced.size(); ++i) {

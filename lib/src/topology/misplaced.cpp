@@ -141,10 +141,16 @@ std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
   });
 }
 
-std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
+std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::size_t mostVertices) {
   const std::vector<VertexIndex> names = connectedComponentsOf(mesh);
   std::vector<VertexIndex> misplaced;
   if (std::all_of(names.begin(), names.end(), [](VertexIndex name) { return name == 0; })) {
+    return misplaced;
+  }
+  std::vector<std::uint32_t> sizes(names.size(), 0);
+  for (const VertexIndex name : names) ++sizes[name];
+  if (std::none_of(sizes.begin(), sizes.end(),
+                   [&](std::uint32_t size) { return size > 0 && size <= mostVertices; })) {
     return misplaced;
   }
   const Pieces components(mesh, names, job);
@@ -161,7 +167,9 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job) {
   };
   std::vector<std::uint8_t> wrong(names.size(), 0);
   job.forRanges(names.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) wrong[i] = names[i] == i && isWrong(i) ? 1 : 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      wrong[i] = names[i] == i && sizes[i] <= mostVertices && isWrong(i) ? 1 : 0;
+    }
   });
   // A component some of whose vertices are right intersects another one: it is not misplaced as a
   // whole. Only components whose first vertex is wrong are tested vertex by vertex.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "base/job.h"
@@ -19,9 +21,11 @@ namespace tufa::topology {
 /// volume, which lies in no other, tells what the outermost direction is. So a component is right
 /// if the number of others around it is odd exactly if its volume has the other sign. Components
 /// that intersect others are not reported; they are left to repair. Every component that lies
-/// wholly on the wrong side is found. Cost: one pass for components and volumes, one ray for each
-/// component, and one for each vertex of those that seem wrong; nothing if there is only one
-/// component.
-[[nodiscard]] std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job);
+/// wholly on the wrong side is found, but for those of more than `mostVertices`. Cost: one pass for
+/// components and volumes, one ray for each component, and one for each vertex of those that seem
+/// wrong; one pass if there is only one component, or all are larger.
+[[nodiscard]] std::vector<VertexIndex> findMisplaced(
+    const Mesh& mesh, base::Job& job,
+    std::size_t mostVertices = std::numeric_limits<std::size_t>::max());
 
 }  // namespace tufa::topology

@@ -7,9 +7,11 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "uniform/point_grid.h"
+#include "uniform/quad_places.h"
 
 namespace tufa::uniform {
 namespace {
@@ -64,16 +66,19 @@ std::optional<Vec3> onAll(const Plane& a, const Plane& b, const Plane& c) {
 
 class CreaseSnapper {
  public:
-  CreaseSnapper(Mesh& mesh, VertexSheets& sheets, double voxelSize)
-      : mesh_(mesh), sheets_(sheets), voxelSize_(voxelSize), corners_(kSameCorner * voxelSize) {}
+  CreaseSnapper(Mesh& mesh, VertexSheets& sheets, double voxelSize, const QuadsAt& quadsAt)
+      : mesh_(mesh),
+        sheets_(sheets),
+        voxelSize_(voxelSize),
+        quadsAt_(quadsAt),
+        corners_(kSameCorner * voxelSize) {}
 
   std::size_t run(base::Job& job) {
     collectCorners();
-    touched_.resize(mesh_.positions.size());
+    isTouched_.resize(mesh_.positions.size());
     std::size_t moved = 0;
     for (int round = 0; round < kRounds; ++round) {
-      std::vector<Move> moves = findMoves(round == 0, job);
-      std::fill(touched_.begin(), touched_.end(), 0);
+      std::vector<Move> moves = round == 0 ? findMoves(job) : findMovesAgain(job);
       dropContested(moves);
       std::size_t inRound = 0;
       for (const Move& move : moves) {
@@ -105,25 +110,41 @@ class CreaseSnapper {
 
   [[nodiscard]] bool isCorner(const Vec3& point) const { return corners_.hasNear(point); }
 
-  // Finds the snap of each quad that needs one. After the first round only quads with a vertex
-  // moved in the last one, or whose snap had to wait, can need one.
-  std::vector<Move> findMoves(bool first, base::Job& job) const {
+  // Finds the snap of each quad that needs one.
+  std::vector<Move> findMoves(base::Job& job) const {
+    return findMovesAmong(mesh_.quads.size(), job, [&](std::size_t i, std::vector<Move>& found) {
+      if (!isNearCrease(sheets_, mesh_.quads[i])) return;
+      if (auto move = moveFor(i)) found.push_back(*move);
+    });
+  }
+
+  // After the first round only quads with a vertex moved in the last one, or whose snap had to
+  // wait, can need one.
+  std::vector<Move> findMovesAgain(base::Job& job) {
+    std::sort(touched_.begin(), touched_.end());
+    const std::vector<std::uint32_t> quads = quadsAt_(touched_, isTouched_);
+    for (const VertexIndex vertex : touched_) isTouched_[vertex] = 0;
+    touched_.clear();
+    return findMovesAmong(quads.size(), job, [&](std::size_t i, std::vector<Move>& found) {
+      if (auto move = moveFor(quads[i])) found.push_back(*move);
+    });
+  }
+
+  template <class Find>
+  static std::vector<Move> findMovesAmong(std::size_t count, base::Job& job, const Find& find) {
     std::vector<Move> moves;
     std::mutex mutex;
-    job.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    job.forRanges(count, 4096, [&](std::size_t begin, std::size_t end) {
       std::vector<Move> found;
-      for (std::size_t quad = begin; quad < end; ++quad) {
-        const auto& v = mesh_.quads[quad].vertices;
-        const bool near = std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
-          return first ? sheets_.kind(vertex) != VertexSheets::Kind::Smooth : touched_[vertex] != 0;
-        });
-        if (!near) continue;
-        if (auto move = moveFor(quad)) found.push_back(*move);
-      }
+      for (std::size_t i = begin; i < end; ++i) find(i, found);
       const std::scoped_lock lock(mutex);
       moves.insert(moves.end(), found.begin(), found.end());
     });
     return moves;
+  }
+
+  void touch(VertexIndex vertex) {
+    if (std::exchange(isTouched_[vertex], std::uint8_t{1}) == 0) touched_.push_back(vertex);
   }
 
   // Keeps the snaps that wait for none: no lower one moves a vertex of the same quad. So the kept
@@ -140,7 +161,7 @@ class CreaseSnapper {
       const bool waits = std::any_of(
           v.begin(), v.end(), [&](VertexIndex vertex) { return lowest_[vertex] < move.order; });
       if (waits) {
-        touched_[v[0]] = 1;
+        touch(v[0]);
       } else {
         kept.push_back(move);
       }
@@ -272,7 +293,7 @@ class CreaseSnapper {
   }
 
   void apply(const Move& move) {
-    touched_[move.vertex] = 1;
+    touch(move.vertex);
     mesh_.positions[move.vertex] = {move.point[0], move.point[1], move.point[2]};
     Vec3 sum(0);
     for (int i = 0; i < move.sheets.count; ++i) {
@@ -288,16 +309,19 @@ class CreaseSnapper {
   Mesh& mesh_;
   VertexSheets& sheets_;
   double voxelSize_;
+  const QuadsAt& quadsAt_;
   PointGrid corners_;
-  std::vector<std::uint8_t> touched_;  // vertices around which the next round looks
+  std::vector<VertexIndex> touched_;     // around which the next round looks
+  std::vector<std::uint8_t> isTouched_;  // of each vertex
   static constexpr std::uint64_t kNoMove = std::numeric_limits<std::uint64_t>::max();
   std::vector<std::uint64_t> lowest_;  // order of the moves of each vertex, kNoMove between rounds
 };
 
 }  // namespace
 
-std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job) {
-  return CreaseSnapper(mesh, sheets, voxelSize).run(job);
+std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize,
+                          const QuadsAt& quadsAt, base::Job& job) {
+  return CreaseSnapper(mesh, sheets, voxelSize, quadsAt).run(job);
 }
 
 }  // namespace tufa::uniform

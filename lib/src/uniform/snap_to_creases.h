@@ -2,6 +2,9 @@
 
 #include <tufa/mesh.h>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "base/job.h"
 #include "uniform/vertex_sheets.h"
@@ -19,8 +22,11 @@ namespace tufa::uniform {
 ///
 /// Promised: a vertex depends on what is within six rounds of two cells each, and not on where the
 /// mesh begins, so a part of a grid gets the same vertices as the whole. Polygons may intersect
-/// afterwards; repair removes that. Cost: one pass over the quads; later rounds compute only around
-/// the vertices moved before.
-std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job);
+/// afterwards; repair removes that. Cost: one pass over the quads; later rounds look only around
+/// the vertices moved before. `quadsAt`: as the function of that name in uniform/block_ranges.h.
+using QuadsAt = std::function<std::vector<std::uint32_t>(const std::vector<VertexIndex>& vertices,
+                                                         const std::vector<std::uint8_t>& marks)>;
+std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize,
+                          const QuadsAt& quadsAt, base::Job& job);
 
 }  // namespace tufa::uniform

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "uniform/block_ranges.h"
 #include "uniform/place_vertices.h"
 #include "uniform/quads.h"
 #include "uniform/snap_to_creases.h"
@@ -44,7 +45,12 @@ UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& opt
   connectQuads(surface.view(), surface.mesh, job);
   job.beginStage("creases", ends.creases);
   if (scale.distance) {
-    snapToCreases(surface.mesh, surface.sheets, surface.affine().voxelSize(), job);
+    snapToCreases(
+        surface.mesh, surface.sheets, surface.affine().voxelSize(),
+        [&](const std::vector<VertexIndex>& vertices, const std::vector<std::uint8_t>& marks) {
+          return quadsAt(surface.topology, surface.mesh, vertices, marks, job);
+        },
+        job);
     splitAtCreases(surface.view(), surface.mesh, job);
   }
   return surface;

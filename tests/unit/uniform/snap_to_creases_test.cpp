@@ -17,6 +17,19 @@ const float kHalf = std::sqrt(0.5F);
 const Normal kLeft(-kHalf, 0, kHalf);
 const Normal kRight(kHalf, 0, kHalf);
 
+std::size_t snap(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job) {
+  const auto quadsAt = [&](const std::vector<VertexIndex>&,
+                           const std::vector<std::uint8_t>& marks) {
+    std::vector<std::uint32_t> quads;
+    for (std::uint32_t i = 0; i < mesh.quads.size(); ++i) {
+      const auto& v = mesh.quads[i].vertices;
+      if ((marks[v[0]] | marks[v[1]] | marks[v[2]] | marks[v[3]]) != 0) quads.push_back(i);
+    }
+    return quads;
+  };
+  return snapToCreases(mesh, sheets, voxelSize, quadsAt, job);
+}
+
 /// A roof with its ridge along y at x = 0, z = 0, and quads that step over it.
 struct Roof {
   Mesh mesh;
@@ -69,7 +82,7 @@ TEST(PromoteToCreases, MovesTheNearestVerticesOntoTheRidge) {
   Roof roof;
   const Mesh before = roof.mesh;
   base::Job job(2, {});
-  const std::size_t moved = snapToCreases(roof.mesh, roof.sheets, 1, job);
+  const std::size_t moved = snap(roof.mesh, roof.sheets, 1, job);
   EXPECT_GT(moved, 0U);
   EXPECT_EQ(moved, roof.sheets.sharpCount());
   for (VertexIndex v = 0; v < before.positions.size(); ++v) {
@@ -128,7 +141,7 @@ TEST(PromoteToCreases, DependsOnWhatIsNearAlone) {
   const auto promote = [](int from, int to) {
     Band band(from, to);
     base::Job job(2, {});
-    EXPECT_GT(snapToCreases(band.mesh, band.sheets, 1, job), 0U);
+    EXPECT_GT(snap(band.mesh, band.sheets, 1, job), 0U);
     return band.mesh;
   };
   const Mesh whole = promote(0, 400);
@@ -143,14 +156,14 @@ TEST(PromoteToCreases, DependsOnWhatIsNearAlone) {
 TEST(PromoteToCreases, LeavesWhatIsTooFar) {
   Roof roof;
   base::Job job(1, {});
-  EXPECT_EQ(snapToCreases(roof.mesh, roof.sheets, 0.2, job), 0U);  // in voxels of a fifth
+  EXPECT_EQ(snap(roof.mesh, roof.sheets, 0.2, job), 0U);  // in voxels of a fifth
 }
 
 TEST(PromoteToCreases, LeavesSmoothVertices) {
   Roof roof;
   roof.sheets = VertexSheets(roof.mesh.positions.size());
   base::Job job(1, {});
-  EXPECT_EQ(snapToCreases(roof.mesh, roof.sheets, 1, job), 0U);
+  EXPECT_EQ(snap(roof.mesh, roof.sheets, 1, job), 0U);
 }
 
 }  // namespace
