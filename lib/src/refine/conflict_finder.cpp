@@ -36,15 +36,15 @@ constexpr double kAsSharp = 0.03;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
 
-// The indices below `count` that `isMeant`, in rising order.
-template <class IsMeant>
-std::vector<std::uint32_t> collect(base::Job& job, std::size_t count, const IsMeant& isMeant) {
+// What add(i, list) adds for the indices i below `count`, in rising order.
+template <class Add>
+std::vector<std::uint32_t> collect(base::Job& job, std::size_t count, const Add& add) {
   std::vector<std::uint32_t> all;
   std::mutex mutex;
   job.forRanges(count, 4096, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> found;
     for (std::size_t i = begin; i < end; ++i) {
-      if (isMeant(static_cast<std::uint32_t>(i))) found.push_back(static_cast<std::uint32_t>(i));
+      add(static_cast<std::uint32_t>(i), found);
     }
     const std::scoped_lock lock(mutex);
     all.insert(all.end(), found.begin(), found.end());
@@ -86,11 +86,12 @@ std::vector<Conflict> ConflictFinder::findCoincident() {
       }
     }
   };
-  for (const std::uint32_t quad : collect(job_, mesh_.quads.size(), [&](std::uint32_t at) {
-         bool any = false;
-         visit(at, [&](VertexIndex, VertexIndex) { any = true; });
-         return any;
-       })) {
+  const auto add = [&](std::uint32_t quad, std::vector<std::uint32_t>& found) {
+    bool any = false;
+    visit(quad, [&](VertexIndex, VertexIndex) { any = true; });
+    if (any) found.push_back(quad);
+  };
+  for (const std::uint32_t quad : collect(job_, mesh_.quads.size(), add)) {
     visit(quad, [&](VertexIndex a, VertexIndex b) {
       conflicts.push_back({Conflict::Kind::SamePoint, {quad, quad}, {a, b}});
     });
@@ -101,8 +102,10 @@ std::vector<Conflict> ConflictFinder::findCoincident() {
 std::vector<Conflict> ConflictFinder::findEverywhere() {
   std::vector<Conflict> conflicts;
   if (!mesh_.normals.empty()) {
-    addFolds(collect(job_, 2 * mesh_.quads.size(), [&](std::uint32_t face) { return isOff(face); }),
-             conflicts);
+    const auto add = [&](std::uint32_t quad, std::vector<std::uint32_t>& off) {
+      addOff(quad, off);
+    };
+    addFolds(collect(job_, mesh_.quads.size(), add), conflicts);
   }
   candidates_ = intersect::findCandidates(surface_.view(), mesh_, margin_, job_);
   addPairs(intersect::findClosePairs(polygons_, candidates_, margin_, job_), conflicts);
@@ -121,11 +124,8 @@ std::vector<Conflict> ConflictFinder::findAroundMoved(Pairs which) {
   std::vector<Conflict> conflicts;
   if (!mesh_.normals.empty()) {
     std::vector<std::uint32_t> off;
-    for (const std::uint32_t quad : quadsAt(intersect::verticesOf(mesh_, touched_))) {
-      for (const std::uint32_t face : {2 * quad, 2 * quad + 1}) {
-        if (isOff(face)) off.push_back(face);
-      }
-    }
+    for (const std::uint32_t quad : quadsAt(intersect::verticesOf(mesh_, touched_)))
+      addOff(quad, off);
     addFolds(off, conflicts);
   }
   std::vector<std::uint32_t> others, all;
@@ -222,15 +222,28 @@ Vec3 ConflictFinder::normalOf(std::uint32_t face) const {
   return (pointOf(t.vertices[1]) - a).cross(pointOf(t.vertices[2]) - a);
 }
 
-// Whether a triangle is more than 70 degrees off the normal of one of its vertices.
-bool ConflictFinder::isOff(std::uint32_t face) const {
-  const Vec3 normal = normalOf(face);
-  const double least = kOffNormal * kOffNormal * normal.squaredLength();
-  for (const VertexIndex vertex : cornersOf(face).vertices) {
-    const double along = normal.dot(Vec3(mesh_.normals[vertex]));
-    if (along <= 0 || along * along < least) return true;
+// Which of a quad's triangles are more than 70 degrees off the normal of one of their vertices.
+ConflictFinder::Off ConflictFinder::offIn(std::uint32_t quad) const {
+  const auto& v = mesh_.quads[quad].vertices;
+  const Vec3 a = pointOf(v[0]), diagonal = pointOf(v[2]) - a;
+  const std::array<Vec3, 2> normals = {(pointOf(v[1]) - a).cross(diagonal),
+                                       diagonal.cross(pointOf(v[3]) - a)};
+  const Vec3 first(mesh_.normals[v[0]]), third(mesh_.normals[v[2]]);
+  Off off{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3& normal = normals[i];
+    const Vec3 own(mesh_.normals[v[2 * i + 1]]);
+    const double least = std::min({normal.dot(first), normal.dot(third), normal.dot(own)});
+    off[i] = least <= 0 || least * least < kOffNormal * kOffNormal * normal.squaredLength();
   }
-  return false;
+  return off;
+}
+
+void ConflictFinder::addOff(std::uint32_t quad, std::vector<std::uint32_t>& faces) const {
+  const Off off = offIn(quad);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    if (off[i]) faces.push_back(2 * quad + i);
+  }
 }
 
 bool ConflictFinder::isWithin(double voxels, VertexIndex a, VertexIndex b) const {
@@ -239,7 +252,9 @@ bool ConflictFinder::isWithin(double voxels, VertexIndex a, VertexIndex b) const
 }
 
 bool ConflictFinder::isTurnedOver(std::uint32_t quad) const {
-  return !mesh_.normals.empty() && (isOff(2 * quad) || isOff(2 * quad + 1));
+  if (mesh_.normals.empty()) return false;
+  const Off off = offIn(quad);
+  return off[0] || off[1];
 }
 
 bool ConflictFinder::isFold(const EdgeFace& a, const EdgeFace& b) const {

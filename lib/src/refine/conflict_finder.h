@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -55,7 +56,9 @@ class ConflictFinder {
   [[nodiscard]] Triangle cornersOf(std::uint32_t face) const;
   [[nodiscard]] Vec3 pointOf(VertexIndex vertex) const { return Vec3(mesh_.positions[vertex]); }
   [[nodiscard]] Vec3 normalOf(std::uint32_t face) const;
-  [[nodiscard]] bool isOff(std::uint32_t face) const;
+  using Off = std::array<bool, 2>;  // of a quad's triangles
+  [[nodiscard]] Off offIn(std::uint32_t quad) const;
+  void addOff(std::uint32_t quad, std::vector<std::uint32_t>& faces) const;
   [[nodiscard]] bool isFold(const EdgeFace& a, const EdgeFace& b) const;
   [[nodiscard]] bool isSharpAt(VertexIndex vertex, const Vec3& na, const Vec3& nb) const;
   void addFolds(const std::vector<std::uint32_t>& off, std::vector<Conflict>& conflicts);
