@@ -6,6 +6,7 @@
 
 #include "base/polygons.h"
 #include "base/small_angles.h"
+#include "intersect/cut_candidates.h"
 #include "intersect/surface.h"
 #include "refine/cut_distance.h"
 #include "refine/rounding.h"
@@ -14,6 +15,9 @@
 
 namespace tufa::refine {
 namespace {
+
+// One in so many is few.
+constexpr std::size_t kFew = 50;
 
 std::vector<VertexIndex> baseVerticesOf(const octree::Cut& cut) {
   std::vector<VertexIndex> vertices;
@@ -68,9 +72,12 @@ std::vector<intersect::PolygonIndex> polygonsAt(const Mesh& mesh,
   return polygons;
 }
 
-// The vertices of polygons that intersect once the mesh is finished as finishMesh() does.
+// Of the pairs of which one polygon is among `first` and one among `second`, and which intersect
+// once the mesh is finished as finishMesh() does, the vertices. `first` is a list; `second` tells
+// of each polygon, and is empty if it is all.
 std::vector<VertexIndex> meetingVertices(const Mesh& mesh,
-                                         const std::vector<intersect::PolygonIndex>& candidates,
+                                         const std::vector<intersect::PolygonIndex>& first,
+                                         const std::vector<std::uint8_t>& second,
                                          const grid::Affine& affine, base::Job& job) {
   Mesh world;
   world.positions = mesh.positions;
@@ -79,7 +86,10 @@ std::vector<VertexIndex> meetingVertices(const Mesh& mesh,
   (void)takeToWorld(world, affine, job);
   const intersect::Surface surface(world, job);
   return intersect::verticesOf(
-      world, intersect::polygonsOf(intersect::findPairs(surface, candidates, job)));
+      world, intersect::polygonsOf(intersect::findPairs(
+                 surface, first, job, [&](intersect::PolygonIndex a, intersect::PolygonIndex b) {
+                   return second.empty() || second[a] != 0 || second[b] != 0;
+                 })));
 }
 
 // Makes the coarsest cut found that keeps the rule.
@@ -97,9 +107,7 @@ class Cutter {
     do {
       makeNext();
       ++adaptive_.rounds;
-    } while (split(distance_.measure(cut_, made_, changedVertices(before_, cut_))) ||
-             split(distance_.findUncovered(cut_, made_)) ||
-             (model_.repairs() && (split(findMeeting()) || split(findMisplaced()))));
+    } while (splitWhereNeeded());
     const uniform::SurfaceView base = model_.view();
     adaptive_.leaves = octree::collectLeaves(forest_, base.topology, merged_);
     if (drop) (void)dropComponents(base, rule_, cut_, made_, adaptive_.dropped);
@@ -116,15 +124,40 @@ class Cutter {
     made_ = octree::meshCut(forest_, cut_, base.mesh, base.affine, job_);
   }
 
+  // Where few cells are too far off, intersections are looked for in the same round. Whether any
+  // cell was split.
+  bool splitWhereNeeded() {
+    const std::vector<VertexIndex> coarse =
+        distance_.measure(cut_, made_, changedVertices(before_, cut_));
+    const bool hasSplit = split(coarse);
+    if (hasSplit && coarse.size() * kFew > cut_.clusters.size()) return true;
+    if ((model_.repairs() && split(findMeeting())) || hasSplit) return true;
+    return split(distance_.findUncovered(cut_, made_)) ||
+           (model_.repairs() && split(findMisplaced()));
+  }
+
   bool split(const std::vector<VertexIndex>& vertices) {
     return splitCells(forest_, vertices, cut_, rule_.minLevel, forbidden_);
   }
 
   std::vector<VertexIndex> findMeeting() {
-    const std::vector<intersect::PolygonIndex> candidates =
+    const std::vector<intersect::PolygonIndex> changed =
         polygonsAt(made_.mesh, changedVertices(searched_, cut_));
     searched_ = cut_;
-    return meetingVertices(made_.mesh, candidates, model_.affine(), job_);
+    if (changed.size() * kFew < made_.mesh.quads.size() + made_.mesh.triangles.size())
+      return meetingVertices(made_.mesh, changed, {}, model_.affine(), job_);
+    const std::vector<std::uint8_t> isCandidate = intersect::findCutCandidates(
+        forest_, cut_, made_, model_.view(), roundingMargin(model_.surface().volume), job_);
+    std::vector<intersect::PolygonIndex> candidates;
+    for (intersect::PolygonIndex i = 0; i < isCandidate.size(); ++i) {
+      if (isCandidate[i] != 0) candidates.push_back(i);
+    }
+    // New pairs have a polygon that has changed, and a candidate. The fewer of them are searched.
+    if (changed.size() <= candidates.size())
+      return meetingVertices(made_.mesh, changed, isCandidate, model_.affine(), job_);
+    std::vector<std::uint8_t> hasChanged(isCandidate.size(), 0);
+    for (const intersect::PolygonIndex polygon : changed) hasChanged[polygon] = 1;
+    return meetingVertices(made_.mesh, candidates, hasChanged, model_.affine(), job_);
   }
 
   std::vector<VertexIndex> findMisplaced() {

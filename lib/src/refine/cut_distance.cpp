@@ -36,6 +36,9 @@ constexpr std::uint32_t kNone = octree::kNone;
 // Voxels; faces need no tighter bound, as rounding may take as much.
 constexpr float kRounding = 1e-4f;
 constexpr float kFar = std::numeric_limits<float>::max();
+// Where more than one in so many vertices is of a cell that must be split, faces are not measured:
+// most would have to be again.
+constexpr std::size_t kOften = 100;
 
 // Marks from several threads at a time.
 void mark(std::vector<std::uint8_t>& marks, std::size_t at) {
@@ -71,7 +74,11 @@ class CutDistance::Measure {
     collectTriangles();
     splitFolds();
     findOwners();
-    measureFaces();
+    if (coarse_.size() * kOften > mesh_.positions.size()) {
+      leaveFaces();
+    } else {
+      measureFaces();
+    }
     return takeCoarse();
   }
 
@@ -172,35 +179,41 @@ class CutDistance::Measure {
   }
 
   // Which uniform vertices need a new owner, which faces must be measured, and of which owners
-  // these are. An owner is one no more if its polygon has changed; a way may lead elsewhere if
-  // something has changed two polygons from its owners. Vertices without an owner are where they
-  // were: one of the triangles around them will do.
+  // these are. An owner is one no more if it was too far, or a vertex of its polygon has changed. A
+  // way leads over
+  // triangles that have a vertex in common with one of its owners, so it stays as it is if no
+  // vertex is a polygon from these that has changed. A face without owners lies in the mesh, and
+  // does so until one of its polygon's vertices changes.
   void findDirty(const std::vector<std::uint8_t>& changed) {
     const std::vector<std::uint8_t> touched = grown(mesh_, changed, all_.job_);
-    const std::vector<std::uint8_t> near = grown(mesh_, touched, all_.job_);
-    const std::vector<std::uint8_t> around = grown(mesh_, near, all_.job_);
     const std::size_t count = base().positions.size();
     std::vector<std::uint8_t> isNear(count, 0);
     forRanges(count, [&](std::size_t r) {
       std::uint32_t& owner = all_.owner_[r];
       if (owner == kNone) {
-        isNear[r] = around[cut_.vertexOf[r]];
+        isNear[r] = touched[cut_.vertexOf[r]];
         return;
       }
-      Triangle storage;
-      const base::Corners corners = cornersOf(owner, storage);
-      bool isGone = corners.empty();
-      if (isGone) isNear[r] = 1;
-      for (const VertexIndex v : corners) isGone |= touched[v] != 0, isNear[r] |= near[v];
-      if (isGone) owner = kNone;
+      const base::PolygonIndex polygon = polygonOf_[owner / 2];
+      bool isGone = polygon == kNone || all_.distance_[r] > all_.toleranceAt(r);
+      if (!isGone) {
+        Triangle storage;
+        for (const VertexIndex v : base::cornersOf(mesh_, polygon)) isGone |= changed[v] != 0;
+        for (const VertexIndex v : cornersOf(owner, storage)) isNear[r] |= touched[v];
+      }
+      if (!isGone) return;
+      isNear[r] = 1;
+      owner = kNone;
     });
     isDirty_.assign(2 * base().quads.size(), 0);
     wanted_.assign(count, 0);
     forRanges(isDirty_.size(), [&](std::size_t face) {
       const Triangle v = faceOf(face);
-      if (std::none_of(v.vertices.begin(), v.vertices.end(),
-                       [&](VertexIndex r) { return isNear[r] != 0; }))
+      if (all_.faceBound_[face] != kFar &&
+          std::none_of(v.vertices.begin(), v.vertices.end(),
+                       [&](VertexIndex r) { return isNear[r] != 0; })) {
         return;
+      }
       isDirty_[face] = 1;
       for (const VertexIndex r : v.vertices) mark(wanted_, r);
     });
@@ -279,6 +292,13 @@ class CutDistance::Measure {
       if (least <= tolerance) return;
       addLargest(triangles_.corners[nearest].vertices, coarse);
       coarse.push_back(cut_.vertexOf[r]);
+    });
+  }
+
+  // What is not measured, counts as too far, and is dirty in the next mesh.
+  void leaveFaces() {
+    forRanges(isDirty_.size(), [&](std::size_t face) {
+      if (isDirty_[face] != 0) all_.faceBound_[face] = kFar;
     });
   }
 

@@ -21,6 +21,11 @@ double largestRounding(const grid::Blocks& blocks, const grid::Transform& transf
   return 0.5 * std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * largest;
 }
 
+double roundingMargin(const grid::Volume& volume) {
+  return 2 * std::min(kMostRounding * volume.affine.leastHeight(),
+                      largestRounding(volume.blocks, volume.transform));
+}
+
 bool takeToWorld(Mesh& mesh, const grid::Affine& affine, base::Job& job) {
   constexpr std::size_t kGrain = 4096;
   job.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {

@@ -14,6 +14,12 @@ inline constexpr double kMostRounding = 5e-4;
 /// world units: by its largest coordinate.
 double largestRounding(const grid::Blocks& blocks, const grid::Transform& transform);
 
+/// The margin for searches of intersections whose result is to hold once the mesh is rounded:
+/// rounding may move both polygons of a pair. Flat faces on lattice planes lie a thousandth of a
+/// voxel off their samples, so a larger margin than is needed would make all their polygons
+/// candidates.
+double roundingMargin(const grid::Volume& volume);
+
 /// Takes a mesh to world space as it will be written: in single precision if that moves nothing
 /// farther than kMostRounding. Whether it does.
 bool takeToWorld(Mesh& mesh, const grid::Affine& affine, base::Job& job);

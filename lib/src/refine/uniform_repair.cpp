@@ -30,10 +30,7 @@ class UniformRepair {
     const Source own = sourceOf(surface_, job_);
     report_.movedVertices = unfoldLoneComponents(mesh_, lone, own);
     report_.movedVertices += liftLoneComponents(mesh_, surface_.sheets, lone, own);
-    // Rounding may move both polygons of a pair. Flat faces on lattice planes lie a thousandth of a
-    // voxel off their samples: a larger margin than is needed makes all their quads candidates.
-    margin_ = 2 * std::min(kMostRounding * surface_.affine().leastHeight(),
-                           largestRounding(surface_.volume.blocks, surface_.volume.transform));
+    margin_ = roundingMargin(surface_.volume);
     report_.movedVertices += orderAlongCreases(surface_, job_);
     Withdrawal withdrawn =
         withdrawPlacements(surface_, margin_, job_, [this] { return putBackComponents(); });
