@@ -3,19 +3,12 @@
 #include "base/huge_pages.h"
 
 namespace tufa::reduce {
-namespace {
-constexpr std::size_t kGrain = 16384;
-}
-
 std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
                                    const CornersOfVertices& corners, base::Job& job) {
   std::vector<Index> opposite;
   base::resizeLarge(opposite, 3 * triangles.size(), job);
-  job.forRanges(opposite.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Index c = static_cast<Index>(begin); c < end; ++c) {
-      opposite[c] = oppositeCorner(triangles, corners, c);
-    }
-  });
+  forOppositeCorners(triangles, corners, job,
+                     [&](Index corner, Index other) { opposite[corner] = other; });
   return opposite;
 }
 

@@ -22,6 +22,7 @@ inline constexpr Index kNone = ~Index{0};
 /// For each vertex the corners at it, in rising order.
 struct CornersOfVertices {
   CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles);
+  [[nodiscard]] std::size_t vertexCount() const { return first.size() - 2; }
   [[nodiscard]] std::span<const Index> of(Index vertex) const {
     return {corners.data() + first[vertex], corners.data() + first[vertex + 1]};
   }
@@ -29,16 +30,33 @@ struct CornersOfVertices {
   std::vector<Index> corners;
 };
 
-/// The corner across the edge of a corner, or kNone at a border. Where several are, the last one.
-[[nodiscard]] inline Index oppositeCorner(std::span<const Triangle> triangles,
-                                          const CornersOfVertices& corners, Index c) {
-  const auto at = [&](Index corner) { return triangles[corner / 3].vertices[corner % 3]; };
-  const Index from = at(nextCorner(c));
-  Index opposite = kNone;
-  for (const Index d : corners.of(at(previousCorner(c)))) {
-    if (at(nextCorner(d)) == from) opposite = previousCorner(d);
-  }
-  return opposite;
+/// Calls set(corner, other) for every corner, other being the one across its edge, or kNone at a
+/// border; where several are, the last one. In parallel. Vertex by vertex: an edge that comes from
+/// another vertex meets the one that goes back there.
+template <class Set>
+void forOppositeCorners(std::span<const Triangle> triangles, const CornersOfVertices& corners,
+                        base::Job& job, const Set& set) {
+  constexpr std::size_t kGrain = 4096;
+  job.forRanges(corners.vertexCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Index> nextVertices;
+    for (std::size_t v = begin; v < end; ++v) {
+      const std::span<const Index> around = corners.of(static_cast<Index>(v));
+      nextVertices.clear();
+      for (const Index c : around) {
+        const Index next = nextCorner(c);
+        nextVertices.push_back(triangles[next / 3].vertices[next % 3]);
+      }
+      for (const Index c : around) {
+        const Index previous = previousCorner(c);
+        const Index from = triangles[previous / 3].vertices[previous % 3];
+        Index other = kNone;
+        for (std::size_t i = 0; i < around.size(); ++i) {
+          if (nextVertices[i] == from) other = previousCorner(around[i]);
+        }
+        set(nextCorner(c), other);
+      }
+    }
+  });
 }
 
 /// That of every corner.

@@ -23,10 +23,10 @@ ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corn
   job.forRanges(faces_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index t = static_cast<Index>(begin); t < end; ++t) {
       faces_[t].vertex = input.triangles[t].vertices;
-      for (Index i = 0; i < 3; ++i) {
-        faces_[t].opposite[i] = oppositeCorner(input.triangles, corners, 3 * t + i);
-      }
     }
+  });
+  forOppositeCorners(input.triangles, corners, job, [&](Index corner, Index other) {
+    faces_[corner / 3].opposite[corner % 3] = other;
   });
   job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) {

@@ -327,7 +327,9 @@ class CutDistance::Measure {
         return;
       }
       const float limit = limitOf(r);
-      const float squared = overlayBound2(owned, limit, [](const reduce::OverlayTurn&) {});
+      float squared = acrossOneEdge2(owned);
+      if (!(squared <= limit * limit))
+        squared = overlayBound2(owned, limit, [](const reduce::OverlayTurn&) {});
       if (squared <= limit * limit) {
         bound = std::sqrt(squared);
         return;
@@ -345,6 +347,24 @@ class CutDistance::Measure {
       owned.owners[i] = localOf_[all_.owner_[v]];
     }
     return owned;
+  }
+
+  // The bound for a face of two owners that share an edge, which most faces are that have more than
+  // one: two of its edges pass that one. kFar2 for any other.
+  [[nodiscard]] float acrossOneEdge2(const reduce::OwnedFace& face) const {
+    const auto& owners = face.owners;
+    const std::size_t one = owners[1] == owners[2] ? 0 : owners[0] == owners[2] ? 1 : 2;
+    const std::size_t b = (one + 1) % 3, c = (one + 2) % 3;
+    if (owners[b] != owners[c] || isFine(face.vertices[one])) return reduce::kFar2;
+    for (int i = 0; i < 3; ++i) {
+      if (triangles_.across(owners[one], i) != owners[b]) continue;
+      const Vec3f from = triangles_(owners[one], (i + 1) % 3);
+      const Vec3f to = triangles_(owners[one], (i + 2) % 3);
+      return std::max(
+          reduce::squaredDistanceOfSegments(face.corners[one], face.corners[b], from, to),
+          reduce::squaredDistanceOfSegments(face.corners[one], face.corners[c], from, to));
+    }
+    return reduce::kFar2;
   }
 
   // How far a uniform face may be.
