@@ -65,13 +65,10 @@ bool hasVertexOutOfCell(const uniform::VertexSheets& sheets, const Quad& quad) {
 // The sufficient condition of findCandidates() for both triangles of a quad.
 bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, const Vec3& outer,
                      double margin) {
-  std::array<Vec3, 4> p;
-  for (int i = 0; i < 4; ++i) {
-    const Position& at = mesh.positions[quad.vertices[i]];
-    p[i] = {at.x, at.y, at.z};
-  }
-  return parts(p[0], p[1], p[2], inner, outer, margin) &&
-         parts(p[0], p[2], p[3], inner, outer, margin);
+  const auto at = [&](int i) { return Vec3(mesh.positions[quad.vertices[i]]); };
+  const Vec3 corner = at(0), diagonal = at(2) - corner;
+  const Between between(corner, inner, outer, margin);
+  return between.areParted(at(1) - corner, diagonal) && between.areParted(diagonal, at(3) - corner);
 }
 
 // Tells the candidates of one block after another.

@@ -1,6 +1,5 @@
 #include "intersect/cut_candidates.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -129,14 +128,15 @@ class CutEnvelopes {
       const Cell& b = cells_[v[(i + 1) % v.size()]];
       if (a.size != b.size && !passesFace(a, b, start, place.axis)) return false;
     }
-    std::array<Vec3, 4> p;
-    for (std::size_t i = 0; i < v.size(); ++i) p[i] = Vec3(mesh_.positions[v[i]]);
+    const auto at = [&](std::size_t i) { return Vec3(mesh_.positions[v[i]]); };
+    const Vec3 corner = at(0), diagonal = at(2) - corner;
     const Vec3 lower(base_.affine.position(origin, x, y, z));
     const Vec3 upper = lower + base_.affine.axis(place.axis);
     const Vec3& inner = place.upward ? lower : upper;
     const Vec3& outer = place.upward ? upper : lower;
-    return parts(p[0], p[1], p[2], inner, outer, margin_) &&
-           (v.size() == 3 || parts(p[0], p[2], p[3], inner, outer, margin_));
+    const Between between(corner, inner, outer, margin_);
+    return between.areParted(at(1) - corner, diagonal) &&
+           (v.size() == 3 || between.areParted(diagonal, at(3) - corner));
   }
 
   // Whether the segment between the vertices of two neighbouring cells around a lattice edge passes

@@ -6,22 +6,35 @@
 
 namespace tufa::intersect {
 
-/// Whether `inner` is behind the plane of a triangle and `outer` in front, even if each of its
-/// corners moves by half of `margin`. That moves the plane at a point by no more than the margin
-/// times 1 + 2 d / h, h being the least height of the triangle and d the distance of the point from
-/// a corner: the plane of a needle turns easily. All squared, so that no square root is needed.
-[[nodiscard]] inline bool parts(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& inner,
-                                const Vec3& outer, double margin) {
-  const Vec3 normal = (q - p).cross(r - p);
-  const double before = normal.dot(outer - p), behind = normal.dot(p - inner);
-  if (!(before > 0 && behind > 0)) return false;
-  const double longest2 =
-      std::max({(q - p).squaredLength(), (r - q).squaredLength(), (p - r).squaredLength()});
-  const double area2 = normal.squaredLength(), margin2 = 2 * margin * margin;
-  const auto least2 = [&](const Vec3& point) {
-    return margin2 * (area2 + 4 * (point - p).squaredLength() * longest2);
-  };
-  return before * before > least2(outer) && behind * behind > least2(inner);
-}
+/// The planes of triangles with a common corner, and what must be behind and in front of them.
+class Between {
+ public:
+  Between(const Vec3& corner, const Vec3& inner, const Vec3& outer, double margin)
+      : inner_(inner - corner),
+        outer_(outer - corner),
+        innerDistance2_(4 * inner_.squaredLength()),
+        outerDistance2_(4 * outer_.squaredLength()),
+        margin2_(2 * margin * margin) {}
+
+  /// Whether `inner` is behind the plane of a triangle and `outer` in front, even if each of its
+  /// corners moves by half of the margin. `q` and `r` are the other two, seen from the common
+  /// corner. That moves the plane at a point by no more than the margin times 1 + 2 d / h, h being
+  /// the least height of the triangle and d the distance of the point from a corner: the plane of a
+  /// needle turns easily. All squared, so that no square root is needed.
+  [[nodiscard]] bool areParted(const Vec3& q, const Vec3& r) const {
+    const Vec3 normal = q.cross(r);
+    const double before = normal.dot(outer_), behind = -normal.dot(inner_);
+    if (!(before > 0 && behind > 0)) return false;
+    const double longest2 =
+        std::max({q.squaredLength(), (r - q).squaredLength(), r.squaredLength()});
+    const double area2 = normal.squaredLength();
+    return before * before > margin2_ * (area2 + outerDistance2_ * longest2) &&
+           behind * behind > margin2_ * (area2 + innerDistance2_ * longest2);
+  }
+
+ private:
+  Vec3 inner_, outer_;
+  double innerDistance2_, outerDistance2_, margin2_;
+};
 
 }  // namespace tufa::intersect

@@ -72,6 +72,7 @@ ConflictFinder::ConflictFinder(uniform::UniformSurface& surface, double margin, 
 
 std::vector<Conflict> ConflictFinder::findCoincident() {
   const uniform::VertexSheets& sheets = surface_.sheets;
+  if (sheets.sharpCount() == 0) return {};
   const auto coincide = [&](std::uint32_t quad, VertexIndex a, VertexIndex b) {
     return (sheets.isOutOfCell(a) || sheets.isOutOfCell(b)) && sheets.isSharp(a) &&
            sheets.isSharp(b) && isWithin(kSameCrease, a, b) &&

@@ -9,6 +9,7 @@ namespace tufa::refine {
 
 RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>& closePairs,
                            Source source, const grid::Affine& affine, base::Job& job) {
+  if (closePairs.empty()) return {};
   Mesh world;
   world.positions = mesh.positions;
   source.singlePrecision = takeToWorld(world, affine, job);
