@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <unordered_map>
-#include <unordered_set>
 
 namespace tufa::chunks {
 namespace {
@@ -27,17 +26,18 @@ class CapFlipper {
   // Whether there were any.
   bool pass() {
     std::vector<std::uint32_t> caps;
-    std::unordered_set<VertexIndex> near;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      if (apexOf(triangles_[t]) == kNone) continue;
-      caps.push_back(t);
-      near.insert(triangles_[t].vertices.begin(), triangles_[t].vertices.end());
+      if (apexOf(triangles_[t]) != kNone) caps.push_back(t);
     }
     if (caps.empty()) return false;
+    std::vector<std::uint8_t> isNear(points_.size(), 0);
+    for (const std::uint32_t t : caps) {
+      for (const VertexIndex v : triangles_[t].vertices) isNear[v] = 1;
+    }
     behind_.clear();
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       const auto& v = triangles_[t].vertices;
-      if (near.contains(v[0]) || near.contains(v[1]) || near.contains(v[2])) note(t);
+      if ((isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0) note(t);
     }
     bool isAny = false;
     for (const std::uint32_t t : caps) isAny |= flip(t);

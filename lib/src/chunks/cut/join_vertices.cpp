@@ -60,11 +60,14 @@ class Joiner {
 
   // Around the ends of short edges.
   void findTriangles(const std::vector<Edge>& edges) {
-    for (const auto& [a, b] : edges) around_[a], around_[b];
+    std::vector<std::uint8_t> isEnd(points_.size(), 0);
+    for (const auto& [a, b] : edges) {
+      around_[a], around_[b];
+      isEnd[a] = isEnd[b] = 1;
+    }
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       for (const VertexIndex v : triangles_[t].vertices) {
-        const auto found = around_.find(v);
-        if (found != around_.end()) found->second.push_back(t);
+        if (isEnd[v] != 0) around_.at(v).push_back(t);
       }
     }
   }
