@@ -149,7 +149,7 @@ void Reduction::addFacesNear(const std::vector<Index>& triangles, std::vector<In
   }
 }
 
-void Reduction::setRegions(const Regions& regions) { reduce::setRegions(surface_, regions); }
+void Reduction::setRegions(const Regions& regions) { reduce::setRegions(surface_, regions, job_); }
 
 // Names all vertices, and forgets what went where in the step before.
 void Reduction::beginLines() {

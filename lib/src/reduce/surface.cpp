@@ -1,5 +1,6 @@
 #include "reduce/surface.h"
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <utility>
@@ -90,6 +91,23 @@ void findChords(Surface& s) {
   }
 }
 
+// How many edges of lines there are at a vertex, given its corners. Each is met twice, once in each
+// of its triangles, where its region is not that of the other one: so the changes of region around
+// the vertex are counted, by neighbours.
+int linesAt(const Surface& s, std::span<const Index> around) {
+  const auto hasRegion = [&](Index c) { return s.region[c / 3] == s.region[around.front() / 3]; };
+  if (std::all_of(around.begin(), around.end(), hasRegion)) return 0;
+  int lines = 0;
+  for (const Index c : around) {
+    const Index next = s.triangles[c / 3].vertices[nextCorner(c) % 3];
+    for (const Index d : around) {
+      const Index before = s.triangles[d / 3].vertices[previousCorner(d) % 3];
+      lines += before == next && s.region[c / 3] != s.region[d / 3];
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
@@ -140,7 +158,7 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
   findFaces(s, reference, standsFor, job);
 }
 
-void setRegions(Surface& s, const Regions& regions) {
+void setRegions(Surface& s, const Regions& regions, base::Job& job) {
   const Index count = static_cast<Index>(s.position.size());
   s.region = regions.ofTriangle;
   s.mayHold = regions.mayHold, s.planeNormals = regions.normals;
@@ -149,24 +167,16 @@ void setRegions(Surface& s, const Regions& regions) {
   for (Index v = 0; v < count; ++v) s.into[v] = s.line[v].name = v;
   s.intoPlane.assign(count, kNone);
   const CornersOfVertices corners(count, s.triangles);
-  for (Index v = 0; v < count; ++v) {
-    // Each line edge at the vertex is met twice, once in each of its triangles, where its region is
-    // not that of the other one: so count the changes of region around the vertex by neighbours.
-    int lines = 0;
-    const auto around = corners.of(v);
-    for (const Index c : around) {
-      const Index next = s.triangles[c / 3].vertices[nextCorner(c) % 3];
-      for (const Index d : around) {
-        const Index before = s.triangles[d / 3].vertices[previousCorner(d) % 3];
-        lines += before == next && s.region[c / 3] != s.region[d / 3];
-      }
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (Index v = static_cast<Index>(begin); v < end; ++v) {
+      const int lines = linesAt(s, corners.of(v));
+      if (lines == 0) continue;
+      LineVertex& line = s.line[v];
+      line.planes = regions.planes[v];
+      const bool isSimple = lines == 2 && line.planes[1] == kNone && (s.flags[v] & kBorder) == 0;
+      line.kind = isSimple ? LineKind::On : LineKind::End;
     }
-    if (lines == 0) continue;
-    LineVertex& line = s.line[v];
-    line.planes = regions.planes[v];
-    const bool isSimple = lines == 2 && line.planes[1] == kNone && (s.flags[v] & kBorder) == 0;
-    line.kind = isSimple ? LineKind::On : LineKind::End;
-  }
+  });
   findChords(s);
 }
 

@@ -86,7 +86,7 @@ void locateAll(Surface& surface, const ReferenceMesh& reference, std::span<const
 
 /// Divides a surface that is as it came in into regions, see Regions. Borders' ends are ends of
 /// lines.
-void setRegions(Surface& surface, const Regions& regions);
+void setRegions(Surface& surface, const Regions& regions, base::Job& job);
 
 /// Removes the triangles marked in `dead` and the vertices without triangles; the others keep their
 /// order.

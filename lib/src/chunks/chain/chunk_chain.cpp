@@ -48,7 +48,7 @@ ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
                      refine::scalesOf(cut.mesh, model.affine(), rule, job),
                      reduce::optionsForAngle(rule.minAngle), job);
   reduction_->setRegions(regionsOf());
-  const reduce::Surface surface = reduction_->surface();
+  const reduce::Surface& surface = reduction_->surface();
   kinds_.reserve(positions.size());
   for (const reduce::LineVertex& line : surface.line) kinds_.push_back(line.kind);
 }
@@ -121,7 +121,7 @@ void ChunkChain::setInto(ChainLevel& level) {
   const std::vector<reduce::Index>& went = reduction_->wentInto();
   level.intoPlane = reduction_->wentFor();
   const reduce::ReducedMesh reduced = reduction_->mesh();
-  const std::vector<reduce::LineVertex> lines = reduction_->surface().line;
+  const std::vector<reduce::LineVertex>& lines = reduction_->surface().line;
   std::vector<VertexIndex> now(level.own);
   std::iota(now.begin(), now.end(), 0);
   for (VertexIndex v = 0; v < lines.size(); ++v) {
@@ -185,7 +185,7 @@ ChainLevel ChunkChain::extract(const ChainLevel* before) const {
   reduce::ReducedMesh reduced = reduction_->mesh();
   ChainLevel level;
   level.own = reduced.positions.size();
-  const std::vector<reduce::LineVertex> lines = reduction_->surface().line;
+  const std::vector<reduce::LineVertex>& lines = reduction_->surface().line;
   for (VertexIndex v = 0; v < level.own; ++v) {
     add(level, reduced, v);
     const VertexIndex onCurve = level.cutVertex[v];
