@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "base/job.h"
-#include "base/vec3f.h"
 #include "octree/cut.h"
 #include "octree/cut_polygons.h"
 #include "octree/cut_rule.h"
+#include "refine/cut_owners.h"
 #include "uniform/surface_view.h"
 
 namespace tufa::refine {
@@ -53,28 +53,11 @@ class CutDistance {
   [[nodiscard]] Deviation total(const octree::Cut& cut, const Mesh& mesh) const;
 
  private:
-  using Vec3f = base::Vec3f;
-  class Measure;
-
   [[nodiscard]] Deviation measureWhole(const octree::Cut& cut, const Mesh& mesh,
                                        float expected) const;
-  [[nodiscard]] Vec3f toVoxels(const Position& p) const;
-  [[nodiscard]] float toleranceAt(std::size_t vertex) const {
-    return scales_.empty() ? tolerance_ : tolerance_ * scales_[vertex];
-  }
 
-  const uniform::SurfaceView base_;
-  base::Job& job_;
-  float tolerance_;
-  std::vector<float> scales_;  ///< of the tolerance at each uniform vertex; empty: 1
-  Vec3 middle_;                ///< positions in voxels are seen from here
-  std::vector<Vec3f> points_;  ///< of the uniform vertices, in voxels
-  // For each uniform vertex its owner, twice the uniform quad that its polygon comes from plus its
-  // number in that polygon, and the distance.
-  std::vector<std::uint32_t> owner_;
-  std::vector<float> distance_;
-  std::vector<float> faceBound_;  ///< of each uniform face, two a quad
-  bool isUncovered_ = false;      ///< whether findUncovered() last left a component unsettled
+  CutOwners owners_;
+  bool isUncovered_ = false;  ///< whether findUncovered() last left a component unsettled
 };
 
 }  // namespace tufa::refine

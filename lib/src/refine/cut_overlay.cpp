@@ -1,0 +1,166 @@
+#include "refine/cut_overlay.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tufa::refine {
+namespace {
+
+using base::Vec3f;
+using reduce::Index;
+
+constexpr std::size_t kGrain = 4096;
+constexpr std::uint32_t kNone = octree::kNone;
+
+template <class Body>
+void forEach(base::Job& job, std::size_t count, const Body& body) {
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> grown(const Mesh& mesh, const std::vector<std::uint8_t>& marks,
+                                base::Job& job) {
+  std::vector<std::uint8_t> more = marks;
+  const std::size_t count = mesh.quads.size() + mesh.triangles.size();
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const base::Corners v = base::cornersOf(mesh, static_cast<base::PolygonIndex>(i));
+      if (std::none_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; })) continue;
+      for (const VertexIndex c : v) mark(more, c);
+    }
+  });
+  return more;
+}
+
+CutOverlay::CutOverlay(const CutOwners& owners, const octree::Cut& cut, const octree::CutMesh& made)
+    : owners_(owners), cut_(cut), made_(made), mesh_(made.mesh) {
+  polygonOf_.assign(owners_.base.mesh.quads.size(), kNone);
+  forEach(owners_.job, mesh_.quads.size() + mesh_.triangles.size(), [&](std::size_t i) {
+    const auto polygon = static_cast<base::PolygonIndex>(i);
+    polygonOf_[made_.sourceOf(polygon)] = polygon;
+  });
+}
+
+base::Corners CutOverlay::cornersOf(std::uint32_t id, Triangle& storage) const {
+  const base::PolygonIndex polygon = polygonOf_[id / 2];
+  if (polygon == kNone) return {};
+  const base::Corners v = base::cornersOf(mesh_, polygon);
+  if (id % 2 == 0) {
+    storage = {v[0], v[1], v[2]};
+  } else if (v.size() == 4) {
+    storage = {v[0], v[2], v[3]};
+  } else {
+    return {};
+  }
+  return storage.vertices;
+}
+
+bool CutOverlay::isInMesh(std::uint32_t face, const Triangle& r) const {
+  Triangle own;
+  if (!std::all_of(r.vertices.begin(), r.vertices.end(), [&](VertexIndex v) { return isFine(v); }))
+    return false;
+  for (const std::uint32_t id : {face, face ^ 1}) {
+    const base::Corners corners = cornersOf(id, own);
+    if (!corners.empty() && std::all_of(r.vertices.begin(), r.vertices.end(), [&](VertexIndex v) {
+          return std::find(corners.begin(), corners.end(), cut_.vertexOf[v]) != corners.end();
+        })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// The triangles that ways may lead over: around the owners, found or to be found up to two
+// polygons from a cluster, and one polygon more for what is pulled over a vertex there.
+void CutOverlay::collectTriangles(const std::vector<std::uint8_t>& isCorner) {
+  std::vector<std::uint8_t> marks(mesh_.positions.size());
+  forEach(owners_.job, isCorner.size(), [&](std::size_t r) {
+    if (isCorner[r] == 0) return;
+    mark(marks, cut_.vertexOf[r]);
+    if (owners_.owner[r] == kNone) return;
+    Triangle storage;
+    for (const VertexIndex v : cornersOf(owners_.owner[r], storage)) mark(marks, v);
+  });
+  for (int i = 0; i < 3; ++i) marks = grown(mesh_, marks, owners_.job);
+  localOf_.resize(2 * owners_.base.mesh.quads.size());
+  const auto count = static_cast<base::PolygonIndex>(mesh_.quads.size() + mesh_.triangles.size());
+  for (base::PolygonIndex polygon = 0; polygon < count; ++polygon) {
+    const base::Corners v = base::cornersOf(mesh_, polygon);
+    if (std::none_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; })) continue;
+    const std::uint32_t id = 2 * made_.sourceOf(polygon);
+    add({v[0], v[1], v[2]}, id);
+    if (v.size() == 4) add({v[0], v[2], v[3]}, id + 1);
+  }
+  triangles_.positions.resize(mesh_.positions.size());
+  forEach(owners_.job, mesh_.positions.size(),
+          [&](std::size_t i) { triangles_.positions[i] = owners_.toVoxels(mesh_.positions[i]); });
+  corners_.emplace(mesh_.positions.size(), triangles_.corners);
+  triangles_.opposite = reduce::oppositeCorners(triangles_.corners, *corners_, owners_.job);
+}
+
+void CutOverlay::add(const Triangle& corners, std::uint32_t id) {
+  localOf_[id] = static_cast<Index>(triangles_.corners.size());
+  triangles_.corners.push_back(corners);
+  triangles_.ids.push_back(id);
+}
+
+reduce::OwnedFace CutOverlay::ownedFace(const Triangle& r) const {
+  reduce::OwnedFace owned;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexIndex v = r.vertices[i];
+    owned.corners[i] = owners_.points[v];
+    owned.vertices[i] = v;
+    owned.owners[i] = localOf_[owners_.owner[v]];
+  }
+  return owned;
+}
+
+float CutOverlay::bound2(const reduce::OwnedFace& face, float limit) const {
+  const float across2 = acrossOneEdge2(face);
+  if (across2 <= limit * limit) return across2;
+  return bound2(face, limit, [](const reduce::OverlayTurn&) {});
+}
+
+// The bound for a face of two owners that share an edge, which most faces are that have more than
+// one: two of its edges pass that one. kFar2 for any other.
+float CutOverlay::acrossOneEdge2(const reduce::OwnedFace& face) const {
+  const auto& owners = face.owners;
+  const std::size_t one = owners[1] == owners[2] ? 0 : owners[0] == owners[2] ? 1 : 2;
+  const std::size_t b = (one + 1) % 3, c = (one + 2) % 3;
+  if (owners[b] != owners[c] || isFine(face.vertices[one])) return reduce::kFar2;
+  for (int i = 0; i < 3; ++i) {
+    if (triangles_.across(owners[one], i) != owners[b]) continue;
+    const Vec3f from = triangles_(owners[one], (i + 1) % 3);
+    const Vec3f to = triangles_(owners[one], (i + 2) % 3);
+    return std::max(
+        reduce::squaredDistanceOfSegments(face.corners[one], face.corners[b], from, to),
+        reduce::squaredDistanceOfSegments(face.corners[one], face.corners[c], from, to));
+  }
+  return reduce::kFar2;
+}
+
+// The way of an edge from corner a to corner b. One that is an edge of the mesh stays where it
+// is, so that the faces do of which all edges are.
+bool CutOverlay::findWay(const reduce::OwnedFace& face, std::size_t a, std::size_t b, float limit2,
+                         reduce::OverlayPath& way) const {
+  if (isFine(face.vertices[a]) && isFine(face.vertices[b])) {
+    const VertexIndex from = cut_.vertexOf[face.vertices[a]], to = cut_.vertexOf[face.vertices[b]];
+    const auto around = corners_->of(from);
+    const auto isAtEdge = [&](Index t) { return reduce::hasVertex(triangles_, t, to); };
+    if (std::any_of(around.begin(), around.end(), [&](Index c) { return isAtEdge(c / 3); })) {
+      way.count = 1;
+      way.largest2 = 0;
+      way.triangles[0] = face.owners[a];
+      return triangles_.walkAround(from, isAtEdge, way) &&
+             triangles_.walkAround(
+                 to, [&](Index t) { return t == face.owners[b]; }, way);
+    }
+  }
+  return reduce::findOverlayPath(triangles_, {face.corners[a], face.corners[b]}, face.owners[a],
+                                 face.owners[b], limit2, way);
+}
+
+}  // namespace tufa::refine

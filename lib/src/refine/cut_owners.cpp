@@ -1,0 +1,48 @@
+#include "refine/cut_owners.h"
+
+#include <algorithm>
+
+#include "base/box.h"
+#include "base/huge_pages.h"
+#include "octree/cluster_forest.h"
+#include "refine/tolerance_scales.h"
+
+namespace tufa::refine {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+// Voxels; faces need no tighter bound, as rounding may take as much.
+constexpr float kRounding = 1e-4f;
+
+}  // namespace
+
+CutOwners::CutOwners(const uniform::SurfaceView& view, const octree::CutRule& rule,
+                     base::Job& theJob)
+    : base(view),
+      job(theJob),
+      tolerance(static_cast<float>(rule.tolerance)),
+      scales(scalesOf(view.mesh, view.affine, rule, theJob)) {
+  const std::size_t count = base.mesh.positions.size();
+  base::Box box = base::Box::empty();
+  for (const Position& p : base.mesh.positions) box.add(Vec3(p));
+  middle = box.centre();
+  base::resizeLarge(points, count, job);
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points[i] = toVoxels(base.mesh.positions[i]);
+  });
+  owner.assign(count, octree::kNone);
+  distance.assign(count, 0);
+  faceBound.assign(2 * base.mesh.quads.size(), 0);
+}
+
+base::Vec3f CutOwners::toVoxels(const Position& p) const {
+  return Vec3f((Vec3(p) - middle) * (1 / base.affine.voxelSize()));
+}
+
+float CutOwners::limitOf(const Triangle& face) const {
+  float least = kFarOff;
+  for (const VertexIndex v : face.vertices) least = std::min(least, toleranceAt(v));
+  return std::max(least, kRounding);
+}
+
+}  // namespace tufa::refine
