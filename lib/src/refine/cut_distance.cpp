@@ -36,13 +36,13 @@ class Measure {
     overlay_.collectTriangles(wanted_);
     splitFolds();
     findOwners();
-    if (coarse_.size() * kOften > mesh_.positions.size()) {
+    sortCoarse();
+    if (splittable() * kOften > mesh_.positions.size()) {
       leaveFaces();
     } else {
       measureFaces();
+      sortCoarse();
     }
-    std::sort(coarse_.begin(), coarse_.end());
-    coarse_.erase(std::unique(coarse_.begin(), coarse_.end()), coarse_.end());
     return std::move(coarse_);
   }
 
@@ -52,6 +52,18 @@ class Measure {
     owners_.job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) body(i);
     });
+  }
+
+  void sortCoarse() {
+    std::sort(coarse_.begin(), coarse_.end());
+    coarse_.erase(std::unique(coarse_.begin(), coarse_.end()), coarse_.end());
+  }
+
+  // How many of the cells that must be split may be: then there is a next mesh.
+  [[nodiscard]] std::size_t splittable() const {
+    return static_cast<std::size_t>(
+        std::count_if(coarse_.begin(), coarse_.end(),
+                      [&](VertexIndex v) { return cut_.clusters[v].level > owners_.minLevel; }));
   }
 
   // Calls body(i, list) for all i, and adds the lists up to coarse_ in their order.

@@ -21,6 +21,7 @@ CutOwners::CutOwners(const uniform::SurfaceView& view, const octree::CutRule& ru
     : base(view),
       job(theJob),
       tolerance(static_cast<float>(rule.tolerance)),
+      minLevel(rule.minLevel),
       scales(scalesOf(view.mesh, view.affine, rule, theJob)) {
   const std::size_t count = base.mesh.positions.size();
   base::Box box = base::Box::empty();

@@ -36,6 +36,7 @@ struct CutOwners {
   const uniform::SurfaceView base;
   base::Job& job;
   float tolerance;
+  int minLevel;               ///< cells up to this level are not split
   std::vector<float> scales;  ///< of the tolerance at each vertex; empty: 1
   Vec3 middle;                ///< positions in voxels are seen from here
   std::vector<Vec3f> points;  ///< of the vertices, in voxels
