@@ -80,10 +80,11 @@ class Measure {
   }
 
   // Which uniform vertices need a new owner, which faces must be measured, and of which owners
-  // these are. An owner is one no more if it was too far, or a vertex of its polygon has changed.
-  // A way leads over triangles that have a vertex in common with one of its owners, so it stays as
-  // it is if no vertex has changed a polygon from these. A face without owners lies in the mesh,
-  // and does so until a vertex of its polygon changes.
+  // these are. An owner is one no more if it was too far, or the vertex's own cluster or a vertex
+  // of the owner's polygon has changed: that of a vertex of the mesh is a triangle at it. A way
+  // leads over triangles that have a vertex in common with one of its owners, so it stays as it is
+  // if no vertex has changed a polygon from these. A face without owners lies in the mesh, and does
+  // so until a vertex of its polygon changes.
   void findDirty(const std::vector<std::uint8_t>& changed) {
     const std::vector<std::uint8_t> touched = grown(mesh_, changed, owners_.job);
     const std::size_t count = owners_.base.mesh.positions.size();
@@ -95,7 +96,8 @@ class Measure {
         return;
       }
       const base::PolygonIndex polygon = overlay_.polygonOf(owner);
-      bool isGone = polygon == kNone || owners_.distance[r] > owners_.toleranceAt(r);
+      bool isGone = polygon == kNone || changed[cut_.vertexOf[r]] != 0 ||
+                    owners_.distance[r] > owners_.toleranceAt(r);
       if (!isGone) {
         Triangle storage;
         for (const VertexIndex v : base::cornersOf(mesh_, polygon)) isGone |= changed[v] != 0;
@@ -132,13 +134,19 @@ class Measure {
     }
   }
 
-  // The nearest triangle around a vertex's cluster, or where that is too far, one that lies nearer
-  // around the corners of that.
+  // A triangle at a vertex that is one of the mesh. Else the nearest one around the vertex's
+  // cluster, or where that is too far, one that lies nearer around the corners of that.
   void findOwners() {
     const reduce::CornersOfVertices& corners = overlay_.corners();
     const CutTriangles& triangles = overlay_.triangles();
     collectCoarse(wanted_.size(), [&](std::size_t r, std::vector<VertexIndex>& coarse) {
       if (wanted_[r] == 0 || owners_.owner[r] != kNone) return;
+      const VertexIndex own = cut_.vertexOf[r];
+      if (overlay_.isFine(static_cast<VertexIndex>(r)) && !corners.of(own).empty()) {
+        owners_.owner[r] = triangles.ids[corners.of(own).front() / 3];
+        owners_.distance[r] = 0;
+        return;
+      }
       const Vec3f p = owners_.points[r];
       const float tolerance = owners_.toleranceAt(r);
       Index nearest = reduce::kNone;
@@ -149,7 +157,7 @@ class Measure {
           if (d < least) least = d, nearest = c / 3;
         }
       };
-      lookAround(cut_.vertexOf[r]);
+      lookAround(own);
       if (nearest == reduce::kNone) return;  // its cluster has no polygons left
       if (least > tolerance) {
         const Triangle first = triangles.corners[nearest];
@@ -159,7 +167,7 @@ class Measure {
       owners_.distance[r] = least;
       if (least <= tolerance) return;
       addLargest(triangles.corners[nearest].vertices, coarse);
-      coarse.push_back(cut_.vertexOf[r]);
+      coarse.push_back(own);
     });
   }
 

@@ -40,11 +40,13 @@ struct CutTriangles {
     return std::any_of(v.begin(), v.end(),
                        [&](VertexIndex i) { return reduce::hasVertex(*this, a, i); });
   }
-  /// The triangle beside t around one of its vertices, in one of two directions, 1 or 2.
+  /// The triangle beside t around one of its vertices, in one of two directions, 1 or 2; kNone if v
+  /// is not one of them.
   [[nodiscard]] reduce::Index turn(reduce::Index t, VertexIndex v, int direction) const {
-    int i = 0;
-    while (vertex(t, i) != v) ++i;
-    return across(t, (i + direction) % 3);
+    for (int i = 0; i < 3; ++i) {
+      if (vertex(t, i) == v) return across(t, (i + direction) % 3);
+    }
+    return reduce::kNone;
   }
   /// Adds to a way, which ends at a triangle with vertex v, the triangles around v up to one that
   /// `isEnd`, the shorter way round. False if there is none, or the way gets too long.
