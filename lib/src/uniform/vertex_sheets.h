@@ -74,7 +74,7 @@ class VertexSheets {
  private:
   std::vector<Kind> kinds_;
   std::vector<std::uint8_t> outOfCell_;  // bytes, as threads set their own
-  std::vector<std::uint32_t> entryOf_;  // of vertices on creases, counted from 1; empty: none is
+  std::vector<std::uint32_t> entryOf_;   // of vertices on creases, counted from 1; empty: none is
   std::vector<MeetingSheets> entries_;
 };
 
