@@ -11,6 +11,11 @@
 
 namespace tufa::uniform {
 
+/// Tells the quads with a vertex among some, as the function of that name in
+/// uniform/block_ranges.h does.
+using QuadsAt = std::function<std::vector<std::uint32_t>(const std::vector<VertexIndex>& vertices,
+                                                         const std::vector<std::uint8_t>& marks)>;
+
 /// Moves vertices onto creases and corners that pass between cells.
 ///
 /// A crease may run through cells that have no sign change and so no vertex. Then some quad cannot
@@ -23,9 +28,7 @@ namespace tufa::uniform {
 /// Promised: a vertex depends on what is within six rounds of two cells each, and not on where the
 /// mesh begins, so a part of a grid gets the same vertices as the whole. Polygons may intersect
 /// afterwards; repair removes that. Cost: one pass over the quads; later rounds look only around
-/// the vertices moved before. `quadsAt`: as the function of that name in uniform/block_ranges.h.
-using QuadsAt = std::function<std::vector<std::uint32_t>(const std::vector<VertexIndex>& vertices,
-                                                         const std::vector<std::uint8_t>& marks)>;
+/// the vertices moved before, whose quads `quadsAt` tells.
 std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize,
                           const QuadsAt& quadsAt, base::Job& job);
 

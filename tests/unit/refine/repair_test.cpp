@@ -260,7 +260,7 @@ TEST(SmallPieces, StayOnTheirSideOfCreases) {
   EXPECT_FALSE(check(contour(*grid, options)).watertight()) << "is no example any more";
 }
 
-// What findSuspects() promises: every pair has a suspect.
+// What findCandidates() promises: every pair has a candidate.
 TEST(Candidates, HaveAPartInEveryPair) {
   for (const Shape shape : {Shape::Noise, Shape::Gyroid, Shape::Bracket, Shape::Terrain}) {
     const auto grid = makeGrid(shape, 0.03);
