@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <bitset>
-#include <mutex>
 
-#include "base/parallel.h"
+#include "base/collect.h"
 #include "intersect/envelope.h"
 #include "uniform/quad_places.h"
 
@@ -101,60 +100,37 @@ class CandidateTest {
   Coord origin_;
 };
 
-// Candidates found in ranges of blocks, on any thread.
-class Found {
- public:
-  void add(const std::vector<std::uint32_t>& some) {
-    const std::scoped_lock lock(mutex_);
-    all_.insert(all_.end(), some.begin(), some.end());
-  }
-  [[nodiscard]] std::vector<std::uint32_t> sorted() {
-    base::parallelSort(all_.begin(), all_.end(), std::less<>());
-    return std::move(all_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::uint32_t> all_;
-};
-
 }  // namespace
 
 std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context, const Mesh& mesh,
                                           double margin, base::Job& job) {
-  Found found;
-  job.forRanges(context.topology.blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> own;
+  const auto add = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
     CandidateTest test(context, mesh, margin);
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = context.topology.blocks[i];
       test.enter(block);
       forQuads(context, block, [&](const QuadPlace& place) {
-        if (test.isCandidate(place)) own.push_back(static_cast<std::uint32_t>(place.quad));
+        if (test.isCandidate(place)) found.push_back(static_cast<std::uint32_t>(place.quad));
       });
     }
-    found.add(own);
-  });
-  return found.sorted();
+  };
+  return base::collectSorted(job, context.topology.blocks.size(), 32, add);
 }
 
 std::vector<std::uint32_t> findCandidatesAmong(const std::vector<std::uint32_t>& quads,
                                                const uniform::SurfaceView& context,
                                                const Mesh& mesh, double margin, base::Job& job) {
   const std::vector<uniform::BlockRange> ranges = uniform::blocksOfQuads(context.topology, quads);
-  Found found;
-  job.forRanges(ranges.size(), 32, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> own;
+  const auto add = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
     CandidateTest test(context, mesh, margin);
     for (std::size_t i = begin; i < end; ++i) {
       test.enter(context.topology.blocks[ranges[i].block]);
       forQuadsAmong(context, quads, ranges[i], [&](const QuadPlace& place, std::size_t) {
-        if (test.isCandidate(place)) own.push_back(static_cast<std::uint32_t>(place.quad));
+        if (test.isCandidate(place)) found.push_back(static_cast<std::uint32_t>(place.quad));
       });
     }
-    found.add(own);
-  });
-  return found.sorted();
+  };
+  return base::collectSorted(job, ranges.size(), 32, add);
 }
 
 }  // namespace tufa::intersect

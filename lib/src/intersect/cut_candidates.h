@@ -19,9 +19,9 @@ namespace tufa::intersect {
 /// around the lattice edge from a to b of its uniform quad, in three or four cells. Where v and w
 /// are its vertices in neighbouring cells of one size, the segment between them passes the face
 /// that both share; where the sizes differ, that is tested. The tetrahedron (a, b, v, w) is then
-/// two cones over the triangle (a, b, q), q being the point where the segment passes the face, and
-/// no other envelope has an inner point of that: no two polygons have their lattice edges on one
-/// place of a shared face's rim. The rest is as for the uniform mesh.
+/// two cones over the triangle (a, b, q), q being the point where the segment passes the face. In
+/// one face these triangles have q in common and lie over different stretches of its rim, so they
+/// share no inner point, and neither do the envelopes. The rest is as for the uniform mesh.
 ///
 /// Candidates are polygons that fail one of these tests or that have a vertex out of its cell or in
 /// a cell of several. Cost: one pass over the vertices, and one over the polygons.

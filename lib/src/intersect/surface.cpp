@@ -15,6 +15,13 @@ std::vector<PolygonIndex> polygonsOf(const std::vector<PolygonPair>& pairs) {
   return polygons;
 }
 
+std::vector<PolygonIndex> distinctPolygonsOf(const std::vector<PolygonPair>& pairs) {
+  std::vector<PolygonIndex> polygons = polygonsOf(pairs);
+  std::sort(polygons.begin(), polygons.end());
+  polygons.erase(std::unique(polygons.begin(), polygons.end()), polygons.end());
+  return polygons;
+}
+
 std::vector<VertexIndex> verticesOf(const Mesh& mesh, const std::vector<PolygonIndex>& polygons) {
   std::vector<VertexIndex> vertices;
   for (const PolygonIndex polygon : polygons) {

@@ -37,6 +37,9 @@ inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
 /// The polygons of pairs, each as often as it occurs.
 [[nodiscard]] std::vector<PolygonIndex> polygonsOf(const std::vector<PolygonPair>& pairs);
 
+/// The same, sorted and each once.
+[[nodiscard]] std::vector<PolygonIndex> distinctPolygonsOf(const std::vector<PolygonPair>& pairs);
+
 /// Those of some pairs of a mesh's polygons that intersect with other positions of the vertices.
 [[nodiscard]] std::vector<PolygonPair> intersectingAmong(const std::vector<PolygonPair>& pairs,
                                                          const Mesh& mesh,

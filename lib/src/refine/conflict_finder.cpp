@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <mutex>
 #include <utility>
 
+#include "base/collect.h"
 #include "base/parallel.h"
 #include "intersect/candidates.h"
 #include "uniform/block_ranges.h"
@@ -36,22 +36,7 @@ constexpr double kAsSharp = 0.03;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
 
-// What add(i, list) adds for the indices i below `count`, in rising order.
-template <class Add>
-std::vector<std::uint32_t> collect(base::Job& job, std::size_t count, const Add& add) {
-  std::vector<std::uint32_t> all;
-  std::mutex mutex;
-  job.forRanges(count, 4096, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      add(static_cast<std::uint32_t>(i), found);
-    }
-    const std::scoped_lock lock(mutex);
-    all.insert(all.end(), found.begin(), found.end());
-  });
-  base::parallelSort(all.begin(), all.end(), std::less<>());
-  return all;
-}
+constexpr std::size_t kGrain = 4096;
 
 }  // namespace
 
@@ -87,12 +72,14 @@ std::vector<Conflict> ConflictFinder::findCoincident() {
       }
     }
   };
-  const auto add = [&](std::uint32_t quad, std::vector<std::uint32_t>& found) {
-    bool any = false;
-    visit(quad, [&](VertexIndex, VertexIndex) { any = true; });
-    if (any) found.push_back(quad);
+  const auto add = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+    for (auto quad = static_cast<std::uint32_t>(begin); quad < end; ++quad) {
+      bool any = false;
+      visit(quad, [&](VertexIndex, VertexIndex) { any = true; });
+      if (any) found.push_back(quad);
+    }
   };
-  for (const std::uint32_t quad : collect(job_, mesh_.quads.size(), add)) {
+  for (const std::uint32_t quad : base::collectSorted(job_, mesh_.quads.size(), kGrain, add)) {
     visit(quad, [&](VertexIndex a, VertexIndex b) {
       conflicts.push_back({Conflict::Kind::SamePoint, {quad, quad}, {a, b}});
     });
@@ -103,10 +90,10 @@ std::vector<Conflict> ConflictFinder::findCoincident() {
 std::vector<Conflict> ConflictFinder::findEverywhere() {
   std::vector<Conflict> conflicts;
   if (!mesh_.normals.empty()) {
-    const auto add = [&](std::uint32_t quad, std::vector<std::uint32_t>& off) {
-      addOff(quad, off);
+    const auto add = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& off) {
+      for (auto quad = static_cast<std::uint32_t>(begin); quad < end; ++quad) addOff(quad, off);
     };
-    addFolds(collect(job_, mesh_.quads.size(), add), conflicts);
+    addFolds(base::collectSorted(job_, mesh_.quads.size(), kGrain, add), conflicts);
   }
   candidates_ = intersect::findCandidates(surface_.view(), mesh_, margin_, job_);
   addPairs(intersect::findClosePairs(polygons_, candidates_, margin_, job_), conflicts);

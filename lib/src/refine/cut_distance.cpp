@@ -47,13 +47,6 @@ class Measure {
   }
 
  private:
-  template <class Body>
-  void forEach(std::size_t count, const Body& body) {
-    owners_.job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) body(i);
-    });
-  }
-
   void sortCoarse() {
     std::sort(coarse_.begin(), coarse_.end());
     coarse_.erase(std::unique(coarse_.begin(), coarse_.end()), coarse_.end());
@@ -89,7 +82,7 @@ class Measure {
     const std::vector<std::uint8_t> touched = grown(mesh_, changed, owners_.job);
     const std::size_t count = owners_.base.mesh.positions.size();
     std::vector<std::uint8_t> isNear(count, 0);
-    forEach(count, [&](std::size_t r) {
+    forEach(owners_.job, count, [&](std::size_t r) {
       std::uint32_t& owner = owners_.owner[r];
       if (owner == kNone) {
         isNear[r] = touched[cut_.vertexOf[r]];
@@ -109,7 +102,7 @@ class Measure {
     });
     isDirty_.assign(2 * owners_.base.mesh.quads.size(), 0);
     wanted_.assign(count, 0);
-    forEach(isDirty_.size(), [&](std::size_t face) {
+    forEach(owners_.job, isDirty_.size(), [&](std::size_t face) {
       const Triangle v = owners_.faceOf(face);
       if (owners_.faceBound[face] != kFarOff &&
           std::none_of(v.vertices.begin(), v.vertices.end(),
@@ -173,7 +166,7 @@ class Measure {
 
   // What is not measured, counts as too far, and is dirty in the next mesh.
   void leaveFaces() {
-    forEach(isDirty_.size(), [&](std::size_t face) {
+    forEach(owners_.job, isDirty_.size(), [&](std::size_t face) {
       if (isDirty_[face] != 0) owners_.faceBound[face] = kFarOff;
     });
   }

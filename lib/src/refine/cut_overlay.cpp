@@ -12,13 +12,6 @@ using reduce::Index;
 constexpr std::size_t kGrain = 4096;
 constexpr std::uint32_t kNone = octree::kNone;
 
-template <class Body>
-void forEach(base::Job& job, std::size_t count, const Body& body) {
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) body(i);
-  });
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> grown(const Mesh& mesh, const std::vector<std::uint8_t>& marks,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -67,6 +68,15 @@ class CutOverlay {
   std::optional<reduce::CornersOfVertices> corners_;
   std::vector<reduce::Index> localOf_;  // from ids to triangles_, of those that are there
 };
+
+/// Calls body(i) for each index below `count`, in parallel.
+template <class Body>
+void forEach(base::Job& job, std::size_t count, const Body& body) {
+  constexpr std::size_t kGrain = 4096;
+  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
 
 /// Marks from several threads at a time.
 inline void mark(std::vector<std::uint8_t>& marks, std::size_t at) {

@@ -65,13 +65,6 @@ class Finder {
   }
 
  private:
-  template <class Body>
-  void forEach(std::size_t count, const Body& body) {
-    owners_.job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) body(i);
-    });
-  }
-
   // Of each closed component a vertex of a larger cell, none where all is as in the uniform mesh.
   [[nodiscard]] std::vector<VertexIndex> findSeeds(
       const std::vector<VertexIndex>& componentOf) const {
@@ -110,7 +103,7 @@ class Finder {
                      const std::vector<VertexIndex>& seedOf) {
     isNear_.assign(2 * owners_.base.mesh.quads.size(), 0);
     isCorner_.assign(owners_.base.mesh.positions.size(), 0);
-    forEach(isNear_.size(), [&](std::size_t face) {
+    forEach(owners_.job, isNear_.size(), [&](std::size_t face) {
       const Triangle r = owners_.faceOf(face);
       const VertexIndex seed = seedOf[componentOf[cut_.vertexOf[r.vertices[0]]]];
       if (seed == kNone) return;

@@ -1,6 +1,7 @@
 #include "refine/finish.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "refine/rounding.h"
 #include "refine/uniform_repair.h"
@@ -66,11 +67,11 @@ Source worldSource(const SurfaceModel& model, const ExtractedMesh& extracted, ba
 
 // The candidates for what intersects now that the mesh is rounded.
 std::vector<intersect::PolygonIndex> candidatesOf(const ExtractedMesh& extracted) {
-  std::vector<intersect::PolygonIndex> candidates = intersect::polygonsOf(
+  const std::vector<intersect::PolygonIndex> close = intersect::distinctPolygonsOf(
       intersect::intersectingAmong(extracted.closePairs, extracted.mesh, extracted.mesh.positions));
-  candidates.insert(candidates.end(), extracted.candidates.begin(), extracted.candidates.end());
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  std::vector<intersect::PolygonIndex> candidates;
+  std::set_union(close.begin(), close.end(), extracted.candidates.begin(),
+                 extracted.candidates.end(), std::back_inserter(candidates));
   return candidates;
 }
 

@@ -1,6 +1,5 @@
 #include "refine/repair_rounded.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "refine/rounding.h"
@@ -13,11 +12,9 @@ RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>
   Mesh world;
   world.positions = mesh.positions;
   source.singlePrecision = takeToWorld(world, affine, job);
-  std::vector<intersect::PolygonIndex> candidates =
-      intersect::polygonsOf(intersect::intersectingAmong(closePairs, mesh, world.positions));
+  const std::vector<intersect::PolygonIndex> candidates = intersect::distinctPolygonsOf(
+      intersect::intersectingAmong(closePairs, mesh, world.positions));
   if (candidates.empty()) return {};
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   world.quads = mesh.quads;
   world.triangles = mesh.triangles;
   source.massPoints = [&affine,

@@ -8,6 +8,7 @@
 #include "refine/rounding.h"
 #include "refine/withdraw_placements.h"
 #include "topology/misplaced.h"
+#include "uniform/block_ranges.h"
 #include "uniform/place_vertices.h"
 #include "uniform/quads.h"
 
@@ -42,7 +43,9 @@ class UniformRepair {
     for (int i = 0; i < kMostPutBack; ++i) {
       const std::vector<VertexIndex> misplaced = putBackComponents();
       if (misplaced.empty()) break;
-      addCandidates(quadsAt(misplaced));
+      std::vector<std::uint8_t> marks(mesh_.positions.size(), 0);
+      for (const VertexIndex vertex : misplaced) marks[vertex] = 1;
+      addCandidates(uniform::quadsAt(surface_.topology, mesh_, misplaced, marks, job_));
       repairCandidates();
     }
     return intersect::findClosePairs(intersect::Surface(mesh_, job_), candidates_, margin_, job_)
@@ -78,21 +81,6 @@ class UniformRepair {
     }
     report_.movedVertices += misplaced.size();
     return misplaced;
-  }
-
-  // The quads at some sorted vertices.
-  [[nodiscard]] std::vector<intersect::PolygonIndex> quadsAt(
-      const std::vector<VertexIndex>& vertices) const {
-    std::vector<intersect::PolygonIndex> quads;
-    for (std::uint32_t i = 0; i < mesh_.quads.size(); ++i) {
-      const auto& v = mesh_.quads[i].vertices;
-      if (std::any_of(v.begin(), v.end(), [&](VertexIndex vertex) {
-            return std::binary_search(vertices.begin(), vertices.end(), vertex);
-          })) {
-        quads.push_back(i);
-      }
-    }
-    return quads;
   }
 
   void addCandidates(const std::vector<intersect::PolygonIndex>& polygons) {

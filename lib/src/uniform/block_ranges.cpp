@@ -1,10 +1,8 @@
 #include "uniform/block_ranges.h"
 
 #include <algorithm>
-#include <functional>
-#include <mutex>
 
-#include "base/parallel.h"
+#include "base/collect.h"
 
 namespace tufa::uniform {
 namespace {
@@ -58,10 +56,7 @@ std::vector<std::uint32_t> quadsAt(const CellTopology& topology, const Mesh& mes
   }
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  std::vector<std::uint32_t> all;
-  std::mutex mutex;
-  job.forRanges(blocks.size(), 32, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> found;
+  const auto add = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = topology.blocks[blocks[i]];
       for (std::uint64_t quad = block.firstQuad; quad < block.firstQuad + block.quadCount; ++quad) {
@@ -70,11 +65,8 @@ std::vector<std::uint32_t> quadsAt(const CellTopology& topology, const Mesh& mes
           found.push_back(static_cast<std::uint32_t>(quad));
       }
     }
-    const std::scoped_lock lock(mutex);
-    all.insert(all.end(), found.begin(), found.end());
-  });
-  base::parallelSort(all.begin(), all.end(), std::less<>());
-  return all;
+  };
+  return base::collectSorted(job, blocks.size(), 32, add);
 }
 
 }  // namespace tufa::uniform

@@ -216,6 +216,7 @@ TEST(PolygonsOf, AreThoseOfPairsAsOftenAsTheyOccur) {
   EXPECT_EQ(std::count(polygons.begin(), polygons.end(), 4U), 2);
   EXPECT_EQ(std::count(polygons.begin(), polygons.end(), 2U), 1);
   EXPECT_EQ(std::count(polygons.begin(), polygons.end(), 1U), 3);
+  EXPECT_EQ(distinctPolygonsOf({{1, 4}, {1, 1}, {2, 4}}), (Polygons{1, 2, 4}));
 }
 
 TEST(VerticesOf, AreSortedAndDistinct) {
