@@ -74,6 +74,9 @@ TEST(Solids, KeepTheirPromises) {
 // Its cut had a speck too thin for the way there to bound the way back.
 TEST(Solids, KeepTheirPromisesWhereASpeckIsThinnerThanTheTolerance) { expectKeptPromises(146); }
 
+// Beside its wedge the guard of folds let a valley be folded.
+TEST(Solids, KeepTheirPromisesWhereAValleyIsBesideAWedge) { expectKeptPromises(3246); }
+
 // Three vertices of a quad lie in line on a crease, so that rounding turned it over.
 TEST(Solids, KeepTheirPromisesWhereAQuadHasATriangleWithoutArea) { expectKeptPromises(1019); }
 

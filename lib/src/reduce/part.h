@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -74,6 +75,17 @@ class Part {
     int count = 0;
     int changed = 0;  ///< one that is new or has moved
     void add(Vec3f neighbour) { to[count++] = neighbour; }
+  };
+  /// The least cosines of turns from a face of a star to the next, or 1: at edges where the next
+  /// one falls away, and where it rises.
+  struct Sharpest {
+    float ridge = 1, valley = 1;
+    /// `height`: of the next face's apex over this one, times a positive number.
+    void see(float cosine, float height) {
+      float& least = height > 0 ? valley : ridge;
+      least = std::min(least, cosine);
+    }
+    [[nodiscard]] float least() const { return std::min(ridge, valley); }
   };
   /// Triangles that an attempt would make. Vertices are kNone where they are new.
   struct NewTriangles {
@@ -183,10 +195,10 @@ class Part {
   bool windsInFrame();
   bool isSimpleStar(Index a, Index b) const;
   Outcome trianglesGuard(Vec3f a, Vec3f b);
-  [[nodiscard]] float sharpestAfter() const;
+  [[nodiscard]] Sharpest sharpestAfter() const;
   [[nodiscard]] bool foldGuard(std::span<const Index> merged) const;
-  [[nodiscard]] float sharpestBefore(std::span<const Index> merged, int between) const;
-  [[nodiscard]] float leastCosineAcross(Vec3f normal, Index edge, int between) const;
+  [[nodiscard]] Sharpest sharpestBefore(std::span<const Index> merged, int between) const;
+  void seeTurnAcross(Vec3f normal, Vec3f p, Index edge, int between, Sharpest& sharpest) const;
   [[nodiscard]] float longestEdge2(Index t) const;
   [[nodiscard]] Vec3f outerNormal(Index corner) const;
   bool ringGuard();

@@ -254,7 +254,7 @@ bool Part::fillNotches() {
 // triangle at the ring turns far.
 Outcome Part::clusterShapeGuard() {
   if (!makeStar() || !isGraph_ || !windsInFrame()) return Outcome::Flat;
-  if (sharpestAfter() < kFoldCosine) return Outcome::Fold;
+  if (sharpestAfter().least() < kFoldCosine) return Outcome::Fold;
   for (int i = 0; i < size_; ++i) {
     const Vec3f old = position_[vertex_[at_[i]]] - place_, x = spoke_[i], y = spoke_[i + 1];
     const Vec3f was = cross(x - old, y - old);

@@ -133,53 +133,66 @@ Vec3f Part::outerNormal(Index c) const {
   return cross(position_[vertex_[nextCorner(d)]] - p, position_[vertex_[previousCorner(d)]] - p);
 }
 
-// The least cosine at an edge of the new star, a spoke or one of the ring, or 1. Faces without area
-// to speak of, as between vertices that stand close together on a crease, make no fold that shows;
+// The least cosines at edges of the new star, spokes and those of the ring. Faces without area to
+// speak of, as between vertices that stand close together on a crease, make no fold that shows;
 // what would cross is the business of the star guards.
-float Part::sharpestAfter() const {
+Part::Sharpest Part::sharpestAfter() const {
   constexpr float kFoldCosine2 = 0.6f;  // less than the square, so that the root is seldom taken
-  float sharpest = 1;
+  Sharpest sharpest;
   const auto isTiny = [&](int i) {
     return squaredLength(cross(spoke_[i], spoke_[i + 1])) <= kTinyFace2;
   };
   for (int i = 0; i < size_; ++i) {
     if (isTiny(i)) continue;
     const int last = i == 0 ? size_ - 1 : i - 1;
-    if (!isTiny(last)) sharpest = std::min(sharpest, dot(normal_[i], normal_[last]));
+    if (!isTiny(last)) {
+      sharpest.see(dot(normal_[i], normal_[last]), dot(normal_[i], spoke_[last]));
+    }
     const Vec3f outer = outerNormal(at_[i]);
     const float cosine = dot(normal_[i], outer), outer2 = squaredLength(outer);
     if (cosine < 0 && outer2 > kTinyFace2 && cosine * cosine > kFoldCosine2 * outer2) {
-      sharpest = std::min(sharpest, cosine / length(outer));
+      const Vec3f apex = position_[vertex_[opposite_[at_[i]]]] - place_;
+      sharpest.see(cosine / length(outer), dot(normal_[i], apex - spoke_[i]));
     }
   }
   return sharpest;
 }
 
-// A sharper turn than kFoldCosine passes only where the old star had one as sharp, which it has on
-// a wedge of the solid, be it with needles between its sides, and one that counts as a fold only
-// where the old star had a fold without any between. Small faces do not count there: a fold of
-// theirs must not grow.
+// A sharper turn than kFoldCosine passes only where the old star had one as sharp to the same side,
+// which it has on a wedge of the solid, be it with needles between its sides, and one that counts
+// as a fold only where the old star had a fold without any between. Small faces do not count there:
+// a fold of theirs must not grow.
 bool Part::foldGuard(std::span<const Index> merged) const {
   constexpr float kSlack = 0.01f;
   constexpr float kFold = -0.8655f;  // 149.9 degrees: places are still to be rounded
-  const float sharpest = sharpestAfter();
-  if (sharpest >= kFoldCosine) return true;
-  if (sharpest < kSharpestCosine) return false;
-  if (sharpest < kFold && sharpestBefore(merged, 0) >= kFold) return false;
-  return sharpest >= sharpestBefore(merged, kMostBetween) - kSlack;
+  const Sharpest after = sharpestAfter();
+  if (after.least() >= kFoldCosine) return true;
+  if (after.least() < kSharpestCosine) return false;
+  if (after.least() < kFold) {
+    const Sharpest before = sharpestBefore(merged, 0);
+    if (after.ridge < kFold && before.ridge >= kFold) return false;
+    if (after.valley < kFold && before.valley >= kFold) return false;
+  }
+  const Sharpest before = sharpestBefore(merged, kMostBetween);
+  return (after.ridge >= kFoldCosine || after.ridge >= before.ridge - kSlack) &&
+         (after.valley >= kFoldCosine || after.valley >= before.valley - kSlack);
 }
 
-// The cosine of the normals of a face and the one next to it, or beyond the needles without width
-// next to it, as they lie along creases: `between` of them at most.
-float Part::leastCosineAcross(Vec3f normal, Index edge, int between) const {
+// Sees the turn from a face to the one across an edge of it, or to those beyond the needles without
+// width next to it, as they lie along creases: `between` of them at most. `p` is a vertex of the
+// face.
+void Part::seeTurnAcross(Vec3f normal, Vec3f p, Index edge, int between, Sharpest& sharpest) const {
   const Index d = opposite_[edge];
-  if (d == kNone) return 1;
+  if (d == kNone) return;
   const Vec3f outer = outerNormal(edge);
   const float outer2 = squaredLength(outer);
-  if (outer2 > kFoldFace2) return dot(normal, unit(outer));
-  if (between == 0 || outer2 > kNeedleWidth * kNeedleWidth * longestEdge2(d / 3)) return 1;
-  return std::min(leastCosineAcross(normal, nextCorner(d), between - 1),
-                  leastCosineAcross(normal, previousCorner(d), between - 1));
+  if (outer2 > kFoldFace2) {
+    sharpest.see(dot(normal, unit(outer)), dot(normal, position_[vertex_[d]] - p));
+    return;
+  }
+  if (between == 0 || outer2 > kNeedleWidth * kNeedleWidth * longestEdge2(d / 3)) return;
+  seeTurnAcross(normal, p, nextCorner(d), between - 1, sharpest);
+  seeTurnAcross(normal, p, previousCorner(d), between - 1, sharpest);
 }
 
 float Part::longestEdge2(Index t) const {
@@ -189,8 +202,8 @@ float Part::longestEdge2(Index t) const {
       {squaredLength(p[1] - p[0]), squaredLength(p[2] - p[1]), squaredLength(p[0] - p[2])});
 }
 
-float Part::sharpestBefore(std::span<const Index> merged, int between) const {
-  float sharpest = 1;
+Part::Sharpest Part::sharpestBefore(std::span<const Index> merged, int between) const {
+  Sharpest sharpest;
   for (const Index v : merged) {
     Index c = corner_[v];
     do {
@@ -199,7 +212,7 @@ float Part::sharpestBefore(std::span<const Index> merged, int between) const {
       const Vec3f own = cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p);
       if (squaredLength(own) > kFoldFace2) {
         for (const Index edge : {c, nextCorner(c)}) {
-          sharpest = std::min(sharpest, leastCosineAcross(unit(own), edge, between));
+          seeTurnAcross(unit(own), p, edge, between, sharpest);
         }
       }
       c = around(c);
