@@ -3,7 +3,7 @@
 add_library(tufa_warnings INTERFACE)
 target_compile_options(tufa_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align -Woverloaded-virtual
-  -Wold-style-cast -Wconversion -Wno-sign-conversion
+  -Wold-style-cast -Wconversion -Wno-sign-conversion -Wunused-const-variable
   # The same bytes everywhere: no fused multiply-add that one compiler makes and another does not.
   -ffp-contract=off)
 if(TUFA_WARNINGS_AS_ERRORS)

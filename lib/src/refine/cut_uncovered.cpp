@@ -19,7 +19,6 @@ namespace {
 using base::Vec3f;
 using reduce::Index;
 
-constexpr std::size_t kGrain = 4096;
 constexpr std::uint32_t kNone = octree::kNone;
 
 class Finder {
