@@ -157,6 +157,24 @@ TEST_P(SampleMesh, HasAChainThatKeepsItsPromises) {
   expectPromises(chain, report);
 }
 
+// Where its sheets fold, the certificate of 5,000 triangles was fourteen tolerances.
+TEST(SampleChain, HasErrorsThatRiseWithFewerTriangles) {
+  const std::filesystem::path path = kFolder / "tri_ADIS16480.STL";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no file " << path;
+  const Mesh input = readMesh(path);
+  VoxelizeOptions options;
+  options.voxelSize = extentOf(input) / 150;
+  LodOptions levels;
+  levels.triangles = {5000, 2000};
+  const LodChain chain = buildLods(*voxelize(input, options), levels);
+  ASSERT_EQ(chain.levels.size(), 2U);
+  EXPECT_LE(chain.levels[0].certificate.maxErrorVoxels, chain.levels[1].certificate.maxErrorVoxels);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LE(chain.levels[i].mesh.triangleCount(), levels.triangles[i]);
+    EXPECT_GE(chain.levels[i].mesh.triangleCount(), levels.triangles[i] * 95 / 100);
+  }
+}
+
 // Of random LODs, each chunk within one of its neighbours.
 TEST_P(SampleMesh, HasChunksOfWhichEveryMixtureIsWhole) {
   const Mesh input = readMesh(path());

@@ -37,6 +37,10 @@ constexpr float kStep = 4;
 // phases do not; it is found to 3%.
 constexpr float kReserve = 1.5f;
 constexpr int kHalvings = 6;
+// So near a number, one in so many above it, other parts may find what is missing.
+constexpr Index kNearly = 8;
+// A certificate up to so many times the tolerance that was found is left at that.
+constexpr float kNearTolerance = 1.02f;
 // Where a tolerance above so many voxels gave little, the shape of triangles is in the way:
 // slivers, fans and turns are allowed from then on. Where that gives nothing so often, it is the
 // topology.
@@ -245,21 +249,48 @@ void Reduction::restore(const State& state) {
   isReference_ = state.isReference;
 }
 
+// Where the certificate is far beyond the tolerance that was found, the mesh is left as it was
+// around there, and the tolerance is looked for again. What was best is taken.
+float Reduction::toCount(Index count, float mostTolerance) {
+  if (triangleCount() <= count) {
+    measure(tolerance_);
+    return tolerance_;
+  }
+  const std::vector<float> scales = reference_.scales();
+  const State start = state();
+  std::optional<State> best;
+  Certificate certificate;
+  for (attempt_ = 0;; ++attempt_) {
+    const bool isReached = findCount(count, mostTolerance);
+    if (best && !isReached) break;
+    measure(tolerance_);
+    if (!best || certificate_.largest < certificate.largest) {
+      best = state(), certificate = certificate_;
+    }
+    if (!isReached || certificate_.largest <= kNearTolerance * tolerance_ ||
+        attempt_ == options_.attempts) {
+      break;
+    }
+    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance_ + kHeldVoxels);
+    restore(start);
+  }
+  restore(*best);
+  certificate_ = std::move(certificate);
+  reference_.releaseAll();
+  reference_.setScales(scales);
+  return triangleCount() <= count ? tolerance_ : mostTolerance;
+}
+
 // Growing tolerances to the first that reaches the count, and between that one and the one before
 // by halves, each from the mesh of two tolerances ago: as toTolerance() goes. So the error at the
-// count is that of the tolerance that gives as many triangles.
-float Reduction::toCount(Index count, float mostTolerance) {
-  attempt_ = 0;
+// count is that of the tolerance that gives as many triangles. Whether the count is reached.
+bool Reduction::findCount(Index count, float mostTolerance) {
   keepsShape_ = true;
   const auto isReached = [&] { return triangleCount() <= count; };
   const auto reduceTo = [&](float tolerance, int phases) {
     trees_.clear(), nextTree_ = 0;
     reduce(tolerance, count, phases);
   };
-  if (isReached()) {
-    measure(tolerance_);
-    return tolerance_;
-  }
   State start = state(), last = start;
   float low = tolerance_,
         high = std::min(std::max(tolerance_ * kStep, kFirstTolerance), mostTolerance);
@@ -275,10 +306,7 @@ float Reduction::toCount(Index count, float mostTolerance) {
     if (isLast) reduceTo(high, options_.phases);
     start = std::move(last), last = std::move(next);
     if (isReached()) break;
-    if (isLast) {
-      measure(tolerance_);
-      return mostTolerance;
-    }
+    if (isLast) return false;
     low = high / kReserve, high = std::min(high * kStep, mostTolerance);
   }
   low = std::max({low, start.tolerance, high / (kStep * kReserve)});
@@ -288,6 +316,8 @@ float Reduction::toCount(Index count, float mostTolerance) {
     restore(start);
     trees_.clear(), nextTree_ = 0;
     descendTo(middle, count);
+    const bool isNear = triangleCount() <= count + count / kNearly;
+    if (!isReached() && isNear) reduceTo(middle, options_.phases);
     if (!isReached()) {
       low = middle;
       continue;
@@ -295,8 +325,7 @@ float Reduction::toCount(Index count, float mostTolerance) {
     best = state(), high = middle;
   }
   restore(best);
-  measure(tolerance_);
-  return tolerance_;
+  return true;
 }
 
 // The collapses that a phase may still make, shared among parts by their inner vertices.

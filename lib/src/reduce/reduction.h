@@ -147,6 +147,7 @@ class Reduction {
   [[nodiscard]] State state() const;
   void restore(const State& state);
   void descendTo(float tolerance, Index count);
+  bool findCount(Index count, float mostTolerance);
   void buildParts();
   void beginLines();
   void addFacesNear(const std::vector<Index>& triangles, std::vector<Index>& faces) const;
