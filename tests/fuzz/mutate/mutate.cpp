@@ -1,7 +1,7 @@
 // mutate FOLDER [SECONDS [SEED]]: damages files of every kind and hands them to every subcommand
 // that reads them, in processes under limits of memory and time. The oracle is the exit code: no
 // signal, no code without a meaning, and one line for each refusal. Inputs that break this stay in
-// FOLDER/broken. SECONDS is the environment's TUFA_MUTATE_SECONDS by default, or 25.
+// FOLDER/broken. SECONDS is the environment's TUFA_MUTATE_SECONDS by default, or 15.
 
 #include <chrono>
 #include <cstdlib>
@@ -220,7 +220,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const char* const wanted = std::getenv("TUFA_MUTATE_SECONDS");
-  const double seconds = std::atof(argc > 2 ? argv[2] : wanted != nullptr ? wanted : "25");
+  const double seconds = std::atof(argc > 2 ? argv[2] : wanted != nullptr ? wanted : "15");
   const auto seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
   return tufa::fuzz::Mutator(argv[1], seed).run(seconds) == 0 ? 0 : 1;
 }
