@@ -157,7 +157,7 @@ TEST_P(SampleMesh, HasAChainThatKeepsItsPromises) {
   expectPromises(chain, report);
 }
 
-// Where its sheets fold, the certificate of 5,000 triangles was fourteen tolerances.
+// Where its sheets fold, 5,000 triangles had an error five times as large as 2,000.
 TEST(SampleChain, HasErrorsThatRiseWithFewerTriangles) {
   const std::filesystem::path path = kFolder / "tri_ADIS16480.STL";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no file " << path;

@@ -74,7 +74,7 @@ TEST(Solids, KeepTheirPromises) {
 // Its cut had a speck too thin for the way there to bound the way back.
 TEST(Solids, KeepTheirPromisesWhereASpeckIsThinnerThanTheTolerance) { expectKeptPromises(146); }
 
-// Beside its wedge the guard of folds let a valley be folded.
+// A wedge made the fold guard let a valley beside it be folded.
 TEST(Solids, KeepTheirPromisesWhereAValleyIsBesideAWedge) { expectKeptPromises(3246); }
 
 // Three vertices of a quad lie in line on a crease, so that rounding turned it over.

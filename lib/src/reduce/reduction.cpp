@@ -37,7 +37,8 @@ constexpr float kStep = 4;
 // phases do not; it is found to 3%.
 constexpr float kReserve = 1.5f;
 constexpr int kHalvings = 6;
-// So near a number, one in so many above it, other parts may find what is missing.
+// A mesh above the number by less than one triangle in so many gets more phases: in other parts
+// they may find what is missing.
 constexpr Index kNearly = 8;
 // A certificate up to so many times the tolerance that was found is left at that.
 constexpr float kNearTolerance = 1.02f;
@@ -249,8 +250,8 @@ void Reduction::restore(const State& state) {
   isReference_ = state.isReference;
 }
 
-// Where the certificate is far beyond the tolerance that was found, the mesh is left as it was
-// around there, and the tolerance is looked for again. What was best is taken.
+// Where the certificate is beyond the tolerance that was found, the mesh is left as it was around
+// there, and the search begins again, as in toTolerance(). The mesh of the least error is taken.
 float Reduction::toCount(Index count, float mostTolerance) {
   if (triangleCount() <= count) {
     measure(tolerance_);
