@@ -193,7 +193,7 @@ class Part {
   bool makeStar();
   Outcome shapeGuard(Index a, Index b);
   bool windsInFrame();
-  bool isSimpleStar(Index a, Index b) const;
+  bool isSimpleStar(std::span<const Index> merged) const;
   Outcome trianglesGuard(Vec3f a, Vec3f b);
   [[nodiscard]] Sharpest sharpestAfter() const;
   [[nodiscard]] bool foldGuard(std::span<const Index> merged) const;

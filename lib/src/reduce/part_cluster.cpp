@@ -296,6 +296,10 @@ Outcome Part::clusterDistanceGuard(Index nearest) {
 bool Part::clusterSamplesNear(Index t) {
   for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
     const Vec3f p = samples_[s].p - place_;
+    if (!isGraph_) {
+      if (!sampleNearStar(s, p)) return false;
+      continue;
+    }
     const float* const next =
         std::upper_bound(turns_, turns_ + size_, turnOf(dot(p, frame_.x), dot(p, frame_.y)));
     const auto after = static_cast<int>(next - turns_);
@@ -321,7 +325,7 @@ void Part::applyContraction() {
   giveSamples();
   corner_[kept_] = at_[0];
   position_[kept_] = place_, quadric_[kept_] = sum_, face_[kept_] = apexFace_;
-  axis_[kept_] = n_;
+  axis_[kept_] = isGraph_ ? n_ : Vec3f();
   moved_[kept_] = 1;
   for (int i = 0; i < newAxes_; ++i) axis_[newAxis_[i].vertex] = newAxis_[i].axis;
 }

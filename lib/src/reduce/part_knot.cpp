@@ -94,7 +94,8 @@ Outcome Part::tryKnot() {
       return Outcome::Place;
     }
     ++now_;  // samples taken in an attempt before are not taken
-    if (!makeStar() || !isGraph_ || !windsInFrame()) return Outcome::Flat;
+    if (!makeStar()) return Outcome::Flat;
+    if (!(isGraph_ ? windsInFrame() : isSimpleStar(cluster_))) return Outcome::Flat;
     if (const Outcome o = knotShapeGuard(); o != Outcome::Done) return o;
     if (!foldGuard(cluster_)) return Outcome::Fold;
     if (!ringGuard()) return Outcome::Star;
@@ -123,7 +124,8 @@ Outcome Part::knotShapeGuard() {
     const float area2 = squaredLength(was), turn = dot(normal_[i], was), along = dot(was, n_);
     const float then = sineOf(x - old, y - old), now = sineOf(x, y);
     const bool keeps = turn > 0 && turn * turn >= limits_.turnCosine * limits_.turnCosine * area2;
-    const bool wasFolded = along < 0 || along * along < kLeastCosine * kLeastCosine * area2;
+    const bool wasFolded =
+        isGraph_ && (along < 0 || along * along < kLeastCosine * kLeastCosine * area2);
     if (!keeps && then > kWorstSine2 && area2 > kTinyFace2 && !wasFolded) return Outcome::Turn;
     after = std::min(after, now), before = std::min(before, then);
     slivers += (now < limits_.leastSine2) - (then < limits_.leastSine2);

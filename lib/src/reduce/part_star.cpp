@@ -55,7 +55,8 @@ bool Part::makeStar() {
 
 Outcome Part::shapeGuard(Index a, Index b) {
   if (!makeStar()) return Outcome::Flat;
-  if (!(isGraph_ ? windsInFrame() : isSimpleStar(a, b)) && isOn(Outcome::Flat)) {
+  const Index ends[2] = {a, b};
+  if (!(isGraph_ ? windsInFrame() : isSimpleStar(ends)) && isOn(Outcome::Flat)) {
     return Outcome::Flat;
   }
   return trianglesGuard(position_[a], position_[b]);
@@ -73,8 +74,9 @@ bool Part::windsInFrame() {
 }
 
 // A star without an axis: only where intersections are tested explicitly.
-bool Part::isSimpleStar(Index a, Index b) const {
-  if (((flags_[a] | flags_[b]) & kNarrow) == 0) return false;
+bool Part::isSimpleStar(std::span<const Index> merged) const {
+  const auto isNarrow = [&](Index v) { return (flags_[v] & kNarrow) != 0; };
+  if (std::none_of(merged.begin(), merged.end(), isNarrow)) return false;
   Vec3f directions[kMostRing];
   for (int i = 0; i < size_; ++i) directions[i] = unit(spoke_[i]);
   return linkIsSimple(directions, size_, 0, size_ - 1);

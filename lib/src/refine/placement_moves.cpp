@@ -10,7 +10,11 @@ namespace {
 // Parts of the way to the next place, which are tried first.
 constexpr double kParts[] = {0.05, 0.1, 0.2, 0.4};
 // Voxels that a vertex may slide along its crease, and what their square counts beside other moves.
-constexpr double kSlides[] = {0.05, 0.1, 0.2, 0.3};
+// The last ones only along an acute edge, where normals of its sheets have a smaller cosine than
+// kAcute: many vertices crowd there.
+constexpr double kSlides[] = {0.05, 0.1, 0.2, 0.3, 0.5, 0.8};
+constexpr double kFarthestSlide = 0.3;
+constexpr double kAcute = -0.3;
 constexpr double kCostOfSlide = 0.05;
 // And over a sheet, in these directions.
 constexpr double kSlidesOnSheet[] = {0.1, 0.25, 0.5};
@@ -51,9 +55,12 @@ void PlacementMoves::add(VertexIndex vertex, const Position& plain, const Positi
 void PlacementMoves::addSlides(VertexIndex vertex, std::vector<PlacementMove>& moves) const {
   if (steps_[vertex] >= kMostParts) return;
   const Vec3 at(surface_.mesh.positions[vertex]), along = alongCrease(vertex);
+  const uniform::MeetingSheets sheets = surface_.sheets.sheets(surface_.mesh, vertex);
   if (!(along.squaredLength() > 0)) return;
   const auto step = static_cast<std::uint8_t>(steps_[vertex] + 1);
+  const bool isAcute = Vec3(sheets.normals[0]).dot(Vec3(sheets.normals[1])) < kAcute;
   for (const double slide : kSlides) {
+    if (slide > kFarthestSlide && !isAcute) break;
     for (const double way : {slide, -slide}) {
       const Vec3 to = at + along * way;
       const double cost = kCostOfSlide * (to - at).squaredLength();

@@ -58,7 +58,7 @@ constexpr auto kSlotInSlab = [] {
 void BlockVertices::place(const grid::Blocks& blocks, const CellTopology& topology,
                           const SurfaceBlock& block, grid::Accessor& accessor) {
   gather(blocks, topology, block, accessor);
-  solveVertices();
+  solveVertices(blocks.origin(block.block), accessor);
 }
 
 void BlockVertices::gather(const grid::Blocks& blocks, const CellTopology& topology,
@@ -211,7 +211,8 @@ void BlockVertices::addCrossing(int slot, const Qef& plane, Kink kink) {
   }
 }
 
-void BlockVertices::solveVertices() {
+void BlockVertices::solveVertices(const Coord& origin, grid::Accessor& accessor) {
+  const SampleBalls balls(scale_, accessor);
   points_.resize(cells_.size());
   normals_.resize(cells_.size());
   solveAll(qefs_.data() + 1, centers_.data(), cells_.size(), kHalfCell, points_.data());
@@ -222,7 +223,7 @@ void BlockVertices::solveVertices() {
     // Facets of a scan. Their planes are as good as any that could be found, and sheets of less
     // than 30 degrees lie within the vertex's reach.
     if (kinds_[i] == Kind::Near && kindOf(qefs_[i + 1]) == Kind::Near) continue;
-    if (fresh) creaseCell_.reset();
+    if (fresh) creaseCell_.reset(&balls, origin);
     fresh = false;
     placeAtCrease(i);
   }

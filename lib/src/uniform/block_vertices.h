@@ -77,7 +77,7 @@ class BlockVertices {
   void dropEdgesOfNobody();
   template <int axis>
   void addCrossing(int slot, const Qef& plane, Kink kink);
-  void solveVertices();
+  void solveVertices(const Coord& origin, grid::Accessor& accessor);
   void placeAtCrease(std::size_t vertex);
 
   const grid::FieldScale& scale_;

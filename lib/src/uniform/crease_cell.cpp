@@ -22,6 +22,13 @@ constexpr float kHalfCell = 0.5F;
 // How far a vertex may leave its cell, in voxels, where its crossings lie on sheets that meet
 // outside.
 constexpr float kBeyond = 1.0F;
+// And onto an acute edge, where the normals of two sheets have a cosine between these: cells hold
+// crossings of both still where they are a voxel apart, and beyond lies what would count as a fold.
+// The sheets must be flat, their cubes linear to kFlat voxels, as the edge is far.
+constexpr float kFarBeyond = 2.0F;
+constexpr float kAcute = -0.3F;
+constexpr float kFolded = -0.83F;
+constexpr float kFlat = 0.01F;
 // A vertex this deep in its cell, in voxels, is in it whatever the rounding.
 constexpr float kSureInside = 1e-3F;
 // A vertex on one sheet may leave its cell by this, in voxels.
@@ -172,11 +179,13 @@ void CreaseCell::sortIntoSheets() {
       sheet.normal = plus(sheet.normal, near_[i].normal, weights_[i]);
       point = plus(point, near_[i].foot, weights_[i]);
       sheet.weight += weights_[i];
+      sheet.residual += weights_[i] * near_[i].residual;
       members_.push_back(i);
     }
     const float length = std::sqrt(dot(sheet.normal, sheet.normal));
     for (float& n : sheet.normal) n /= length;
     sheet.offset = dot(sheet.normal, point) / sheet.weight;
+    sheet.residual /= sheet.weight;
     for (int i = 0; i < 3; ++i) sheet.middle[i] = point[i] / sheet.weight;
     bendSide(sheet);
     for (const std::size_t member : members_) weights_[member] = 0;
@@ -352,6 +361,21 @@ void CreaseCell::setNormal(CreasePlacement& placement, std::initializer_list<int
   placement.planes = static_cast<int>(sheets.size());
 }
 
+float CreaseCell::mostBeyond(int a, int b) const {
+  if (balls_ == nullptr) return kBeyond;
+  const Sheet &one = sheets_[a], &other = sheets_[b];
+  const bool isFlat = std::max(one.residual, other.residual) < kFlat;
+  const float cosine = dot(one.normal, other.normal);
+  return isFlat && cosine < kAcute && cosine > kFolded ? kFarBeyond : kBeyond;
+}
+
+bool CreaseCell::isBelieved(const Vector& point) const {
+  if (!isOnSurface(point)) return false;
+  if (balls_ == nullptr || outside(point) <= kBeyond) return true;
+  const Vec3 middle(cell_[0] + 0.5, cell_[1] + 0.5, cell_[2] + 0.5);
+  return balls_->admit(middle + Vec3(point[0], point[1], point[2]), origin_);
+}
+
 bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,
                                CreasePlacement& placement) const {
   float nearest = std::numeric_limits<float>::infinity();
@@ -362,11 +386,13 @@ bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,
         if (beyond && !(sheets_[i].crossed && sheets_[j].crossed && sheets_[k].crossed)) continue;
         Vector point{};
         if (!moveOntoAll({planeOf(i), planeOf(j), planeOf(k)}, point)) continue;
-        if (outside(point) > kBeyond + kFarthestBend) continue;
+        const float most =
+            beyond ? std::max({mostBeyond(i, j), mostBeyond(i, k), mostBeyond(j, k)}) : 0;
+        if (outside(point) > most + kFarthestBend) continue;
         followBends(point, {i, j, k});
-        if (outside(point) > (beyond ? kBeyond : 0)) continue;
+        if (outside(point) > most) continue;
         const Vector apart = plus(point, massPoint, -1);
-        if (dot(apart, apart) >= nearest || !isOnSurface(point)) continue;
+        if (dot(apart, apart) >= nearest || !isBelieved(point)) continue;
         nearest = dot(apart, apart);
         placement.point = point;
         setNormal(placement, {i, j, k});
@@ -390,10 +416,10 @@ bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
       const Vector direction =
           cross(tangentAt(sheets_[i], point).normal, tangentAt(sheets_[j], point).normal);
       const Vector before = point;
-      if (!slideInto(kHalfCell + (beyond ? kBeyond : 0), direction, point)) continue;
+      if (!slideInto(kHalfCell + (beyond ? mostBeyond(i, j) : 0), direction, point)) continue;
       if (point != before) followBends(point, {i, j});
       const Vector apart = plus(point, massPoint, -1);
-      if (dot(apart, apart) >= nearest || !isOnSurface(point)) continue;
+      if (dot(apart, apart) >= nearest || !isBelieved(point)) continue;
       nearest = dot(apart, apart);
       placement.point = point;
       setNormal(placement, {i, j});

@@ -4,6 +4,7 @@
 
 #include "uniform/patch_planes.h"
 #include "uniform/qef.h"
+#include "uniform/sample_balls.h"
 
 namespace tufa::uniform {
 
@@ -27,9 +28,9 @@ struct TangentPlane {
 /// The planes whose feet lie near the cell are sorted into smooth sheets; each is a plane that
 /// bends as the normals of its members change from foot to foot. The vertex is the first of these
 /// that exists: the corner of three sheets in the cell; the point of the crease of two sheets in
-/// the cell nearest to the mass point; a corner or crease up to a voxel outside, if crossings of
-/// the cell lie on all its sheets, as then no cell with a vertex holds it; a point of the one sheet
-/// that passes nearest to the mass point.
+/// the cell nearest to the mass point; a corner or crease up to a voxel outside, or two if it is
+/// acute, if crossings of the cell lie on all its sheets, as then no cell with a vertex holds it; a
+/// point of the one sheet that passes nearest to the mass point.
 ///
 /// Why a candidate is believed: the surface enters no ball around a sample whose radius is the
 /// sample's distance. A point where only continuations of the planes meet, and not the sheets
@@ -42,8 +43,13 @@ class CreaseCell {
   CreaseCell(const grid::BlockSamples& samples, const grid::FieldScale& scale)
       : samples_(samples), scale_(scale), planes_(samples, scale) {}
 
-  /// To be called when the samples change to another block.
-  void reset() { planes_.reset(); }
+  /// To be called when the samples change to another block. With `balls` and the block's first
+  /// lattice point, a vertex may go as far as two voxels out of its cell, onto acute edges.
+  void reset(const SampleBalls* balls = nullptr, const Coord& origin = Coord(0)) {
+    planes_.reset();
+    balls_ = balls;
+    origin_ = origin;
+  }
 
   /// Places the vertex of one cell. `x`, `y`, `z` are its place in the block, 0..7; `massPoint` is
   /// in voxels from the middle of the cell.
@@ -56,6 +62,7 @@ class CreaseCell {
     float offset = 0;
     float weight = 0;
     bool crossed = false;  ///< a crossing of the cell lies on it
+    float residual = 0;    ///< mean of its cubes', in voxels
     Vector middle{};       ///< mean of the feet
     /// Change of the normal for each step away from the middle: xx, xy, xz, yy, yz, zz.
     std::array<float, 6> bend{};
@@ -78,6 +85,10 @@ class CreaseCell {
   [[nodiscard]] TangentPlane planeOf(int sheet) const {
     return {sheets_[sheet].normal, sheets_[sheet].offset};
   }
+  // How far out of the cell, in voxels, a place on two sheets may lie.
+  [[nodiscard]] float mostBeyond(int a, int b) const;
+  // Whether a place on sheets that its crossings lie on is believed.
+  [[nodiscard]] bool isBelieved(const Vector& point) const;
   void bendSide(Sheet& sheet) const;
   // The tangent plane of a bent sheet near a point.
   [[nodiscard]] static TangentPlane tangentAt(const Sheet& sheet, const Vector& point);
@@ -96,6 +107,8 @@ class CreaseCell {
   /// enter.
   std::array<std::array<float, 4>, 16> squaredBalls_{};
   std::array<int, 3> cell_{};
+  const SampleBalls* balls_ = nullptr;
+  Coord origin_{0};
 };
 
 }  // namespace tufa::uniform

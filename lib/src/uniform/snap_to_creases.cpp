@@ -18,6 +18,13 @@ namespace {
 
 // The farthest a vertex may move, in voxels.
 constexpr double kFarthest = 1.0;
+// And onto an acute edge, where normals of two sheets have a cosine between these: its cells hold
+// crossings of both sheets still where they are a voxel apart, and beyond lies what would count as
+// a fold. The sheets must be flat, to so many voxels, as it is far.
+constexpr double kFarthestAcute = 2.0;
+constexpr double kAcute = -0.3;
+constexpr double kFolded = -0.83;
+constexpr double kFlat = 0.05;
 // Two corners nearer than this, in voxels, are one.
 constexpr double kSameCorner = 0.5;
 // A snap may leave a defect in the next quad, and of snaps beside each other only one is made in a
@@ -66,11 +73,13 @@ std::optional<Vec3> onAll(const Plane& a, const Plane& b, const Plane& c) {
 
 class CreaseSnapper {
  public:
-  CreaseSnapper(Mesh& mesh, VertexSheets& sheets, double voxelSize, const QuadsAt& quadsAt)
+  CreaseSnapper(Mesh& mesh, VertexSheets& sheets, double voxelSize, const QuadsAt& quadsAt,
+                const Admits& admits)
       : mesh_(mesh),
         sheets_(sheets),
         voxelSize_(voxelSize),
         quadsAt_(quadsAt),
+        admits_(admits),
         corners_(kSameCorner * voxelSize) {}
 
   std::size_t run(base::Job& job) {
@@ -200,15 +209,42 @@ class CreaseSnapper {
       if (!around.known(corner)) continue;
       proposeCorners(q, around, corner, best);
     }
-    if (!(best.distance < kFarthest * voxelSize_)) {
+    if (!std::isfinite(best.distance)) {
       for (int corner = 0; corner < 4; ++corner) {
         if (around.known(corner)) proposeCreases(q, around, corner, best);
       }
     }
-    if (!(best.distance < kFarthest * voxelSize_)) return {};
+    if (!std::isfinite(best.distance)) return {};
     best.quad = quad;
     best.order = orderOf(best);
     return best;
+  }
+
+  // Whether a place farther than most is believed: an acute edge of flat sheets, in no ball.
+  [[nodiscard]] bool isFarEdge(const Quad& quad, const QuadSheets& around, const Vec3& point,
+                               double distance, std::initializer_list<Plane> planes) const {
+    if (!(distance < kFarthestAcute * voxelSize_)) return false;
+    const bool isAcute = std::any_of(planes.begin(), planes.end(), [&](const Plane& a) {
+      return std::any_of(planes.begin(), planes.end(), [&](const Plane& b) {
+        const double cosine = a.normal.dot(b.normal);
+        return cosine < kAcute && cosine > kFolded;
+      });
+    });
+    return isAcute && isFlat(quad, around) && admits_(point);
+  }
+
+  // Whether all corners of a quad on one of its sheets lie in one plane.
+  [[nodiscard]] bool isFlat(const Quad& quad, const QuadSheets& around) const {
+    for (int side = 0; side < around.count(); ++side) {
+      std::optional<Vec3> first;
+      for (int corner = 0; corner < 4; ++corner) {
+        if (!around.known(corner) || !around.lies(corner, side)) continue;
+        const Vec3 point = pointOf(quad.vertices[corner]);
+        if (!first) first = point;
+        if (std::abs(around.normal(side).dot(point - *first)) > kFlat * voxelSize_) return false;
+      }
+    }
+    return true;
   }
 
   // The plane of a sheet, through vertex `corner` itself if that lies on it, else through the next
@@ -254,7 +290,7 @@ class CreaseSnapper {
       for (int b = 0; b < around.count(); ++b) {
         if (b == a || !planes[b]) continue;
         const auto point = onBoth(*planes[a], *planes[b], from);
-        if (point) consider(vertex, from, *point, {*planes[a], *planes[b]}, best);
+        if (point) consider(quad, around, vertex, from, *point, {*planes[a], *planes[b]}, best);
       }
     }
   }
@@ -273,16 +309,19 @@ class CreaseSnapper {
           if (!planes[a] || !planes[b] || !planes[c]) continue;
           const auto point = onAll(*planes[a], *planes[b], *planes[c]);
           if (!point || !((*point - from).length() < best.distance) || isCorner(*point)) continue;
-          consider(vertex, from, *point, {*planes[a], *planes[b], *planes[c]}, best);
+          consider(quad, around, vertex, from, *point, {*planes[a], *planes[b], *planes[c]}, best);
         }
       }
     }
   }
 
-  static void consider(VertexIndex vertex, const Vec3& from, const Vec3& point,
-                       std::initializer_list<Plane> planes, Move& best) {
+  void consider(const Quad& quad, const QuadSheets& around, VertexIndex vertex, const Vec3& from,
+                const Vec3& point, std::initializer_list<Plane> planes, Move& best) const {
     const double distance = (point - from).length();
     if (distance >= best.distance) return;
+    if (distance >= kFarthest * voxelSize_ && !isFarEdge(quad, around, point, distance, planes)) {
+      return;
+    }
     best.distance = distance;
     best.vertex = vertex;
     best.point = point;
@@ -310,6 +349,7 @@ class CreaseSnapper {
   VertexSheets& sheets_;
   double voxelSize_;
   const QuadsAt& quadsAt_;
+  const Admits& admits_;
   PointGrid corners_;
   std::vector<VertexIndex> touched_;     // around which the next round looks
   std::vector<std::uint8_t> isTouched_;  // of each vertex
@@ -320,8 +360,8 @@ class CreaseSnapper {
 }  // namespace
 
 std::size_t snapToCreases(Mesh& mesh, VertexSheets& sheets, double voxelSize,
-                          const QuadsAt& quadsAt, base::Job& job) {
-  return CreaseSnapper(mesh, sheets, voxelSize, quadsAt).run(job);
+                          const QuadsAt& quadsAt, const Admits& admits, base::Job& job) {
+  return CreaseSnapper(mesh, sheets, voxelSize, quadsAt, admits).run(job);
 }
 
 }  // namespace tufa::uniform

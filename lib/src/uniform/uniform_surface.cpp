@@ -9,6 +9,7 @@
 #include "uniform/block_ranges.h"
 #include "uniform/place_vertices.h"
 #include "uniform/quads.h"
+#include "uniform/sample_balls.h"
 #include "uniform/snap_to_creases.h"
 
 namespace tufa::uniform {
@@ -49,6 +50,12 @@ UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& opt
         surface.mesh, surface.sheets, surface.affine().voxelSize(),
         [&](const std::vector<VertexIndex>& vertices, const std::vector<std::uint8_t>& marks) {
           return quadsAt(surface.topology, surface.mesh, vertices, marks, job);
+        },
+        [&](const Position& place) {
+          const auto accessor = surface.volume.blocks.accessor();
+          const Coord& origin = surface.affine().origin();
+          return SampleBalls(scale, *accessor)
+              .admit(surface.affine().latticePoint(place, origin), origin);
         },
         job);
     splitAtCreases(surface.view(), surface.mesh, job);

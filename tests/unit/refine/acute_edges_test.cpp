@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -169,6 +171,81 @@ TEST(AcuteEdges, CoarsenInLineWithTheLattice) {
         EXPECT_EQ(countFolds(mesh), 0);
       }
     }
+  }
+}
+
+// A solid between planes of these normals, each in that distance from its middle, turned as the
+// seed says: no edge is in line with the lattice.
+openvdb::FloatGrid::Ptr makeTurned(std::vector<Vec3> normals, const std::vector<double>& distances,
+                                   unsigned seed) {
+  std::mt19937 random(seed);
+  const auto number = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  for (const std::size_t axis : {0, 1, 2, 0}) {
+    const double turn = 6.28318530718 * number(), c = std::cos(turn), s = std::sin(turn);
+    for (Vec3& n : normals) {
+      double &x = n[static_cast<int>((axis + 1) % 3)], &y = n[static_cast<int>((axis + 2) % 3)];
+      std::tie(x, y) = std::pair(c * x - s * y, s * x + c * y);
+    }
+  }
+  const Vec3 middle(number(), number(), number());
+  const auto grid = openvdb::FloatGrid::create(3);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  constexpr int kSize = 48;
+  for (int x = -kSize; x <= kSize; ++x) {
+    for (int y = -kSize; y <= kSize; ++y) {
+      for (int z = -kSize; z <= kSize; ++z) {
+        double d = -3;
+        for (std::size_t i = 0; i < normals.size() && d < 3; ++i) {
+          d = std::max(d, normals[i].dot(Vec3(x, y, z) - middle) - distances[i]);
+        }
+        if (d >= 3) continue;
+        const openvdb::Coord at(x, y, z);
+        if (d > -3)
+          grid->tree().setValue(at, static_cast<float>(d));
+        else
+          grid->tree().setValueOff(at, -3.0f);
+      }
+    }
+  }
+  return grid;
+}
+
+// Cells hold crossings of both sheets up to two voxels behind such an edge, which their vertices
+// reach. What is left comes from crowded places of the edge, and from samples that are alone.
+TEST(AcuteEdges, CoarsenWhereverTheyPoint) {
+  const double third = 1 / std::sqrt(3.0);
+  const std::vector<Vec3> tetrahedron = {{third, third, third},
+                                         {third, -third, -third},
+                                         {-third, third, -third},
+                                         {-third, -third, third}};
+  const auto prism = [](double degrees) {
+    const double half = degrees / 2 * 3.14159265358979 / 180;
+    return std::vector<Vec3>{{-std::sin(half), std::cos(half), 0},
+                             {-std::sin(half), -std::cos(half), 0},
+                             {1, 0, 0},
+                             {0, 0, 1},
+                             {0, 0, -1}};
+  };
+  const auto count = [](const openvdb::FloatGrid::Ptr& grid) {
+    ContourOptions options;
+    options.tolerance = 0.1;
+    ContourReport report;
+    const Mesh mesh = contour(*grid, options, &report);
+    EXPECT_EQ(report.intersectionsLeft, 0U);
+    EXPECT_EQ(countFolds(mesh), 0);
+    return mesh.triangles.size();
+  };
+  std::vector<std::size_t> counts[3];
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    counts[0].push_back(count(makeTurned(tetrahedron, {9, 9, 9, 9}, seed)));
+    counts[1].push_back(count(makeTurned(prism(70), {8, 8, 14, 16, 16}, seed)));
+    counts[2].push_back(count(makeTurned(prism(50), {6, 6, 16, 16, 16}, seed)));
+  }
+  for (auto& of : counts) std::sort(of.begin(), of.end());
+  EXPECT_LE(counts[0].back(), 12U);
+  for (const auto& prisms : {counts[1], counts[2]}) {
+    EXPECT_LE(prisms[prisms.size() / 2], 24U);
+    EXPECT_LE(prisms.back(), 40U);
   }
 }
 

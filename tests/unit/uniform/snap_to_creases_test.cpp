@@ -17,7 +17,8 @@ const float kHalf = std::sqrt(0.5F);
 const Normal kLeft(-kHalf, 0, kHalf);
 const Normal kRight(kHalf, 0, kHalf);
 
-std::size_t snap(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job) {
+std::size_t snap(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& job,
+                 bool admits = true) {
   const auto quadsAt = [&](const std::vector<VertexIndex>&,
                            const std::vector<std::uint8_t>& marks) {
     std::vector<std::uint32_t> quads;
@@ -27,7 +28,8 @@ std::size_t snap(Mesh& mesh, VertexSheets& sheets, double voxelSize, base::Job& 
     }
     return quads;
   };
-  return snapToCreases(mesh, sheets, voxelSize, quadsAt, job);
+  return snapToCreases(
+      mesh, sheets, voxelSize, quadsAt, [&](const Position&) { return admits; }, job);
 }
 
 /// A roof with its ridge along y at x = 0, z = 0, and quads that step over it.
@@ -157,6 +159,44 @@ TEST(PromoteToCreases, LeavesWhatIsTooFar) {
   Roof roof;
   base::Job job(1, {});
   EXPECT_EQ(snap(roof.mesh, roof.sheets, 0.2, job), 0U);  // in voxels of a fifth
+}
+
+/// A ridge along y at x = 0, z = 0, as steep as that, and a quad that steps over it 1.5 below.
+struct Wedge {
+  Mesh mesh;
+  VertexSheets sheets{4};
+
+  explicit Wedge(double steepness) {
+    const Normal left = toNormal({-steepness, 0, 1}), right = toNormal({steepness, 0, 1});
+    const double half = 1.5 / std::sqrt(1 + steepness * steepness);
+    for (const double y : {0.0, 1.0}) {
+      mesh.positions.emplace_back(-half, y, -half * steepness);
+      mesh.positions.emplace_back(half, y, -half * steepness);
+      mesh.normals.push_back(left);
+      mesh.normals.push_back(right);
+    }
+    mesh.quads.emplace_back(0, 1, 3, 2);
+    sheets.setKinds(0, std::vector<Kind>(4, Kind::Near));
+  }
+  static Normal toNormal(const Vec3& v) { return Normal(v.unitOrX()); }
+};
+
+// Two voxels are near enough onto an acute edge that the samples admit.
+TEST(PromoteToCreases, GoesFartherOntoAcuteEdges) {
+  base::Job job(1, {});
+  Wedge acute(3);  // 37 degrees
+  EXPECT_GT(snap(acute.mesh, acute.sheets, 1, job), 0U);
+  EXPECT_TRUE(acute.sheets.isSharp(0) || acute.sheets.isSharp(1) || acute.sheets.isSharp(2) ||
+              acute.sheets.isSharp(3));
+  Wedge blunt(3);
+  EXPECT_EQ(snap(blunt.mesh, blunt.sheets, 1, job, false), 0U);
+  Wedge farther(3);
+  EXPECT_EQ(snap(farther.mesh, farther.sheets, 0.7, job), 0U);
+  Wedge obtuse(0.8);  // 103 degrees
+  EXPECT_EQ(snap(obtuse.mesh, obtuse.sheets, 1, job), 0U);
+  Wedge bent(3);
+  bent.mesh.positions[0].x -= 0.1;
+  EXPECT_EQ(snap(bent.mesh, bent.sheets, 1, job), 0U);
 }
 
 TEST(PromoteToCreases, LeavesSmoothVertices) {
