@@ -19,8 +19,7 @@ inline constexpr float kFar2 = 1e30f;
 
 /// A way over triangles.
 struct OverlayPath {
-  static constexpr int kMost = 16;    ///< triangles
-  static constexpr int kDeepest = 8;  ///< triangles of one that is searched for
+  static constexpr int kMost = 48;  ///< triangles: a face may lie over a fan of needles
   std::array<Index, kMost> triangles;
   int count = 0;
   float largest2 = 0;  ///< the largest squared distance of the segment from an edge on the way
@@ -38,7 +37,7 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
     int before, depth;
     float largest2;
   };
-  constexpr int kLooked = 40;
+  constexpr int kLooked = 256;
   Step steps[kLooked];
   int count = 1;
   steps[0] = {from, -1, 1, 0};
@@ -62,7 +61,7 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
   }
   for (int k = 0; k < count; ++k) {
     const Step step = steps[k];
-    if (step.depth == OverlayPath::kDeepest) break;
+    if (step.depth == OverlayPath::kMost) break;
     Index next[3];
     for (int i = 0; i < 3; ++i) {
       next[i] = mesh.across(step.triangle, i);
@@ -72,7 +71,7 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
       if (d2 <= limit2) return arrive(k, std::max(step.largest2, d2));
       next[i] = kNone;
     }
-    if (step.depth + 1 == OverlayPath::kDeepest) continue;
+    if (step.depth + 1 == OverlayPath::kMost) continue;
     for (int i = 0; i < 3; ++i) {
       if (next[i] == kNone || count == kLooked) continue;
       if constexpr (requires { mesh.mayPass(next[i], from, to); }) {

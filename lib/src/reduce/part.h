@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,11 @@ class Part {
   [[nodiscard]] std::vector<Form>& forms() { return newForms_; }
 
  private:
+  /// What changes in a region for the sake of a plane, as forms of different regions do not meet.
+  struct FormsOfRegion {
+    std::vector<Form> old, foreign;
+    std::vector<Index> changed;  ///< triangles
+  };
   static constexpr Index kBuckets = 512;
   struct Candidate {
     Index a, b, versionA, versionB;
@@ -183,8 +189,8 @@ class Part {
   // part_forms.cpp.
   void loadForms(const Surface& surface);
   [[nodiscard]] Form formOf(Index t, Index plane) const;
-  [[nodiscard]] bool meetsOldForm(const Form& form) const;
-  [[nodiscard]] bool meetsNewForm(const Form& form) const;
+  [[nodiscard]] static bool meetsOldForm(const Form& form, const FormsOfRegion& forms);
+  [[nodiscard]] bool meetsNewForm(const Form& form, const FormsOfRegion& forms) const;
   [[nodiscard]] bool formsMeet(Index kept, Index gone) const;
   void noteForms(Index plane);
 
@@ -266,7 +272,8 @@ class Part {
   // In a step of LineMode::Alone. For each triangle Surface::changeOf, and those where it is not
   // kNone; changed triangles near, as they were; foreign ones as they are.
   std::vector<Index> changeOf_, changed_;
-  std::vector<Form> oldForms_, foreignForms_, newForms_;
+  std::vector<Form> newForms_;
+  std::unordered_map<Index, FormsOfRegion> formsOf_;
   // For each corner; for each triangle its first sample; for each sample.
   std::vector<Index> vertex_, opposite_, firstSample_;
   std::vector<Sample> samples_;

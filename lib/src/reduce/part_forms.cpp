@@ -83,13 +83,15 @@ bool mayMeet(Form a, Form b) {
 void Part::loadForms(const Surface& surface) {
   const auto triangles = partition_->triangles(number_);
   changeOf_.resize(triangleCount_);
-  changed_.clear(), oldForms_.clear(), foreignForms_.clear();
+  changed_.clear(), formsOf_.clear();
   for (Index t = 0; t < triangleCount_; ++t) {
     changeOf_[t] = surface.changeOf[triangles[t]];
-    if (changeOf_[t] != kNone) changed_.push_back(t);
+    if (changeOf_[t] == kNone) continue;
+    changed_.push_back(t);
+    formsOf_[region_[t]].changed.push_back(t);
   }
   for (const Form& form : surface.oldForms) {
-    if (box_.meets(boxOf(form.corners.data()))) oldForms_.push_back(form);
+    if (box_.meets(boxOf(form.corners.data()))) formsOf_[form.region].old.push_back(form);
   }
   for (const Index t : partition_->foreign(number_)) {
     if (surface.changeOf[t] == kNone) continue;
@@ -98,7 +100,7 @@ void Part::loadForms(const Surface& surface) {
       form.corners[i] = surface.corner(t, i);
       form.names[i] = surface.line[surface.triangles[t].vertices[i]].name;
     }
-    foreignForms_.push_back(form);
+    formsOf_[form.region].foreign.push_back(form);
   }
 }
 
@@ -111,21 +113,18 @@ Form Part::formOf(Index t, Index plane) const {
   return form;
 }
 
-bool Part::meetsOldForm(const Form& form) const {
-  for (const Form& old : oldForms_) {
-    if (old.plane != form.plane && old.region == form.region && mayMeet(form, old)) return true;
-  }
-  return false;
+bool Part::meetsOldForm(const Form& form, const FormsOfRegion& forms) {
+  return std::any_of(forms.old.begin(), forms.old.end(), [&](const Form& old) {
+    return old.plane != form.plane && mayMeet(form, old);
+  });
 }
 
-bool Part::meetsNewForm(const Form& form) const {
-  for (const Form& other : foreignForms_) {
-    if (other.plane != form.plane && other.region == form.region && mayMeet(form, other)) {
-      return true;
-    }
+bool Part::meetsNewForm(const Form& form, const FormsOfRegion& forms) const {
+  for (const Form& other : forms.foreign) {
+    if (other.plane != form.plane && mayMeet(form, other)) return true;
   }
-  for (const Index t : changed_) {
-    if (isDead(t) || changeOf_[t] == form.plane || region_[t] != form.region) continue;
+  for (const Index t : forms.changed) {
+    if (isDead(t) || changeOf_[t] == form.plane) continue;
     if (mayMeet(form, formOf(t, changeOf_[t]))) return true;
   }
   return false;
@@ -140,15 +139,17 @@ bool Part::meetsNewForm(const Form& form) const {
 bool Part::formsMeet(Index kept, Index gone) const {
   const Index plane = planeOfGoing(gone);
   const auto meets = [&](Index t) {
+    const auto forms = formsOf_.find(region_[t]);
+    if (forms == formsOf_.end()) return false;
     Form form = formOf(t, plane);
-    if (changeOf_[t] == kNone && meetsNewForm(form)) return true;
+    if (changeOf_[t] == kNone && meetsNewForm(form, forms->second)) return true;
     int merged = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if (form.names[i] != line_[gone].name && form.names[i] != line_[kept].name) continue;
       form.names[i] = line_[kept].name, form.corners[i] = place_;
       ++merged;
     }
-    return merged < 2 && meetsOldForm(form);
+    return merged < 2 && meetsOldForm(form, forms->second);
   };
   for (int i = isMovingKept() ? 0 : split_; i < size_; ++i) {
     if (meets(at_[i] / 3)) return true;
@@ -160,10 +161,12 @@ bool Part::formsMeet(Index kept, Index gone) const {
 void Part::noteForms(Index plane) {
   const auto note = [&](Index t) {
     if (changeOf_[t] != kNone) return;
-    oldForms_.push_back(formOf(t, plane));
-    newForms_.push_back(oldForms_.back());
+    newForms_.push_back(formOf(t, plane));
     changeOf_[t] = plane;
     changed_.push_back(t);
+    FormsOfRegion& forms = formsOf_[region_[t]];
+    forms.old.push_back(newForms_.back());
+    forms.changed.push_back(t);
   };
   for (int i = isMovingKept() ? 0 : split_; i < size_; ++i) note(at_[i] / 3);
   note(left_ / 3), note(right_ / 3);
