@@ -132,6 +132,39 @@ TEST(Certificate, PullsLoopsOverVerticesInsideAFace) {
   EXPECT_LE(bumpy.largest, 0.3f);
 }
 
+// A prism over a long triangle, the far side of which has so many points: fans of needles.
+test::FineMesh prismOfFans(Index points) {
+  test::FineMesh mesh;
+  for (const float z : {1.0f, -1.0f}) {
+    mesh.positions.emplace_back(0.0f, 0.0f, z);
+    for (Index i = 0; i < points; ++i) {
+      const float share = static_cast<float>(i) / static_cast<float>(points - 1);
+      mesh.positions.emplace_back(40.0f, 3 * share - 1.5f, z);
+    }
+  }
+  const Index below = points + 1;
+  for (Index i = 1; i < points; ++i) {
+    mesh.triangles.emplace_back(0, i, i + 1);
+    mesh.triangles.emplace_back(below, below + i + 1, below + i);
+  }
+  for (Index i = 0; i <= points; ++i) {
+    const Index next = i == points ? 0 : i + 1;
+    mesh.triangles.emplace_back(i, below + i, below + next);
+    mesh.triangles.emplace_back(i, below + next, next);
+  }
+  return mesh;
+}
+
+// A face there lies over dozens of needles, all of which its edges pass.
+TEST(Certificate, FollowsFacesOverFansOfNeedles) {
+  const test::FineMesh reference = test::subdivided(prismOfFans(2), 1);
+  for (const Index points : {9U, 17U, 33U}) {
+    const Certificate c = certified(prismOfFans(points), reference, 0.01f);
+    EXPECT_EQ(c.halved, 0U) << points;
+    EXPECT_LT(c.largest, 1e-4f) << points;
+  }
+}
+
 TEST(Certificate, IsNoLessThanTheSampledDistanceOfAnyTwoMeshes) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const float radius = 6;
