@@ -50,26 +50,31 @@ class RegionMaxima {
  public:
   explicit RegionMaxima(const Surface& s)
       : s_(s),
-        largest_(s.region.empty() ? 0 : 1 + *std::max_element(s.region.begin(), s.region.end())) {}
+        largest_(s.region.empty() ? 0 : 1 + *std::max_element(s.region.begin(), s.region.end())),
+        atVertex_(largest_.empty() ? 0 : s.position.size()) {}
 
   void see(Index triangle, float value) {
     if (!largest_.empty()) raise(largest_[s_.region[triangle]], value);
   }
 
-  // A way over the triangles around some owners.
-  void seeAround(const std::array<Index, 3>& owners, const CornersOfVertices& corners,
-                 float value) {
+  // A way over the triangles around some owners: at lines those of other regions are among them.
+  void seeAround(const std::array<Index, 3>& owners, float value) {
     if (largest_.empty()) return;
     for (const Index owner : owners) {
       see(owner, value);
       for (const Index v : s_.triangles[owner].vertices) {
-        if (!s_.isOnLine(v)) continue;
-        for (const Index c : corners.of(v)) see(c / 3, value);
+        if (s_.isOnLine(v)) raise(atVertex_[v], value);
       }
     }
   }
 
-  std::vector<float> take() { return std::move(largest_); }
+  std::vector<float> take(const CornersOfVertices& corners) {
+    for (Index v = 0; v < atVertex_.size(); ++v) {
+      if (atVertex_[v] == 0) continue;
+      for (const Index c : corners.of(v)) see(c / 3, atVertex_[v]);
+    }
+    return std::move(largest_);
+  }
 
  private:
   static void raise(float& largest, float value) {
@@ -81,6 +86,7 @@ class RegionMaxima {
 
   const Surface& s_;
   std::vector<float> largest_;
+  std::vector<float> atVertex_;  // of lines
 };
 
 class Measure {
@@ -148,7 +154,7 @@ class Measure {
     const auto toTriangle = [&](Vec3f q, Index t) { return distance(q, t); };
     const float way =
         Halving(toTriangle, Sphere{{}, kEverywhere}, expected_).bound(face.corners, around);
-    regions_.seeAround(face.owners, corners_, way);
+    regions_.seeAround(face.owners, way);
     measured.see(way, f, expected_);
   }
 
@@ -190,6 +196,7 @@ class Measure {
     seeWayBack(triangle, near.front(), boundTo(near, p, {{}, kEverywhere}), measured);
   }
 
+  [[nodiscard]] const CornersOfVertices& corners() const { return corners_; }
   [[nodiscard]] Uncovered uncovered(std::span<const Index> gaps, base::Job& job) const {
     return findUncovered(overlay_, corners_, reference_, owner_, gaps, expected_, job);
   }
@@ -289,7 +296,7 @@ class Measure {
     if (face.hasOneOwner()) return true;
     const float way = std::sqrt(overlayBound2(overlay_, face, expected_ * expected_));
     if (!(way <= expected_)) return false;
-    regions_.seeAround(face.owners, corners_, way);
+    regions_.seeAround(face.owners, way);
     measured.see(way, f, expected_);
     return true;
   }
@@ -411,7 +418,7 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     all.beyond.insert(all.beyond.end(), p.beyond.begin(), p.beyond.end());
   }
   sortUnique(all.beyond);
-  all.ofRegion = regions.take();
+  all.ofRegion = regions.take(measure.corners());
   all.mean = vertices == 0 ? 0 : static_cast<float>(sum / static_cast<double>(vertices));
   return all;
 }
