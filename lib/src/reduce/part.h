@@ -321,6 +321,8 @@ class Part {
   Vec3f place_, n_;
   base::Frame frame_;
   bool isGraph_ = true;         ///< the new star is a graph over n_
+  float tilt_[kMostRing];       ///< if it is none: of normals by rounding, at most
+  int nearestWedge_ = 0;        ///< if it is none: of the sample before
   Vec3f spoke_[kMostRing + 1];  ///< from the place to the ring
   Vec3f normal_[kMostRing];     ///< of the new triangles
   Vec3f z_[kMostRing + 1];      ///< spokes in the frame, with the height last

@@ -93,14 +93,23 @@ bool Part::sampleNearGraph(Index s, Vec3f p, int wedge) {
   return squaredDistanceToTriangle(q, {}, z_[w], z_[w + 1]) <= squaredDistance_;
 }
 
-// The star is no graph: by the nearest of all its triangles.
+// The star is no graph: by the nearest of all its triangles. That of the sample before is looked at
+// first, as others whose planes are farther away need not be.
 bool Part::sampleNearStar(Index s, Vec3f p) {
-  float best = kFar2;
-  int wedge = 0;
+  constexpr float kSlack = 1e-4f;  // voxels; more than rounding of the distance
+  const float far = length(p);
+  const auto distance2 = [&](int i) {
+    return squaredDistanceToTriangle(p, {}, spoke_[i], spoke_[i + 1]);
+  };
+  int wedge = nearestWedge_;
+  float best = distance2(wedge);
   for (int i = 0; i < size_; ++i) {
-    const float d2 = squaredDistanceToTriangle(p, {}, spoke_[i], spoke_[i + 1]);
-    if (d2 < best) best = d2, wedge = i;
+    const float away = std::abs(dot(normal_[i], p)) - tilt_[i] * far - kSlack;
+    if (i == nearestWedge_ || (away > 0 && away * away > best)) continue;
+    const float d2 = distance2(i);
+    if (d2 < best || (d2 == best && i < wedge)) best = d2, wedge = i;
   }
+  nearestWedge_ = wedge;
   taken_.push_back({s, at_[wedge] / 3});
   return best <= squaredDistance_;
 }

@@ -50,6 +50,14 @@ bool Part::makeStar() {
     z_[i] = {dot(spoke_[i], frame_.x), dot(spoke_[i], frame_.y), dot(spoke_[i], n_)};
   }
   z_[size_] = z_[0];
+  if (isGraph_) return true;
+  nearestWedge_ = 0;
+  for (int i = 0; i < size_; ++i) {
+    constexpr float kRounding = 1e-6f;
+    const float area = length(cross(spoke_[i], spoke_[i + 1]));
+    const float most = kRounding * length(spoke_[i]) * length(spoke_[i + 1]);
+    tilt_[i] = area > kLeastLength ? most / area : 2;
+  }
   return true;
 }
 
