@@ -1,7 +1,6 @@
 #include "chunks/cut/cut_mesh.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -14,6 +13,7 @@
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
 #include "chunks/cut/name_planes.h"
+#include "chunks/cut/pairs_at.h"
 #include "intersect/surface.h"
 
 namespace tufa::chunks {
@@ -252,68 +252,7 @@ class Cutter {
   // Pairs of which one triangle has a marked vertex.
   [[nodiscard]] std::vector<intersect::PolygonPair> pairsAt(
       const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marks) const {
-    std::vector<std::uint32_t> touched;
-    for (std::uint32_t t = 0; t < out_.mesh.triangles.size(); ++t) {
-      const auto& v = out_.mesh.triangles[t].vertices;
-      if (marks[v[0]] != 0 || marks[v[1]] != 0 || marks[v[2]] != 0) touched.push_back(t);
-    }
-    if (touched.empty()) return {};
-    const std::vector<std::uint32_t> near = trianglesNear(touched);
-    Mesh mesh;
-    mesh.positions.assign(points.begin(), points.end());
-    mesh.triangles.reserve(near.size());
-    std::vector<intersect::PolygonIndex> candidates;
-    candidates.reserve(touched.size());
-    for (std::size_t i = 0, next = 0; i < near.size(); ++i) {
-      mesh.triangles.push_back(out_.mesh.triangles[near[i]]);
-      if (next == touched.size() || touched[next] != near[i]) continue;
-      candidates.push_back(static_cast<std::uint32_t>(i));
-      ++next;
-    }
-    std::vector<intersect::PolygonPair> pairs =
-        intersect::findPairs(intersect::Surface(mesh, job_), candidates, job_);
-    for (intersect::PolygonPair& pair : pairs) pair.a = near[pair.a], pair.b = near[pair.b];
-    return pairs;
-  }
-
-  // All triangles that may meet some, given in rising order, and these: those that have a cube of
-  // the lattice in common with one. Cubes are marked in a table by a hash, so that some others are
-  // among them. Rising.
-  [[nodiscard]] std::vector<std::uint32_t> trianglesNear(
-      const std::vector<std::uint32_t>& some) const {
-    constexpr double kCube = 4, kMargin = 0.05;  // steps of the lattice; more than rounding moves
-    const std::size_t size = std::bit_ceil(64 * some.size());
-    std::vector<std::uint8_t> isMarked(size, 0);
-    // Whether any(place in the table) is true of a cube of a triangle.
-    const auto anyCube = [&](std::uint32_t t, const auto& any) {
-      const auto& v = out_.mesh.triangles[t].vertices;
-      std::int64_t low[3], high[3];
-      for (int i = 0; i < 3; ++i) {
-        const auto [least, most] = std::minmax({at_[v[0]][i], at_[v[1]][i], at_[v[2]][i]});
-        low[i] = static_cast<std::int64_t>(std::floor((least - kMargin) / kCube));
-        high[i] = static_cast<std::int64_t>(std::floor((most + kMargin) / kCube));
-      }
-      for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-        for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-          for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-            auto hash = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15U ^
-                        static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4FU ^
-                        static_cast<std::uint64_t>(z) * 0x165667B19E3779F9U;
-            hash ^= hash >> 32;
-            if (any(hash & (size - 1))) return true;
-          }
-        }
-      }
-      return false;
-    };
-    for (const std::uint32_t t : some) {
-      (void)anyCube(t, [&](std::size_t at) { return isMarked[at] = 1, false; });
-    }
-    std::vector<std::uint32_t> near;
-    for (std::uint32_t t = 0; t < out_.mesh.triangles.size(); ++t) {
-      if (anyCube(t, [&](std::size_t at) { return isMarked[at] != 0; })) near.push_back(t);
-    }
-    return near;
+    return findPairsAt(out_.mesh.triangles, at_, points, marks, job_);
   }
 
   // Puts vertices back whose move makes some of the triangles intersect others: where sheets nearly

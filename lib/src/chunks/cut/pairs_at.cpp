@@ -1,0 +1,88 @@
+#include "chunks/cut/pairs_at.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+namespace tufa::chunks {
+namespace {
+
+// Calls visit(place in a table of that size, a power of two) for the cubes of the lattice that a
+// triangle is in, by a hash, until it returns true. Whether it did.
+template <class Visit>
+bool visitCubes(const Triangle& triangle, const std::vector<Vec3>& at, std::size_t size,
+                const Visit& visit) {
+  constexpr double kCube = 4, kMargin = 0.05;  // steps of the lattice; more than rounding moves
+  const auto& v = triangle.vertices;
+  std::int64_t low[3], high[3];
+  for (int i = 0; i < 3; ++i) {
+    const auto [least, most] = std::minmax({at[v[0]][i], at[v[1]][i], at[v[2]][i]});
+    low[i] = static_cast<std::int64_t>(std::floor((least - kMargin) / kCube));
+    high[i] = static_cast<std::int64_t>(std::floor((most + kMargin) / kCube));
+  }
+  for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+        std::uint64_t hash = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15U ^
+                             static_cast<std::uint64_t>(y) * 0xC2B2AE3D27D4EB4FU ^
+                             static_cast<std::uint64_t>(z) * 0x165667B19E3779F9U;
+        hash ^= hash >> 32;
+        if (visit(hash & (size - 1))) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// The triangles that have a cube in common with some, these included, and others whose cubes have
+// the same hash. Rising.
+std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
+                                         const std::vector<Vec3>& at,
+                                         const std::vector<std::uint32_t>& some) {
+  const std::size_t size = std::bit_ceil(64 * some.size());
+  std::vector<std::uint8_t> isMarked(size, 0);
+  for (const std::uint32_t t : some) {
+    (void)visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] = 1, false; });
+  }
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const bool isNear =
+        visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] != 0; });
+    if (isNear) near.push_back(t);
+  }
+  return near;
+}
+
+}  // namespace
+
+std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& triangles,
+                                                const std::vector<Vec3>& at,
+                                                const std::vector<Vec3>& places,
+                                                const std::vector<std::uint8_t>& marks,
+                                                base::Job& job) {
+  std::vector<std::uint32_t> touched;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const auto& v = triangles[t].vertices;
+    if (marks[v[0]] != 0 || marks[v[1]] != 0 || marks[v[2]] != 0) touched.push_back(t);
+  }
+  if (touched.empty()) return {};
+  const std::vector<std::uint32_t> near = trianglesNear(triangles, at, touched);
+  Mesh mesh;
+  mesh.positions.assign(places.begin(), places.end());
+  mesh.triangles.reserve(near.size());
+  std::vector<intersect::PolygonIndex> candidates;
+  candidates.reserve(touched.size());
+  for (std::size_t i = 0, next = 0; i < near.size(); ++i) {
+    mesh.triangles.push_back(triangles[near[i]]);
+    if (next == touched.size() || touched[next] != near[i]) continue;
+    candidates.push_back(static_cast<std::uint32_t>(i));
+    ++next;
+  }
+  std::vector<intersect::PolygonPair> pairs =
+      intersect::findPairs(intersect::Surface(mesh, job), candidates, job);
+  for (intersect::PolygonPair& pair : pairs) pair.a = near[pair.a], pair.b = near[pair.b];
+  return pairs;
+}
+
+}  // namespace tufa::chunks
