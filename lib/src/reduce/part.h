@@ -269,9 +269,7 @@ class Part {
   std::vector<Index> region_;                   ///< of each triangle
   std::vector<std::array<Index, 3>> wentInto_;  ///< names, from and to, and the plane
   std::vector<std::array<Index, 2>> changes_;
-  // In a step of LineMode::Alone. For each triangle Surface::changeOf, and those where it is not
-  // kNone; changed triangles near, as they were; foreign ones as they are.
-  std::vector<Index> changeOf_, changed_;
+  std::vector<Index> changeOf_;  ///< in a step of LineMode::Alone: of each triangle, as in Surface
   std::vector<Form> newForms_;
   std::unordered_map<Index, FormsOfRegion> formsOf_;
   // For each corner; for each triangle its first sample; for each sample.
@@ -321,8 +319,8 @@ class Part {
   Vec3f place_, n_;
   base::Frame frame_;
   bool isGraph_ = true;         ///< the new star is a graph over n_
-  float tilt_[kMostRing];       ///< if it is none: of normals by rounding, at most
-  int nearestWedge_ = 0;        ///< if it is none: of the sample before
+  float tilt_[kMostRing];       ///< if it is none: how far rounding may tilt each normal, radians
+  int nearestWedge_ = 0;        ///< if it is none: the triangle nearest to the sample before
   Vec3f spoke_[kMostRing + 1];  ///< from the place to the ring
   Vec3f normal_[kMostRing];     ///< of the new triangles
   Vec3f z_[kMostRing + 1];      ///< spokes in the frame, with the height last

@@ -93,8 +93,8 @@ bool Part::sampleNearGraph(Index s, Vec3f p, int wedge) {
   return squaredDistanceToTriangle(q, {}, z_[w], z_[w + 1]) <= squaredDistance_;
 }
 
-// The star is no graph: by the nearest of all its triangles. That of the sample before is looked at
-// first, as others whose planes are farther away need not be.
+// The star is no graph: by the nearest of all its triangles. The one that was nearest to the sample
+// before goes first; then triangles whose planes are farther away can be left out.
 bool Part::sampleNearStar(Index s, Vec3f p) {
   constexpr float kSlack = 1e-4f;  // voxels; more than rounding of the distance
   const float far = length(p);

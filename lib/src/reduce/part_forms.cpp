@@ -83,12 +83,10 @@ bool mayMeet(Form a, Form b) {
 void Part::loadForms(const Surface& surface) {
   const auto triangles = partition_->triangles(number_);
   changeOf_.resize(triangleCount_);
-  changed_.clear(), formsOf_.clear();
+  formsOf_.clear();
   for (Index t = 0; t < triangleCount_; ++t) {
     changeOf_[t] = surface.changeOf[triangles[t]];
-    if (changeOf_[t] == kNone) continue;
-    changed_.push_back(t);
-    formsOf_[region_[t]].changed.push_back(t);
+    if (changeOf_[t] != kNone) formsOf_[region_[t]].changed.push_back(t);
   }
   for (const Form& form : surface.oldForms) {
     if (box_.meets(boxOf(form.corners.data()))) formsOf_[form.region].old.push_back(form);
@@ -163,7 +161,6 @@ void Part::noteForms(Index plane) {
     if (changeOf_[t] != kNone) return;
     newForms_.push_back(formOf(t, plane));
     changeOf_[t] = plane;
-    changed_.push_back(t);
     FormsOfRegion& forms = formsOf_[region_[t]];
     forms.old.push_back(newForms_.back());
     forms.changed.push_back(t);

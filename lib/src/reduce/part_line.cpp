@@ -29,7 +29,9 @@ void Part::storeLines(Surface& surface) const {
   }
   if (!isAlone()) return;
   const auto triangles = partition_->triangles(number_);
-  for (const Index t : changed_) surface.changeOf[triangles[t]] = changeOf_[t];
+  for (const auto& [region, forms] : formsOf_) {
+    for (const Index t : forms.changed) surface.changeOf[triangles[t]] = changeOf_[t];
+  }
 }
 
 // Whether the edge opposite a corner is between two regions.

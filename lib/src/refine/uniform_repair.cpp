@@ -17,8 +17,9 @@ namespace {
 
 // How often misplaced components are put back.
 constexpr int kMostPutBack = 3;
-// Vertices of the largest component that may be passed. Vertices move by less than three voxels;
-// what they can pass as a whole lies in seven cells along each axis, of up to four vertices each.
+// Vertices of the largest component that may be passed. Vertices seldom move by more than three
+// voxels; what they can pass as a whole lies in seven cells along each axis, of up to four vertices
+// each.
 constexpr std::size_t kMostSmall = 1400;
 
 class UniformRepair {

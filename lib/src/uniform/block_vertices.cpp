@@ -212,7 +212,7 @@ void BlockVertices::addCrossing(int slot, const Qef& plane, Kink kink) {
 }
 
 void BlockVertices::solveVertices(const Coord& origin, grid::Accessor& accessor) {
-  const SampleBalls balls(scale_, accessor);
+  const SampleBalls balls(scale_, accessor, origin);
   points_.resize(cells_.size());
   normals_.resize(cells_.size());
   solveAll(qefs_.data() + 1, centers_.data(), cells_.size(), kHalfCell, points_.data());
@@ -223,7 +223,7 @@ void BlockVertices::solveVertices(const Coord& origin, grid::Accessor& accessor)
     // Facets of a scan. Their planes are as good as any that could be found, and sheets of less
     // than 30 degrees lie within the vertex's reach.
     if (kinds_[i] == Kind::Near && kindOf(qefs_[i + 1]) == Kind::Near) continue;
-    if (fresh) creaseCell_.reset(&balls, origin);
+    if (fresh) creaseCell_.reset(&balls);
     fresh = false;
     placeAtCrease(i);
   }

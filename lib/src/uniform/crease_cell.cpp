@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "uniform/acute.h"
 #include "uniform/case_table.h"
 
 namespace tufa::uniform {
@@ -22,12 +23,8 @@ constexpr float kHalfCell = 0.5F;
 // How far a vertex may leave its cell, in voxels, where its crossings lie on sheets that meet
 // outside.
 constexpr float kBeyond = 1.0F;
-// And onto an acute edge, where the normals of two sheets have a cosine between these: cells hold
-// crossings of both still where they are a voxel apart, and beyond lies what would count as a fold.
-// The sheets must be flat, their cubes linear to kFlat voxels, as the edge is far.
-constexpr float kFarBeyond = 2.0F;
-constexpr float kAcute = -0.3F;
-constexpr float kFolded = -0.83F;
+// And onto an acute edge by kFarthestAcute, if its sheets are flat for sure: their cubes are linear
+// to so many voxels.
 constexpr float kFlat = 0.01F;
 // A vertex this deep in its cell, in voxels, is in it whatever the rounding.
 constexpr float kSureInside = 1e-3F;
@@ -36,8 +33,6 @@ constexpr float kSideSlack = 0.02F;
 constexpr int kProjections = 8;
 // Slack of a crossing's place on its edge.
 constexpr float kEdgeSlack = 0.01F;
-// Slack of the empty-ball test, in voxels.
-constexpr float kBallSlack = 0.06F;
 constexpr int kMostSheets = 5;
 // Planes are nearly parallel if the square of the sine of their angle, or the volume that three
 // normals span, is less.
@@ -322,7 +317,7 @@ void CreaseCell::readBalls() {
     const float* samples =
         samples_.data() + BlockSamples::index(x + row / 4 - 1, y + row % 4 - 1, z - 1);
     for (int i = 0; i < 4; ++i) {
-      const float radius = std::min(std::abs(samples[i]), scale_.bandOutside) - kBallSlack;
+      const float radius = std::min(std::abs(samples[i]), scale_.bandOutside) - SampleBalls::kSlack;
       squaredBalls_[row][i] = radius > 0 ? radius * radius : 0;
     }
   }
@@ -365,15 +360,15 @@ float CreaseCell::mostBeyond(int a, int b) const {
   if (balls_ == nullptr) return kBeyond;
   const Sheet &one = sheets_[a], &other = sheets_[b];
   const bool isFlat = std::max(one.residual, other.residual) < kFlat;
-  const float cosine = dot(one.normal, other.normal);
-  return isFlat && cosine < kAcute && cosine > kFolded ? kFarBeyond : kBeyond;
+  const bool isFar = isFlat && isAcute(double{dot(one.normal, other.normal)});
+  return isFar ? static_cast<float>(kFarthestAcute) : kBeyond;
 }
 
 bool CreaseCell::isBelieved(const Vector& point) const {
   if (!isOnSurface(point)) return false;
   if (balls_ == nullptr || outside(point) <= kBeyond) return true;
   const Vec3 middle(cell_[0] + 0.5, cell_[1] + 0.5, cell_[2] + 0.5);
-  return balls_->admit(middle + Vec3(point[0], point[1], point[2]), origin_);
+  return balls_->admit(middle + Vec3(point[0], point[1], point[2]));
 }
 
 bool CreaseCell::placeOnCorner(const Vector& massPoint, bool beyond,

@@ -43,12 +43,12 @@ class CreaseCell {
   CreaseCell(const grid::BlockSamples& samples, const grid::FieldScale& scale)
       : samples_(samples), scale_(scale), planes_(samples, scale) {}
 
-  /// To be called when the samples change to another block. With `balls` and the block's first
-  /// lattice point, a vertex may go as far as two voxels out of its cell, onto acute edges.
-  void reset(const SampleBalls* balls = nullptr, const Coord& origin = Coord(0)) {
+  /// To be called when the samples change to another block. With `balls`, counted from the block's
+  /// first lattice point, a vertex may go as far as kFarthestAcute out of its cell, onto acute
+  /// edges. They must outlive what is placed with them.
+  void reset(const SampleBalls* balls = nullptr) {
     planes_.reset();
     balls_ = balls;
-    origin_ = origin;
   }
 
   /// Places the vertex of one cell. `x`, `y`, `z` are its place in the block, 0..7; `massPoint` is
@@ -108,7 +108,6 @@ class CreaseCell {
   std::array<std::array<float, 4>, 16> squaredBalls_{};
   std::array<int, 3> cell_{};
   const SampleBalls* balls_ = nullptr;
-  Coord origin_{0};
 };
 
 }  // namespace tufa::uniform

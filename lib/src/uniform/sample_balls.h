@@ -11,16 +11,21 @@ namespace tufa::uniform {
 /// a blunt edge, lies in one. For one thread.
 class SampleBalls {
  public:
-  SampleBalls(const grid::FieldScale& scale, grid::Accessor& accessor)
-      : scale_(scale), accessor_(accessor) {}
+  /// Voxels by which the balls are smaller than the distances say.
+  static constexpr float kSlack = 0.06F;
 
-  /// Whether a point lies in none of the balls of the 64 samples around it. `point` is counted from
-  /// the lattice point `from`. Reads the samples one by one: a microsecond.
-  [[nodiscard]] bool admit(const Vec3& point, const Coord& from) const;
+  /// Points are counted from the lattice point `origin`.
+  SampleBalls(const grid::FieldScale& scale, grid::Accessor& accessor, const Coord& origin)
+      : scale_(scale), accessor_(accessor), origin_(origin) {}
+
+  /// Whether a point lies in none of the balls of the 64 samples around it. Reads them one by one:
+  /// a microsecond.
+  [[nodiscard]] bool admit(const Vec3& point) const;
 
  private:
   const grid::FieldScale& scale_;
   grid::Accessor& accessor_;
+  Coord origin_;
 };
 
 }  // namespace tufa::uniform

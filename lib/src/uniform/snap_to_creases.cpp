@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "uniform/acute.h"
 #include "uniform/point_grid.h"
 #include "uniform/quad_places.h"
 
@@ -18,12 +19,8 @@ namespace {
 
 // The farthest a vertex may move, in voxels.
 constexpr double kFarthest = 1.0;
-// And onto an acute edge, where normals of two sheets have a cosine between these: its cells hold
-// crossings of both sheets still where they are a voxel apart, and beyond lies what would count as
-// a fold. The sheets must be flat, to so many voxels, as it is far.
-constexpr double kFarthestAcute = 2.0;
-constexpr double kAcute = -0.3;
-constexpr double kFolded = -0.83;
+// And onto an acute edge by kFarthestAcute, if the quad's corners on each of its sheets lie in one
+// plane to so many voxels.
 constexpr double kFlat = 0.05;
 // Two corners nearer than this, in voxels, are one.
 constexpr double kSameCorner = 0.5;
@@ -220,17 +217,16 @@ class CreaseSnapper {
     return best;
   }
 
-  // Whether a place farther than most is believed: an acute edge of flat sheets, in no ball.
+  // Whether a place beyond kFarthest is believed: on an acute edge of flat sheets, and admitted by
+  // the samples.
   [[nodiscard]] bool isFarEdge(const Quad& quad, const QuadSheets& around, const Vec3& point,
                                double distance, std::initializer_list<Plane> planes) const {
     if (!(distance < kFarthestAcute * voxelSize_)) return false;
-    const bool isAcute = std::any_of(planes.begin(), planes.end(), [&](const Plane& a) {
-      return std::any_of(planes.begin(), planes.end(), [&](const Plane& b) {
-        const double cosine = a.normal.dot(b.normal);
-        return cosine < kAcute && cosine > kFolded;
-      });
+    const bool isSharp = std::any_of(planes.begin(), planes.end(), [&](const Plane& a) {
+      return std::any_of(planes.begin(), planes.end(),
+                         [&](const Plane& b) { return isAcute(a.normal.dot(b.normal)); });
     });
-    return isAcute && isFlat(quad, around) && admits_(point);
+    return isSharp && isFlat(quad, around) && admits_(point);
   }
 
   // Whether all corners of a quad on one of its sheets lie in one plane.

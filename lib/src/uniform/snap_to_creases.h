@@ -26,8 +26,8 @@ using Admits = std::function<bool(const Position& place)>;
 /// half a voxel. Of its vertices the one nearest to the line where its sheets meet snaps to it, or,
 /// where three sheets meet, to their corner. The vertex leaves its cell, by a voxel at most, or two
 /// onto an acute edge that `admits` allows, into a cell that has none. `voxelSize` is in world
-/// units. Reads positions and normals as exact on their
-/// sheets, and changes both. Returns the number of vertices moved.
+/// units. Reads positions and normals as exact on their sheets, and changes both. Returns the
+/// number of vertices moved.
 ///
 /// Promised: a vertex depends on what is within six rounds of two cells each, and not on where the
 /// mesh begins, so a part of a grid gets the same vertices as the whole. Polygons may intersect

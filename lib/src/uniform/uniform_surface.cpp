@@ -54,8 +54,8 @@ UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& opt
         [&](const Position& place) {
           const auto accessor = surface.volume.blocks.accessor();
           const Coord& origin = surface.affine().origin();
-          return SampleBalls(scale, *accessor)
-              .admit(surface.affine().latticePoint(place, origin), origin);
+          return SampleBalls(scale, *accessor, origin)
+              .admit(surface.affine().latticePoint(place, origin));
         },
         job);
     splitAtCreases(surface.view(), surface.mesh, job);

@@ -23,7 +23,7 @@ struct BluntWedge {
 
 bool admits(const test::BlockField& field, const Vec3& point) {
   const auto accessor = field.blocks().accessor();
-  return SampleBalls(field.scale(), *accessor).admit(point, Coord(0));
+  return SampleBalls(field.scale(), *accessor, Coord(0)).admit(point);
 }
 
 TEST(SampleBalls, AdmitTheTipOfAWedge) {
@@ -43,9 +43,9 @@ TEST(SampleBalls, RefuseTheTipOfABluntWedge) {
 TEST(SampleBalls, CountFromALatticePoint) {
   const auto field = test::distanceAroundBlock(BluntWedge{6});
   const auto accessor = field.blocks().accessor();
-  const SampleBalls balls(field.scale(), *accessor);
-  EXPECT_TRUE(balls.admit({1, 1.3, -1}, Coord(5, 2, 4)));
-  EXPECT_FALSE(balls.admit({6, 3.3, 3}, Coord(5, 2, 4)));
+  const SampleBalls balls(field.scale(), *accessor, Coord(5, 2, 4));
+  EXPECT_TRUE(balls.admit({1, 1.3, -1}));
+  EXPECT_FALSE(balls.admit({6, 3.3, 3}));
 }
 
 }  // namespace

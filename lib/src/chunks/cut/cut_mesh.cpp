@@ -237,7 +237,7 @@ class Cutter {
     for (const double least : kRoundedEdges) {
       const std::vector<intersect::PolygonPair> pairs = pairsAt(rounded, marks);
       if (pairs.empty()) return true;
-      // Of these alone edges are collapsed, and others do not come to meet.
+      // Only their edges are collapsed, so only they can still intersect, or newly.
       marks.assign(at_.size(), 0);
       for (const intersect::PolygonPair& pair : pairs) {
         for (const std::uint32_t t : {pair.a, pair.b}) {
