@@ -220,6 +220,7 @@ class Part {
   }
   bool scaleTolerance(std::span<const Index> triangles, Index vertex);
   bool scaleStarTolerance(Index a);
+  bool firstSamplesNear();
   bool samplesNear(Index t, int wedge);
   bool sampleNearGraph(Index s, Vec3f p, int wedge);
   bool sampleNearStar(Index s, Vec3f p);

@@ -24,13 +24,14 @@ Outcome Part::distanceGuard(Index a, Index b) {
   taken_.clear();
   roughFaces_.clear();
   if (reference_->isScaled() && !scaleStarTolerance(a)) return Outcome::Sample;
+  if (!firstSamplesNear()) return Outcome::Sample;
+  if (!apexNear(a, b)) return Outcome::Apex;
+  if (isOn(Outcome::Crossing) && !crossingsNear()) return Outcome::Crossing;
   bool isNear = true;
   for (int i = 0; i < size_ && isNear; ++i) isNear = samplesNear(at_[i] / 3, i);
   if (!isNear || !samplesNear(left_ / 3, 0) || !samplesNear(right_ / 3, split_)) {
     return Outcome::Sample;
   }
-  if (!apexNear(a, b)) return Outcome::Apex;
-  if (isOn(Outcome::Crossing) && !crossingsNear()) return Outcome::Crossing;
   if (isOn(Outcome::Face) && !facesNear()) return Outcome::Face;
   return Outcome::Done;
 }
@@ -59,6 +60,21 @@ bool Part::scaleStarTolerance(Index a) {
   triangles[count] = left_ / 3;
   triangles[count + 1] = right_ / 3;
   return scaleTolerance({triangles.data(), count + 2}, a);
+}
+
+// The first sample of each triangle that changes: what was too far before is likely to be so again.
+bool Part::firstSamplesNear() {
+  if (!isOn(Outcome::Sample)) return true;
+  const auto isNear = [&](Index t, int wedge) {
+    const Index s = firstSample_[t];
+    if (s == kNone) return true;
+    const Vec3f p = samples_[s].p - place_;
+    return isGraph_ ? sampleNearGraph(s, p, wedge) : sampleNearStar(s, p);
+  };
+  bool areNear = isNear(left_ / 3, 0) && isNear(right_ / 3, split_);
+  for (int i = 0; i < size_ && areNear; ++i) areNear = isNear(at_[i] / 3, i);
+  taken_.clear();
+  return areNear;
 }
 
 // All samples of a triangle that changes; notes the new triangles that take them. One that is too
