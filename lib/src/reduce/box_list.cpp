@@ -46,20 +46,21 @@ void BoxList::build(const std::vector<std::pair<Box3f, Index>>& items, Slots& sl
 void BoxList::put(Index triangle, const Box3f& box, Slots& slots) {
   Index& slot = slots[triangle];
   if (slot == kNone) {
-    slot = static_cast<Index>(boxes_.size());
-    boxes_.emplace_back();
+    slot = static_cast<Index>(triangles_.size());
     triangles_.push_back(triangle);
-    if (boxes_.size() % kGroup == 1) groups_.emplace_back();
-    if (boxes_.size() % (kGroup * kGroup) == 1) tops_.emplace_back();
+    if (slot % kGroup == 0) boxes_.emplace_back();
+    if (boxes_.size() > groups_.size() * kGroup) groups_.emplace_back();
+    if (groups_.size() > tops_.size() * kGroup) tops_.emplace_back();
   }
-  boxes_[slot] = box;
-  groups_[slot / kGroup].add(box);
-  tops_[slot / kGroup / kGroup].add(box);
+  const std::size_t g = slot / kGroup;
+  boxes_[g].set(slot % kGroup, box);
+  groups_[g / kGroup].add(g % kGroup, box);
+  tops_[g / kGroup / kGroup].add(g / kGroup % kGroup, box);
 }
 
 void BoxList::remove(Index triangle, Slots& slots) {
   if (slots[triangle] == kNone) return;
-  boxes_[slots[triangle]] = Box3f();
+  boxes_[slots[triangle] / kGroup].set(slots[triangle] % kGroup, {});
   slots[triangle] = kNone;
 }
 

@@ -4,14 +4,15 @@
 #include <vector>
 
 #include "reduce/box3f.h"
+#include "reduce/box_group.h"
 #include "reduce/corners.h"
 
 namespace tufa::reduce {
 
 /// Boxes of triangles that change all the time, for explicit intersection tests.
 ///
-/// They lie in the order of a space-filling curve, kGroup of them in a larger box and kGroup of
-/// those in a still larger one. A box is renewed in place; larger ones only grow until the next
+/// They lie in the order of a space-filling curve, sixteen of them in a larger box and so on, three
+/// times. A box is renewed in place; larger ones only grow until the next
 /// build(). Beside a tree that costs nothing to keep up, and a part has few enough of them.
 class BoxList {
  public:
@@ -27,23 +28,23 @@ class BoxList {
   /// Calls f(triangle, box) for all that meet `box` until f returns true; returns whether it did.
   template <class F>
   bool any(const Box3f& box, F&& f) const {
+    const auto inGroup = [&](std::size_t g) {
+      return boxes_[g].any(
+          box, [&](std::size_t i) { return f(triangles_[g * kGroup + i], boxes_[g].at(i)); });
+    };
     for (std::size_t top = 0; top < tops_.size(); ++top) {
-      if (!box.meets(tops_[top])) continue;
-      const std::size_t groupEnd = std::min(groups_.size(), (top + 1) * kGroup);
-      for (std::size_t g = top * kGroup; g < groupEnd; ++g) {
-        if (!box.meets(groups_[g])) continue;
-        const std::size_t end = std::min(boxes_.size(), (g + 1) * kGroup);
-        for (std::size_t i = g * kGroup; i < end; ++i) {
-          if (box.meets(boxes_[i]) && f(triangles_[i], boxes_[i])) return true;
-        }
-      }
+      const bool isDone = tops_[top].any(box, [&](std::size_t i) {
+        return groups_[top * kGroup + i].any(
+            box, [&](std::size_t k) { return inGroup((top * kGroup + i) * kGroup + k); });
+      });
+      if (isDone) return true;
     }
     return false;
   }
 
  private:
-  static constexpr std::size_t kGroup = 16;
-  std::vector<Box3f> boxes_, groups_, tops_;
+  static constexpr std::size_t kGroup = BoxGroup::kSize;
+  std::vector<BoxGroup> boxes_, groups_, tops_;  ///< of triangles, of boxes_, of groups_
   std::vector<Index> triangles_;
 };
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "reduce/box_group.h"
 #include "reduce/star.h"
 
 namespace tufa::reduce {
@@ -138,18 +139,27 @@ class Neighbourhood {
   // Marks the triangles that pass a cell and do not make one sheet with those within the reach.
   void lookAt(const List& list, const Box3f& cell) {
     if (list.size() < 2 || isOneSheet(list)) return;
+    constexpr std::size_t kSize = BoxGroup::kSize;
+    grown_.assign((list.size() + kSize - 1) / kSize, {});
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      grown_[k / kSize].set(k % kSize, items_[list[k]].grown);
+    }
     for (const Index i : list) {
       if (cell.meets(items_[i].box) && !isOneSheetAround(i, list)) mark(items_[i].triangle);
     }
   }
 
+  // `grown_` has the boxes of the list.
   bool isOneSheetAround(Index i, const List& list) {
     const Item& own = items_[i];
     near_.assign(1, i);
-    for (const Index k : list) {
-      if (k == i || !own.box.meets(items_[k].grown)) continue;
-      if (dot(own.normal, items_[k].normal) < kOpposite) return false;
-      near_.push_back(k);
+    for (std::size_t g = 0; g < grown_.size(); ++g) {
+      const bool isOpposite = grown_[g].any(own.box, [&](std::size_t place) {
+        const Index k = list[g * BoxGroup::kSize + place];
+        if (k != i) near_.push_back(k);
+        return dot(own.normal, items_[k].normal) < kOpposite;
+      });
+      if (isOpposite) return false;
     }
     return isOneSheet(near_);
   }
@@ -165,6 +175,7 @@ class Neighbourhood {
   float reach_;
   std::vector<Item> items_;
   List near_;
+  std::vector<BoxGroup> grown_;
 };
 
 }  // namespace

@@ -82,6 +82,7 @@ void Part::loadQuadrics() {
 
 void Part::loadSamples(const Surface& surface) {
   firstSample_.assign(triangleCount_, kNone);
+  wasFar_.assign(triangleCount_, 0);
   sampleIds_ = partition_->samples(number_);
   samples_.resize(sampleIds_.size()), owners_.resize(sampleIds_.size());
   isRough_.resize(sampleIds_.size());

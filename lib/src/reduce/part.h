@@ -108,6 +108,7 @@ class Part {
   void push(float cost, const Candidate& candidate);
   bool pop(Candidate& candidate);
   void giveSamples();
+  void emptySamples(Index t) { firstSample_[t] = kNone, wasFar_[t] = 0; }
   [[nodiscard]] Index around(Index c) const { return nextCorner(opposite_[nextCorner(c)]); }
   [[nodiscard]] bool isDead(Index t) const { return vertex_[3 * t] == kNone; }
   /// Whether the attempt at hand makes one vertex of v and others.
@@ -220,7 +221,7 @@ class Part {
   }
   bool scaleTolerance(std::span<const Index> triangles, Index vertex);
   bool scaleStarTolerance(Index a);
-  bool firstSamplesNear();
+  bool farSamplesNear();
   bool samplesNear(Index t, int wedge);
   bool sampleNearGraph(Index s, Vec3f p, int wedge);
   bool sampleNearStar(Index s, Vec3f p);
@@ -275,6 +276,7 @@ class Part {
   std::unordered_map<Index, FormsOfRegion> formsOf_;
   // For each corner; for each triangle its first sample; for each sample.
   std::vector<Index> vertex_, opposite_, firstSample_;
+  std::vector<std::uint8_t> wasFar_;  ///< the first sample of a triangle, in an attempt before
   std::vector<Sample> samples_;
   std::vector<Owner> owners_;
   std::vector<std::uint8_t> isRough_;

@@ -314,13 +314,13 @@ void Part::applyContraction() {
     const Index c = at_[i], next = at_[i + 1 == size_ ? 0 : i + 1];
     vertex_[c] = kept_;
     corner_[ring_[i]] = nextCorner(c);
-    firstSample_[c / 3] = kNone;
+    emptySamples(c / 3);
     opposite_[nextCorner(c)] = previousCorner(next);
     opposite_[previousCorner(next)] = nextCorner(c);
   }
   for (const Index t : vanishing_) {
     vertex_[3 * t] = vertex_[3 * t + 1] = vertex_[3 * t + 2] = kNone;
-    firstSample_[t] = kNone;
+    emptySamples(t);
   }
   giveSamples();
   corner_[kept_] = at_[0];

@@ -87,7 +87,8 @@ Outcome Part::tryCollapse(Index a, Index b) {
   solve(a, b, exact, sum_);
   if (!gatherRing(a, b)) return Outcome::Link;
   Outcome outcome = tryPlace(a, b, surface_->roundedPlace(exact));
-  const bool isFar = outcome == Outcome::Sample || outcome == Outcome::Crossing;
+  const bool isFar =
+      outcome == Outcome::Sample || outcome == Outcome::Apex || outcome == Outcome::Crossing;
   if (outcome != Outcome::Done && (limits_.allPlaces || !isFar)) {
     const float most = limits_.errorShare * limits_.distance;
     const float worst = most * most * sum_.weight;
@@ -162,13 +163,13 @@ void Part::apply(Index a, Index b) {
   stitch(opposite_[right_], opposite_[previousCorner(right_)]);
   for (const Index t : {left_ / 3, right_ / 3}) {
     vertex_[3 * t] = vertex_[3 * t + 1] = vertex_[3 * t + 2] = kNone;
-    firstSample_[t] = kNone;
+    emptySamples(t);
     if (hasBoxList_) boxList_.remove(t, boxSlots_);
   }
   corner_[a] = at_[0];
   for (int i = 0; i < size_; ++i) {
     corner_[ring_[i]] = nextCorner(at_[i]);
-    firstSample_[at_[i] / 3] = kNone;
+    emptySamples(at_[i] / 3);
   }
   giveSamples();
   position_[a] = place_, quadric_[a] = sum_, face_[a] = apexFace_;

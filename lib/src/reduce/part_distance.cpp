@@ -24,7 +24,7 @@ Outcome Part::distanceGuard(Index a, Index b) {
   taken_.clear();
   roughFaces_.clear();
   if (reference_->isScaled() && !scaleStarTolerance(a)) return Outcome::Sample;
-  if (!firstSamplesNear()) return Outcome::Sample;
+  if (!farSamplesNear()) return Outcome::Sample;
   if (!apexNear(a, b)) return Outcome::Apex;
   if (isOn(Outcome::Crossing) && !crossingsNear()) return Outcome::Crossing;
   bool isNear = true;
@@ -62,12 +62,12 @@ bool Part::scaleStarTolerance(Index a) {
   return scaleTolerance({triangles.data(), count + 2}, a);
 }
 
-// The first sample of each triangle that changes: what was too far before is likely to be so again.
-bool Part::firstSamplesNear() {
+// The samples that were too far in attempts before: they are likely to be so again.
+bool Part::farSamplesNear() {
   if (!isOn(Outcome::Sample)) return true;
   const auto isNear = [&](Index t, int wedge) {
+    if (wasFar_[t] == 0) return true;
     const Index s = firstSample_[t];
-    if (s == kNone) return true;
     const Vec3f p = samples_[s].p - place_;
     return isGraph_ ? sampleNearGraph(s, p, wedge) : sampleNearStar(s, p);
   };
@@ -93,6 +93,7 @@ bool Part::samplesNear(Index t, int wedge) {
       samples_[s].next = firstSample_[t];
       firstSample_[t] = s;
     }
+    wasFar_[t] = 1;
     return false;
   }
   return true;
@@ -130,15 +131,17 @@ bool Part::sampleNearStar(Index s, Vec3f p) {
   return best <= squaredDistance_;
 }
 
-// The triangle of the star that is above or below s, in the frame; `likely` is tried first.
+// The triangle of the star that is above or below s, in the frame, from `likely` on round the star
+// to the side that s is on.
 int Part::wedgeOf(Vec3f s, int likely) const {
   const auto side = [&](int i) { return z_[i].x * s.y - z_[i].y * s.x; };
-  if (side(likely) >= 0 && side(likely + 1) < 0) return likely;
-  float last = side(0);
-  for (int i = 0; i < size_; ++i) {
-    const float next = side(i + 1);
-    if (last >= 0 && next < 0) return i;
-    last = next;
+  int i = likely;
+  const float atStart = side(i), atEnd = side(i + 1);
+  if (atStart >= 0 && atEnd < 0) return i;
+  const bool isForward = atStart >= 0;
+  for (int left = size_ - 1; left > 0; --left) {
+    i = isForward ? (i + 1 == size_ ? 0 : i + 1) : (i == 0 ? size_ : i) - 1;
+    if (side(i) >= 0 && side(i + 1) < 0) return i;
   }
   return 0;  // the apex itself
 }
@@ -321,12 +324,13 @@ bool Part::facesNear() {
 bool Part::faceNear(Index face) const {
   const Changed mesh{*this};
   const auto& v = reference_->faces()[face].vertex;
-  const OwnedFace owned{
-      reference_->cornersOf(face), v, {ownerAfter(v[0]), ownerAfter(v[1]), ownerAfter(v[2])}};
+  OwnedFace owned{{}, v, {ownerAfter(v[0]), ownerAfter(v[1]), ownerAfter(v[2])}};
   for (const Index owner : owned.owners) {
     if (owner == kNone) return false;
   }
-  return owned.hasOneOwner() || overlayBound2(mesh, owned, squaredDistance_) <= squaredDistance_ ||
+  if (owned.hasOneOwner()) return true;
+  owned.corners = reference_->cornersOf(face);
+  return overlayBound2(mesh, owned, squaredDistance_) <= squaredDistance_ ||
          (!reference_->isHeld(face) && wholeFace2(mesh, owned) <= squaredDistance_);
 }
 

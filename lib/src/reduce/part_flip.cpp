@@ -180,7 +180,8 @@ void Part::applyFlip(const Index* v) {
   stitch(d, across02);
   stitch(nextC, nextD);
   corner_[v[0]] = c, corner_[v[3]] = d, corner_[v[1]] = nextC, corner_[v[2]] = nextD;
-  firstSample_[c / 3] = firstSample_[d / 3] = kNone;
+  emptySamples(c / 3);
+  emptySamples(d / 3);
   giveSamples();
   for (int i = 0; i < newAxes_; ++i) axis_[newAxis_[i].vertex] = newAxis_[i].axis;
   for (int k = 0; k < 4; ++k) ++version_[v[k]];
