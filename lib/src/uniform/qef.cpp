@@ -9,7 +9,7 @@ namespace {
 
 // Eigenvalues below this share of the largest belong to directions that the planes leave free:
 // noise in normals a few degrees apart would move the point far along them.
-constexpr double kFreeShare = 0.01;
+constexpr float kFreeShare = 0.01F;
 // Pull to the mass point in the bounded problem, in units of the number of planes. It keeps the
 // problem definite; at a right-angled crease it moves the vertex by about a hundredth of its way.
 constexpr double kPull = 0.003;
@@ -30,47 +30,88 @@ Vector residualAt(const Qef& qef, const Vector& c) {
           qef.b[2] - (a[2] * c[0] + a[4] * c[1] + a[5] * c[2])};
 }
 
-// One Jacobi rotation in the plane of rows p and q; zeroes m[p][q].
-void rotate(Matrix3& m, Matrix3& vectors, int p, int q) {
-  if (m[p][q] == 0) return;
-  const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-  const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-  const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-  for (int i = 0; i < 3; ++i) {
-    const double mp = m[i][p], mq = m[i][q];
-    m[i][p] = c * mp - s * mq;
-    m[i][q] = s * mp + c * mq;
-  }
-  for (int i = 0; i < 3; ++i) {
-    const double mp = m[p][i], mq = m[q][i];
-    m[p][i] = c * mp - s * mq;
-    m[q][i] = s * mp + c * mq;
-    const double vp = vectors[i][p], vq = vectors[i][q];
-    vectors[i][p] = c * vp - s * vq;
-    vectors[i][q] = s * vp + c * vq;
-  }
-}
+// N symmetric matrices, and the rotations that have made them more diagonal: one array of lanes for
+// each number. All lanes take the same steps, so that the compiler can work on several at a time,
+// and a lane's result does not depend on the others.
+template <std::size_t N>
+struct Diagonalization {
+  using Lane = std::array<float, N>;
+  std::array<Lane, 3> diagonal;
+  std::array<Lane, 3> beside;  // the entry in the other two rows
+  std::array<std::array<Lane, 3>, 3> vectors;
+  Lane isActive;  // 1 until the lane is diagonal to single precision, then 0
 
-// The least-squares step from the mass point by the pseudo-inverse without the free directions, as
-// Ju et al. 2002 truncate theirs. Cyclic Jacobi sweeps converge quadratically: a few do.
-Vector truncatedStep(const Qef& qef, const Vector& residual) {
-  Matrix3 m = matrixOf(qef);
-  Matrix3 vectors = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  const double size = m[0][0] + m[1][1] + m[2][2];
-  for (int sweep = 0; sweep < 12; ++sweep) {
-    if (std::abs(m[0][1]) + std::abs(m[0][2]) + std::abs(m[1][2]) < 1e-12 * size) break;
-    rotate(m, vectors, 0, 1);
-    rotate(m, vectors, 0, 2);
-    rotate(m, vectors, 1, 2);
+  explicit Diagonalization(const std::array<Lane, 6>& a)
+      : diagonal{a[0], a[3], a[5]}, beside{a[4], a[2], a[1]}, vectors{} {
+    for (std::size_t i = 0; i < 3; ++i) vectors[i][i].fill(1);
   }
-  const double largest = std::max({m[0][0], m[1][1], m[2][2]});
-  Vector step{};
-  for (int i = 0; i < 3; ++i) {
-    if (m[i][i] <= kFreeShare * largest) continue;
-    double along = 0;
-    for (int j = 0; j < 3; ++j) along += vectors[j][i] * static_cast<double>(residual[j]);
-    for (int j = 0; j < 3; ++j) {
-      step[j] += static_cast<float>(vectors[j][i] * along / m[i][i]);
+
+  // Cyclic Jacobi sweeps, which converge quadratically: a few do.
+  void run() {
+    for (int sweep = 0; sweep < 8 && findActive(); ++sweep) {
+      rotate(0, 1, 2);
+      rotate(0, 2, 1);
+      rotate(1, 2, 0);
+    }
+  }
+
+ private:
+  bool findActive() {
+    constexpr float kDiagonal = 1e-7F;
+    float any = 0;
+    for (std::size_t k = 0; k < N; ++k) {
+      const float off = std::abs(beside[0][k]) + std::abs(beside[1][k]) + std::abs(beside[2][k]);
+      isActive[k] = off > kDiagonal * (diagonal[0][k] + diagonal[1][k] + diagonal[2][k]) ? 1 : 0;
+      any += isActive[k];
+    }
+    return any > 0;
+  }
+
+  // In the plane of rows p and q; r is the third one. Zeroes the entry of p and q.
+  void rotate(std::size_t p, std::size_t q, std::size_t r) {
+    Lane cosine, sine;
+    for (std::size_t k = 0; k < N; ++k) {
+      const float entry = beside[r][k], apart = diagonal[q][k] - diagonal[p][k];
+      const float hypotenuse = std::sqrt(apart * apart + 4 * entry * entry);
+      const float twice = std::copysign(2.0F, apart) * entry;
+      const float tangent =
+          isActive[k] * twice / (std::abs(apart) + hypotenuse + std::numeric_limits<float>::min());
+      cosine[k] = 1 / std::sqrt(tangent * tangent + 1);
+      sine[k] = tangent * cosine[k];
+      diagonal[p][k] -= tangent * entry;
+      diagonal[q][k] += tangent * entry;
+      beside[r][k] = (1 - isActive[k]) * entry;
+    }
+    turn(beside[q], beside[p], cosine, sine);
+    for (auto& row : vectors) turn(row[p], row[q], cosine, sine);
+  }
+  static void turn(Lane& x, Lane& y, const Lane& cosine, const Lane& sine) {
+    for (std::size_t k = 0; k < N; ++k) {
+      const float was = x[k];
+      x[k] = cosine[k] * was - sine[k] * y[k];
+      y[k] = sine[k] * was + cosine[k] * y[k];
+    }
+  }
+};
+
+// The least-squares steps from the mass points by the pseudo-inverse without the free directions,
+// as Ju et al. 2002 truncate theirs.
+template <std::size_t N>
+std::array<std::array<float, N>, 3> truncatedSteps(
+    const std::array<std::array<float, N>, 6>& a,
+    const std::array<std::array<float, N>, 3>& residual) {
+  Diagonalization<N> m(a);
+  m.run();
+  std::array<std::array<float, N>, 3> step{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < N; ++k) {
+      const float largest = std::max(std::max(m.diagonal[0][k], m.diagonal[1][k]), m.diagonal[2][k]);
+      const float along = m.vectors[0][i][k] * residual[0][k] +
+                          m.vectors[1][i][k] * residual[1][k] + m.vectors[2][i][k] * residual[2][k];
+      const float own = m.diagonal[i][k];
+      const float isBound = own > kFreeShare * largest ? 1 : 0;  // no branch around a division
+      const float share = isBound * along / (isBound * own + (1 - isBound));
+      for (std::size_t j = 0; j < 3; ++j) step[j][k] += m.vectors[j][i][k] * share;
     }
   }
   return step;
@@ -165,19 +206,52 @@ inline Solution solveOneDirection(const Qef& qef, float halfSize) {
   const float along = dot(n, residual) / first;
   const Vector x = {c[0] + n[0] * along, c[1] + n[1] * along, c[2] + n[2] * along};
   const int oneDirection = (squared > 0.25F * qef.count * qef.count) &
-                           (trace * squared < (1 + static_cast<float>(kFreeShare)) * first);
+                           (trace * squared < (1 + kFreeShare) * first);
   const int insideX = std::abs(x[0]) <= halfSize;
   const int insideY = std::abs(x[1]) <= halfSize;
   const int insideZ = std::abs(x[2]) <= halfSize;
   return {x[0], x[1], x[2], oneDirection, insideX & insideY & insideZ};
 }
 
+// The solutions of N problems without bounds, where they lie in the cube.
+template <std::size_t N>
+std::array<std::optional<Vector>, N> solveTruncated(const Qef* qefs, float halfSize) {
+  std::array<std::array<float, N>, 6> a;
+  std::array<std::array<float, N>, 3> residual;
+  for (std::size_t k = 0; k < N; ++k) {
+    const Vector r = residualAt(qefs[k], qefs[k].massPoint());
+    for (std::size_t i = 0; i < 6; ++i) a[i][k] = qefs[k].a[i];
+    for (std::size_t i = 0; i < 3; ++i) residual[i][k] = r[i];
+  }
+  const auto step = truncatedSteps<N>(a, residual);
+  std::array<std::optional<Vector>, N> solutions;
+  for (std::size_t k = 0; k < N; ++k) {
+    Vector x = qefs[k].massPoint();
+    bool isInside = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[i] += step[i][k];
+      isInside &= std::abs(x[i]) <= halfSize;
+    }
+    if (isInside) solutions[k] = x;
+  }
+  return solutions;
+}
+
+Vector solveBounded(const Qef& qef, float halfSize) {
+  const Vector c = qef.massPoint();
+  const Vector step = boundedStep(qef, residualAt(qef, c), c, halfSize);
+  Vector x{};
+  for (int i = 0; i < 3; ++i) x[i] = std::clamp(c[i] + step[i], -halfSize, halfSize);
+  return x;
+}
+
+constexpr std::size_t kLanes = 8;
+
 // Several problems, one array for each number.
 struct Lanes {
-  static constexpr std::size_t kCount = 8;
-  std::array<std::array<float, kCount>, 6> a;
-  std::array<std::array<float, kCount>, 3> b, points, normals, origins;
-  std::array<float, kCount> count;
+  std::array<std::array<float, kLanes>, 6> a;
+  std::array<std::array<float, kLanes>, 3> b, points, normals, origins;
+  std::array<float, kLanes> count;
 
   void load(std::size_t lane, const Qef& qef, const Vector& origin) {
     for (int i = 0; i < 6; ++i) a[i][lane] = qef.a[i];
@@ -206,48 +280,58 @@ std::optional<Vector> solveInside(const Qef& qef, float halfSize) {
   const Solution quick = solveOneDirection(qef, halfSize);
   if ((quick.oneDirection & quick.inside) != 0) return Vector{quick.x, quick.y, quick.z};
   if (quick.oneDirection != 0) return std::nullopt;
-  const Vector c = qef.massPoint();
-  const Vector step = truncatedStep(qef, residualAt(qef, c));
-  const Vector x = {c[0] + step[0], c[1] + step[1], c[2] + step[2]};
-  if (std::abs(x[0]) <= halfSize && std::abs(x[1]) <= halfSize && std::abs(x[2]) <= halfSize) {
-    return x;
-  }
-  return std::nullopt;
+  return solveTruncated<1>(&qef, halfSize)[0];
 }
 
 Vector solve(const Qef& qef, float halfSize) {
-  if (const auto inside = solveInside(qef, halfSize)) return *inside;
-  const Vector c = qef.massPoint();
-  const Vector step = boundedStep(qef, residualAt(qef, c), c, halfSize);
-  Vector x{};
-  for (int i = 0; i < 3; ++i) x[i] = std::clamp(c[i] + step[i], -halfSize, halfSize);
-  return x;
+  const auto inside = solveInside(qef, halfSize);
+  return inside ? *inside : solveBounded(qef, halfSize);
 }
 
 void solveAll(const Qef* qefs, const Vector* origins, std::size_t count, float halfSize,
               Vector* solutions) {
-  for (std::size_t first = 0; first < count; first += Lanes::kCount) {
+  // Those that have several normal directions, to be solved together.
+  std::array<Qef, kLanes> open;
+  std::array<std::size_t, kLanes> places{};
+  std::size_t opened = 0;
+  const auto solveOpen = [&] {
+    for (std::size_t k = opened; k < kLanes; ++k) open[k] = open[0];
+    const auto inside = solveTruncated<kLanes>(open.data(), halfSize);
+    for (std::size_t k = 0; k < opened; ++k) {
+      solutions[places[k]] = inside[k] ? *inside[k] : solveBounded(open[k], halfSize);
+    }
+    opened = 0;
+  };
+  for (std::size_t first = 0; first < count; first += kLanes) {
     Lanes lanes;
-    for (std::size_t lane = 0; lane < Lanes::kCount; ++lane) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
       // The last problem also fills the unused lanes.
       const std::size_t i = std::min(first + lane, count - 1);
       lanes.load(lane, qefs[i], origins[i]);
     }
-    std::array<std::array<float, Lanes::kCount>, 3> points;
-    std::array<int, Lanes::kCount> found;
-    for (std::size_t lane = 0; lane < Lanes::kCount; ++lane) {
+    std::array<std::array<float, kLanes>, 3> points;
+    std::array<int, kLanes> oneDirection, inside;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Solution solution = solveOneDirection(lanes.seenFromOrigin(lane), halfSize);
       points[0][lane] = solution.x;
       points[1][lane] = solution.y;
       points[2][lane] = solution.z;
-      found[lane] = solution.oneDirection & solution.inside;
+      oneDirection[lane] = solution.oneDirection;
+      inside[lane] = solution.inside;
     }
-    for (std::size_t lane = 0; lane < std::min(Lanes::kCount, count - first); ++lane) {
-      solutions[first + lane] = found[lane] != 0
-                                    ? Vector{points[0][lane], points[1][lane], points[2][lane]}
-                                    : solve(lanes.seenFromOrigin(lane), halfSize);
+    for (std::size_t lane = 0; lane < std::min(kLanes, count - first); ++lane) {
+      if (oneDirection[lane] == 0) {
+        open[opened] = lanes.seenFromOrigin(lane);
+        places[opened++] = first + lane;
+        if (opened == kLanes) solveOpen();
+      } else if (inside[lane] != 0) {
+        solutions[first + lane] = {points[0][lane], points[1][lane], points[2][lane]};
+      } else {
+        solutions[first + lane] = solveBounded(lanes.seenFromOrigin(lane), halfSize);
+      }
     }
   }
+  if (opened > 0) solveOpen();
 }
 
 }  // namespace tufa::uniform
