@@ -93,9 +93,6 @@ class PlacementGuard {
           placementMoves_.addSlidesOnSheet(involved.vertices[i], moves);
         }
       }
-      std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
-        return std::pair(a.cost, a.vertex) < std::pair(b.cost, b.vertex);
-      });
       if (const Move* move = settling(conflict, moves)) {
         std::optional<Move>& best = chosen[slotOf(move->vertex)];
         if (!best || leavesFewer(*move, *best)) best = *move;
@@ -122,10 +119,16 @@ class PlacementGuard {
     return vertices;
   }
 
-  // The smallest move that settles a conflict, or else the smallest to a place of
-  // its own.
-  const Move* settling(const Conflict& conflict, const std::vector<Move>& moves) {
-    for (const Move& move : moves) {
+  // The smallest move that settles a conflict, or else the smallest to a place of its own. Sorts
+  // the moves from the back, only as far as they are tried.
+  const Move* settling(const Conflict& conflict, std::vector<Move>& moves) {
+    const auto isDearer = [](const Move& a, const Move& b) {
+      return std::pair(a.cost, a.vertex) > std::pair(b.cost, b.vertex);
+    };
+    std::make_heap(moves.begin(), moves.end(), isDearer);
+    for (auto end = moves.end(); end != moves.begin(); --end) {
+      std::pop_heap(moves.begin(), end, isDearer);
+      const Move& move = end[-1];
       const Position was = mesh_.positions[move.vertex];
       mesh_.positions[move.vertex] = move.to;
       const bool settles =
@@ -133,8 +136,8 @@ class PlacementGuard {
       mesh_.positions[move.vertex] = was;
       if (settles) return &move;
     }
-    const auto first = std::find_if(moves.begin(), moves.end(), PlacementMoves::isWhole);
-    return first == moves.end() ? nullptr : &*first;
+    const auto first = std::find_if(moves.rbegin(), moves.rend(), PlacementMoves::isWhole);
+    return first == moves.rend() ? nullptr : &*first;
   }
 
   // Whether a vertex may stay where it has slid. Two at the same point of a crease may be in any
