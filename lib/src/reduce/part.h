@@ -223,7 +223,12 @@ class Part {
   bool scaleStarTolerance(Index a);
   bool farSamplesNear();
   bool samplesNear(Index t, int wedge);
-  bool sampleNearGraph(Index s, Vec3f p, int wedge);
+  bool samplesNearGraph(Index t, int wedge);
+  void putFirst(Index t, Index before, Index s);
+  [[nodiscard]] Vec3f inFrame(Vec3f p) const {
+    return {dot(p, frame_.x), dot(p, frame_.y), dot(p, n_)};
+  }
+  bool sampleNearGraph(Index s, Vec3f q, int wedge);
   bool sampleNearStar(Index s, Vec3f p);
   [[nodiscard]] int wedgeOf(Vec3f s, int likely) const;
   bool apexNear(Index a, Index b);

@@ -300,11 +300,11 @@ bool Part::clusterSamplesNear(Index t) {
       if (!sampleNearStar(s, p)) return false;
       continue;
     }
-    const float* const next =
-        std::upper_bound(turns_, turns_ + size_, turnOf(dot(p, frame_.x), dot(p, frame_.y)));
+    const Vec3f q = inFrame(p);
+    const float* const next = std::upper_bound(turns_, turns_ + size_, turnOf(q.x, q.y));
     const auto after = static_cast<int>(next - turns_);
     const int wedge = (first_ + (after == 0 ? size_ : after) - 1) % size_;
-    if (!sampleNearGraph(s, p, wedge)) return false;
+    if (!sampleNearGraph(s, q, wedge)) return false;
   }
   return true;
 }

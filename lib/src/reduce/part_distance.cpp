@@ -69,7 +69,7 @@ bool Part::farSamplesNear() {
     if (wasFar_[t] == 0) return true;
     const Index s = firstSample_[t];
     const Vec3f p = samples_[s].p - place_;
-    return isGraph_ ? sampleNearGraph(s, p, wedge) : sampleNearStar(s, p);
+    return isGraph_ ? sampleNearGraph(s, inFrame(p), wedge) : sampleNearStar(s, p);
   };
   bool areNear = isNear(left_ / 3, 0) && isNear(right_ / 3, split_);
   for (int i = 0; i < size_ && areNear; ++i) areNear = isNear(at_[i] / 3, i);
@@ -77,31 +77,70 @@ bool Part::farSamplesNear() {
   return areNear;
 }
 
-// All samples of a triangle that changes; notes the new triangles that take them. One that is too
-// far goes first in its list, as it is likely to be so again. `wedge`: the new triangle that takes
-// most of them.
+// All samples of a triangle that changes; notes the new triangles that take them. `wedge`: the new
+// triangle that takes most of them.
 bool Part::samplesNear(Index t, int wedge) {
+  if (isGraph_) return samplesNearGraph(t, wedge);
   Index before = kNone;
   for (Index s = firstSample_[t]; s != kNone; before = s, s = samples_[s].next) {
-    const Vec3f p = samples_[s].p - place_;
-    if ((isGraph_ ? sampleNearGraph(s, p, wedge) : sampleNearStar(s, p)) ||
-        !isOn(Outcome::Sample)) {
-      continue;
-    }
-    if (before != kNone) {
-      samples_[before].next = samples_[s].next;
-      samples_[s].next = firstSample_[t];
-      firstSample_[t] = s;
-    }
-    wasFar_[t] = 1;
+    if (sampleNearStar(s, samples_[s].p - place_) || !isOn(Outcome::Sample)) continue;
+    putFirst(t, before, s);
     return false;
   }
   return true;
 }
 
-// By the triangle above or below it: its plane's height first, as that is cheap.
-bool Part::sampleNearGraph(Index s, Vec3f p, int wedge) {
-  const Vec3f q{dot(p, frame_.x), dot(p, frame_.y), dot(p, n_)};
+// The same where the new star is a graph. Several at a time are compared with the one triangle;
+// most need no more.
+bool Part::samplesNearGraph(Index t, int wedge) {
+  constexpr std::size_t kLanes = 8;
+  using Lanes = std::array<float, kLanes>;
+  const Vec3f a = z_[wedge], b = z_[wedge + 1], slope = slope_[wedge];
+  const Index taker = at_[wedge] / 3;
+  Index last = kNone;
+  for (Index s = firstSample_[t]; s != kNone;) {
+    std::array<Index, kLanes> ids;
+    Lanes px, py, pz, x, y, z;
+    std::size_t count = 0;
+    for (; count < kLanes && s != kNone; ++count, s = samples_[s].next) {
+      const Vec3f p = samples_[s].p - place_;
+      ids[count] = s, px[count] = p.x, py[count] = p.y, pz[count] = p.z;
+    }
+    for (std::size_t i = count; i < kLanes; ++i) px[i] = py[i] = pz[i] = 0;
+    std::array<std::uint8_t, kLanes> isNear;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      x[i] = px[i] * frame_.x.x + py[i] * frame_.x.y + pz[i] * frame_.x.z;
+      y[i] = px[i] * frame_.y.x + py[i] * frame_.y.y + pz[i] * frame_.y.z;
+      z[i] = px[i] * n_.x + py[i] * n_.y + pz[i] * n_.z;
+      const int isIn = (a.x * y[i] - a.y * x[i] >= 0) & (b.x * y[i] - b.y * x[i] < 0);
+      const int isInside = (b.x - a.x) * (y[i] - a.y) - (b.y - a.y) * (x[i] - a.x) >= 0;
+      const float height = x[i] * slope.x + y[i] * slope.y + z[i] * slope.z;
+      isNear[i] = static_cast<std::uint8_t>(isIn & isInside & (std::abs(height) <= distance_));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (isNear[i] != 0) {
+        taken_.push_back({ids[i], taker});
+      } else if (!sampleNearGraph(ids[i], {x[i], y[i], z[i]}, wedge) && isOn(Outcome::Sample)) {
+        putFirst(t, i == 0 ? last : ids[i - 1], ids[i]);
+        return false;
+      }
+    }
+    last = ids[count - 1];
+  }
+  return true;
+}
+
+// A sample that is too far goes first in its triangle's list, as it is likely to be so again.
+void Part::putFirst(Index t, Index before, Index s) {
+  wasFar_[t] = 1;
+  if (before == kNone) return;
+  samples_[before].next = samples_[s].next;
+  samples_[s].next = firstSample_[t];
+  firstSample_[t] = s;
+}
+
+// Seen in the frame. By the triangle above or below it: its plane's height first, as that is cheap.
+bool Part::sampleNearGraph(Index s, Vec3f q, int wedge) {
   const int w = wedgeOf(q, wedge);
   taken_.push_back({s, at_[w] / 3});
   const bool isOutside =
