@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "reduce/box_group.h"
 #include "reduce/star.h"
@@ -138,7 +139,7 @@ class Neighbourhood {
 
   // Marks the triangles that pass a cell and do not make one sheet with those within the reach.
   void lookAt(const List& list, const Box3f& cell) {
-    if (list.size() < 2 || isOneSheet(list)) return;
+    if (list.size() < 2 || isOneSheet(list) || areTwoSheetsApart(list)) return;
     constexpr std::size_t kSize = BoxGroup::kSize;
     grown_.assign((list.size() + kSize - 1) / kSize, {});
     for (std::size_t k = 0; k < list.size(); ++k) {
@@ -147,6 +148,35 @@ class Neighbourhood {
     for (const Index i : list) {
       if (cell.meets(items_[i].box) && !isOneSheetAround(i, list)) mark(items_[i].triangle);
     }
+  }
+
+  // Whether the triangles make two sheets, one above the other, with more than the reach between
+  // them: most cells of thin shells.
+  bool areTwoSheetsApart(const List& list) {
+    near_.clear(), others_.clear();
+    const Vec3f first = items_[list[0]].normal;
+    Vec3f up;
+    for (const Index i : list) {
+      const bool isFirst = dot(first, items_[i].normal) >= 0;
+      (isFirst ? near_ : others_).push_back(i);
+      up = isFirst ? up + items_[i].normal : up - items_[i].normal;
+    }
+    if (others_.empty() || !isOneSheet(near_) || !isOneSheet(others_)) return false;
+    up = unit(up);
+    const auto [low, high] = heightsOf(near_, up);
+    const auto [otherLow, otherHigh] = heightsOf(others_, up);
+    return low - otherHigh > reach_ || otherLow - high > reach_;
+  }
+
+  [[nodiscard]] std::pair<float, float> heightsOf(const List& list, Vec3f up) const {
+    float low = Box3f::kMost, high = -Box3f::kMost;
+    for (const Index i : list) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const float height = dot(up, surface_.corner(items_[i].triangle, corner));
+        low = std::min(low, height), high = std::max(high, height);
+      }
+    }
+    return {low, high};
   }
 
   // `grown_` has the boxes of the list.
@@ -174,7 +204,7 @@ class Neighbourhood {
   Surface& surface_;
   float reach_;
   std::vector<Item> items_;
-  List near_;
+  List near_, others_;
   std::vector<BoxGroup> grown_;
 };
 

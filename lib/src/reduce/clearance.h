@@ -10,10 +10,11 @@ namespace tufa::reduce {
 ///
 /// Boxes are halved until the normals of all triangles that pass within `reach` of a box have a
 /// common direction: a closed surface passes every line in and out in turn, so normals on one side
-/// mean one sheet. Where boxes are smaller than 3 `reach` first, it is not one. Away from the marks
-/// the surface stays one sheet as long as no point moves by more than a third of `reach`, so that
-/// operations there need no test for intersections with what lies farther off. Cost: about 0.3
-/// microseconds a triangle, more in narrow places.
+/// mean one sheet. So do normals on two sides where a plane parts the triangles of one side from
+/// those of the other, by more than `reach`. Where boxes are smaller than 3 `reach` first, it is no
+/// graph. Away from the marks sheets stay apart as long as no point moves by more than a third of
+/// `reach`, so that operations there need no test for intersections with what lies farther off.
+/// Cost: about 0.3 microseconds a triangle, more in narrow places.
 void markNarrow(Surface& surface, const Partition& partition, float reach, base::Job& job);
 
 }  // namespace tufa::reduce
