@@ -108,7 +108,9 @@ class Measure {
       const float d = distance(reference_.positions()[r], owner_[r]);
       measured.sum += static_cast<double>(d);
       regions_.see(owner_[r], d);
-      measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, expected_);
+      if (d > std::min(measured.largest, expected_)) {
+        measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, expected_);
+      }
     }
   }
 
@@ -292,8 +294,9 @@ class Measure {
 
   // Whether there is a way from a face to its owners within what is expected.
   bool passes(Index f, Measured& measured) const {
+    const auto& v = reference_.faces()[f].vertex;
+    if (owner_[v[0]] == owner_[v[1]] && owner_[v[1]] == owner_[v[2]]) return true;
     const OwnedFace face = owned(f);
-    if (face.hasOneOwner()) return true;
     const float way = std::sqrt(overlayBound2(overlay_, face, expected_ * expected_));
     if (!(way <= expected_)) return false;
     regions_.seeAround(face.owners, way);
