@@ -22,6 +22,8 @@ constexpr int kClusterPhases = 3;
 // On the way to a large tolerance each is this share of the next, down to kRampEnd voxels.
 constexpr float kRamp = 0.25f;
 constexpr float kRampEnd = 0.09f;
+// And more than this times what the surface is at.
+constexpr float kRampStep = 1.5f;
 constexpr int kRampPhases = 2;
 // Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
 constexpr int kMostPhases = 24;
@@ -180,7 +182,8 @@ void Reduction::beginLines() {
 // near other surface and triangles hold few samples.
 void Reduction::descendTo(float tolerance, Index count) {
   std::vector<float> way{tolerance};
-  while (way.back() * kRamp > std::max(tolerance_, kRampEnd)) way.push_back(way.back() * kRamp);
+  const float least = std::max(kRampStep * tolerance_, kRampEnd);
+  while (way.back() * kRamp > least) way.push_back(way.back() * kRamp);
   for (std::size_t i = way.size(); i-- > 1;) reduce(way[i], count, kRampPhases);
   reduce(tolerance, count, options_.phases);
 }
