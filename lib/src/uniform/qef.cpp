@@ -105,7 +105,8 @@ std::array<std::array<float, N>, 3> truncatedSteps(
   std::array<std::array<float, N>, 3> step{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < N; ++k) {
-      const float largest = std::max(std::max(m.diagonal[0][k], m.diagonal[1][k]), m.diagonal[2][k]);
+      const float largest =
+          std::max(std::max(m.diagonal[0][k], m.diagonal[1][k]), m.diagonal[2][k]);
       const float along = m.vectors[0][i][k] * residual[0][k] +
                           m.vectors[1][i][k] * residual[1][k] + m.vectors[2][i][k] * residual[2][k];
       const float own = m.diagonal[i][k];
@@ -205,8 +206,8 @@ inline Solution solveOneDirection(const Qef& qef, float halfSize) {
   const float squared = dot(n, n), first = dot(n, an), trace = a[0] + a[3] + a[5];
   const float along = dot(n, residual) / first;
   const Vector x = {c[0] + n[0] * along, c[1] + n[1] * along, c[2] + n[2] * along};
-  const int oneDirection = (squared > 0.25F * qef.count * qef.count) &
-                           (trace * squared < (1 + kFreeShare) * first);
+  const int oneDirection =
+      (squared > 0.25F * qef.count * qef.count) & (trace * squared < (1 + kFreeShare) * first);
   const int insideX = std::abs(x[0]) <= halfSize;
   const int insideY = std::abs(x[1]) <= halfSize;
   const int insideZ = std::abs(x[2]) <= halfSize;
