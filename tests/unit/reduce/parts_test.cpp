@@ -296,9 +296,15 @@ TEST(Partition, IsTheSameAlongItsOwnTreeAndForAnyThreads) {
   }
 }
 
-// Marks of a plate of this thickness.
-std::size_t marksOfPlate(float thickness, float reach) {
+// Marks of a plate of this thickness, turned so that it lies across all axes or not.
+std::size_t marksOfPlate(float thickness, float reach, bool isTurned = false) {
   test::FineMesh mesh = test::subdivided(test::box(16, 16, thickness), 5);
+  const std::vector<Vec3f> flat = mesh.positions;
+  const Vec3f up = unit(Vec3f(1, 1.1f, 0.9f));
+  const base::Frame frame = base::frameAbout(up);
+  for (Vec3f& p : mesh.positions) {
+    if (isTurned) p = frame.x * p.x + frame.y * p.y + up * p.z;
+  }
   base::Job job(1, {});
   const ReferenceMesh reference(makeSurface(mesh.positions, mesh.triangles, job), {}, job);
   Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
@@ -309,7 +315,7 @@ std::size_t marksOfPlate(float thickness, float reach) {
   markNarrow(surface, partition, reach, job);
   std::size_t marks = 0;
   for (Index v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3f p = mesh.positions[v];
+    const Vec3f p = flat[v];
     const bool isInside = std::min({p.x, p.y, 16 - p.x, 16 - p.y}) > 6;
     marks += isInside && (surface.flags[v] & kNarrow) != 0;
   }
@@ -321,6 +327,13 @@ TEST(Clearance, MarksSurfaceThatOtherSurfaceIsNear) {
   EXPECT_EQ(marksOfPlate(1, 0.8f), 0U);
   EXPECT_GT(marksOfPlate(0.05f, 0.4f), 50U);
   EXPECT_EQ(marksOfPlate(6, 0.4f), 0U);
+}
+
+// Boxes around its triangles meet, a plane parts its sides.
+TEST(Clearance, MarksNothingBetweenSidesThatAPlaneParts) {
+  EXPECT_EQ(marksOfPlate(1, 0.8f, true), 0U);
+  EXPECT_GT(marksOfPlate(1, 1.2f, true), 50U);
+  EXPECT_GT(marksOfPlate(0.05f, 0.4f, true), 50U);
 }
 
 // A section that starts at a vertex may begin in any face there, not only in one that it passes.
