@@ -114,10 +114,11 @@ bool Part::samplesNearGraph(Index t, int wedge) {
       x[i] = px[i] * frame_.x.x + py[i] * frame_.x.y + pz[i] * frame_.x.z;
       y[i] = px[i] * frame_.y.x + py[i] * frame_.y.y + pz[i] * frame_.y.z;
       z[i] = px[i] * n_.x + py[i] * n_.y + pz[i] * n_.z;
-      const int isIn = (a.x * y[i] - a.y * x[i] >= 0) & (b.x * y[i] - b.y * x[i] < 0);
+      const int isLeft = a.x * y[i] - a.y * x[i] >= 0, isRight = b.x * y[i] - b.y * x[i] < 0;
       const int isInside = (b.x - a.x) * (y[i] - a.y) - (b.y - a.y) * (x[i] - a.x) >= 0;
       const float height = x[i] * slope.x + y[i] * slope.y + z[i] * slope.z;
-      isNear[i] = static_cast<std::uint8_t>(isIn & isInside & (std::abs(height) <= distance_));
+      const int isLow = std::abs(height) <= distance_;
+      isNear[i] = static_cast<std::uint8_t>(isLeft & isRight & isInside & isLow);
     }
     for (std::size_t i = 0; i < count; ++i) {
       if (isNear[i] != 0) {
