@@ -11,9 +11,10 @@ namespace tufa::reduce {
 
 /// Boxes of triangles that change all the time, for explicit intersection tests.
 ///
-/// They lie in the order of a space-filling curve, sixteen of them in a larger box and so on, three
-/// times. A box is renewed in place; larger ones only grow until the next
-/// build(). Beside a tree that costs nothing to keep up, and a part has few enough of them.
+/// They lie in the order of a space-filling curve, in three levels: sixteen of them share a larger
+/// box, sixteen of those a still larger one. A box is renewed in place; larger ones only grow until
+/// the next build(). Beside a tree that costs nothing to keep up, and a part has few enough of
+/// them.
 class BoxList {
  public:
   /// What it knows of each triangle: where its box is, kNone if it is not in the list.

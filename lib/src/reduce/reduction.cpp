@@ -22,7 +22,7 @@ constexpr int kClusterPhases = 3;
 // On the way to a large tolerance each is this share of the next, down to kRampEnd voxels.
 constexpr float kRamp = 0.25f;
 constexpr float kRampEnd = 0.09f;
-// And more than this times what the surface is at.
+// No step is below this many times the tolerance that the surface has been reduced to.
 constexpr float kRampStep = 1.5f;
 constexpr int kRampPhases = 2;
 // Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
