@@ -12,7 +12,7 @@ namespace tufa::reduce {
 // mesh as a type M: mesh(t, i) is the position of a triangle's corner i, mesh.vertex(t, i) its
 // vertex, and mesh.across(t, i) the triangle across the edge opposite it, or kNone. If it has a
 // function mesh.mayPass(t, from, to), ways from one triangle to another lead only over those for
-// which that is true.
+// which that is true; it is of what is beside one of the two.
 
 /// More than any squared distance.
 inline constexpr float kFar2 = 1e30f;
@@ -25,6 +25,43 @@ struct OverlayPath {
   float largest2 = 0;  ///< the largest squared distance of the segment from an edge on the way
 };
 
+/// The squared distance of a segment from a triangle's edge, the one opposite its corner i.
+template <class M>
+float squaredDistanceToEdge(const M& mesh, const std::array<Vec3f, 2>& pq, Index t, int i) {
+  return squaredDistanceOfSegments(pq[0], pq[1], mesh(t, (i + 1) % 3), mesh(t, (i + 2) % 3));
+}
+
+/// As findOverlayPath(), of one step or of two, which most ways are. What is beyond needs no look
+/// at an edge that does not lead to `to`.
+template <class M>
+bool findShortPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, Index to,
+                   float limit2, OverlayPath& path) {
+  Index next[3];
+  for (int i = 0; i < 3; ++i) {
+    next[i] = mesh.across(from, i);
+    if (next[i] != to) continue;
+    next[i] = kNone;
+    const float d2 = squaredDistanceToEdge(mesh, pq, from, i);
+    if (d2 > limit2) continue;
+    path.count = 2, path.largest2 = d2;
+    path.triangles[0] = from, path.triangles[1] = to;
+    return true;
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; next[i] != kNone && j < 3; ++j) {
+      if (mesh.across(next[i], j) != to) continue;
+      const float first2 = squaredDistanceToEdge(mesh, pq, from, i);
+      if (first2 > limit2) break;
+      const float d2 = std::max(first2, squaredDistanceToEdge(mesh, pq, next[i], j));
+      if (d2 > limit2) continue;
+      path.count = 3, path.largest2 = d2;
+      path.triangles[0] = from, path.triangles[1] = next[i], path.triangles[2] = to;
+      return true;
+    }
+  }
+  return false;
+}
+
 /// A way from triangle `from`, which is near p, to `to`, which is near q, each step across an edge
 /// that the segment from p to q comes within the limit of. Then the segment falls into pieces, each
 /// with both ends within the limit of one triangle, whatever way it is: so the one of fewest
@@ -32,6 +69,13 @@ struct OverlayPath {
 template <class M>
 bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, Index to,
                      float limit2, OverlayPath& path) {
+  if (from == to) {
+    path.count = 1;
+    path.largest2 = 0;
+    path.triangles[0] = from;
+    return true;
+  }
+  if (findShortPath(mesh, pq, from, to, limit2, path)) return true;
   struct Step {
     Index triangle;
     int before, depth;
@@ -41,9 +85,6 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
   Step steps[kLooked];
   int count = 1;
   steps[0] = {from, -1, 1, 0};
-  const auto distance2 = [&](Index t, int i) {
-    return squaredDistanceOfSegments(pq[0], pq[1], mesh(t, (i + 1) % 3), mesh(t, (i + 2) % 3));
-  };
   const auto arrive = [&](int last, float largest2) {
     path.count = steps[last].depth + 1;
     path.largest2 = largest2;
@@ -53,12 +94,6 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
     }
     return true;
   };
-  if (from == to) {
-    path.count = 1;
-    path.largest2 = 0;
-    path.triangles[0] = from;
-    return true;
-  }
   for (int k = 0; k < count; ++k) {
     const Step step = steps[k];
     if (step.depth == OverlayPath::kMost) break;
@@ -66,8 +101,7 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
     for (int i = 0; i < 3; ++i) {
       next[i] = mesh.across(step.triangle, i);
       if (next[i] != to) continue;
-      // Most ways end here: the other edges need not be looked at.
-      const float d2 = distance2(step.triangle, i);
+      const float d2 = squaredDistanceToEdge(mesh, pq, step.triangle, i);
       if (d2 <= limit2) return arrive(k, std::max(step.largest2, d2));
       next[i] = kNone;
     }
@@ -79,7 +113,7 @@ bool findOverlayPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, 
       }
       const auto isNext = [&](const Step& seen) { return seen.triangle == next[i]; };
       if (std::any_of(steps, steps + count, isNext)) continue;
-      const float d2 = distance2(step.triangle, i);
+      const float d2 = squaredDistanceToEdge(mesh, pq, step.triangle, i);
       if (d2 <= limit2) steps[count++] = {next[i], k, step.depth + 1, std::max(step.largest2, d2)};
     }
   }
