@@ -274,7 +274,7 @@ class Measure {
   }
 
   [[nodiscard]] OwnedFace owned(Index f) const {
-    const auto& v = reference_.faces()[f].vertex;
+    const auto& v = reference_.vertices(f);
     return {reference_.cornersOf(f), v, {owner_[v[0]], owner_[v[1]], owner_[v[2]]}};
   }
 
@@ -294,7 +294,7 @@ class Measure {
 
   // Whether there is a way from a face to its owners within what is expected.
   bool passes(Index f, Measured& measured) const {
-    const auto& v = reference_.faces()[f].vertex;
+    const auto& v = reference_.vertices(f);
     if (owner_[v[0]] == owner_[v[1]] && owner_[v[1]] == owner_[v[2]]) return true;
     const OwnedFace face = owned(f);
     const float way = std::sqrt(overlayBound2(overlay_, face, expected_ * expected_));
@@ -365,7 +365,7 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
                     base::Job& job) {
   RegionMaxima regions(s);
   Measure measure(s, reference, expected, regions, job);
-  const std::size_t vertices = s.owner.size(), faces = reference.faces().size();
+  const std::size_t vertices = s.owner.size(), faces = reference.faceCount();
   const std::size_t a = (vertices + kGrain - 1) / kGrain, b = (faces + kGrain - 1) / kGrain;
   std::vector<Measured> parts(a + b);  // their limits, and so the sums, do not depend on threads
   job.forRanges(a + b, 1, [&](std::size_t firstPart, std::size_t endPart) {

@@ -217,30 +217,35 @@ void markNarrow(Surface& surface, const Partition& partition, float reach, base:
     box.growBy(reach);
     return box;
   };
-  // Most triangles are far inside the part of a corner.
-  constexpr std::size_t kGrain = 16384;
-  const std::size_t count = surface.triangles.size();
-  std::vector<Index> partAround(count);
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Index t = static_cast<Index>(begin); t < end; ++t) {
-      const Index part = partition.partOf(surface.triangles[t].vertices[0]);
-      const Box3f box = boxAbout(t), &all = partition.box(part);
-      partAround[t] = all.hasInside(box.lower) && all.hasInside(box.upper) ? part : kNone;
+  // Those of a part that reach into others, too; most are far inside.
+  std::vector<List> reaching(partition.size());
+  job.forRanges(partition.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (Index p = static_cast<Index>(begin); p < end; ++p) {
+      const Box3f& inside = partition.box(p);
+      for (const Index t : partition.triangles(p)) {
+        const Box3f box = boxAbout(t);
+        if (!inside.hasInside(box.lower) || !inside.hasInside(box.upper)) reaching[p].push_back(t);
+      }
     }
   });
-  const base::Groups inner = base::groupBy(
-      count, partition.size(), [&](Index t) { return partAround[t]; }, [](Index, Index) {}, job);
-  std::vector<List> lists(partition.size());
-  for (Index t = 0; t < count; ++t) {
-    if (partAround[t] != kNone) continue;
-    partition.forPartsAt(boxAbout(t), [&](Index part) { lists[part].push_back(t); });
+  std::vector<List> others(partition.size());
+  const auto share = [&](Index t, Index own) {
+    partition.forPartsAt(boxAbout(t), [&](Index part) {
+      if (part != own) others[part].push_back(t);
+    });
+  };
+  for (Index p = 0; p < reaching.size(); ++p) {
+    for (const Index t : reaching[p]) share(t, p);
   }
-  job.forRanges(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
+  for (const Index t : partition.acrossParts()) share(t, kNone);
+  job.forRanges(others.size(), 1, [&](std::size_t begin, std::size_t end) {
     List all;
     for (std::size_t p = begin; p < end; ++p) {
+      const auto own = partition.triangles(static_cast<Index>(p));
+      std::sort(others[p].begin(), others[p].end());
       all.clear();
-      std::merge(inner.members.begin() + inner.first[p], inner.members.begin() + inner.first[p + 1],
-                 lists[p].begin(), lists[p].end(), std::back_inserter(all));
+      std::merge(own.begin(), own.end(), others[p].begin(), others[p].end(),
+                 std::back_inserter(all));
       Neighbourhood(surface, reach).look(all, partition.box(static_cast<Index>(p)));
     }
   });

@@ -40,16 +40,38 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
 
 void Part::loadTables(const Surface& surface, std::span<const Index> triangles) {
   triangleCount_ = static_cast<Index>(triangles.size());
-  const Index corners = 3 * triangleCount_;
-  vertex_.resize(corners), opposite_.assign(corners, kNone);
-  auto& first = firstScratch_;
-  first.assign(vertexCount_ + 1, 0);
+  vertex_.resize(3 * triangleCount_);
   for (Index t = 0; t < triangleCount_; ++t) {
     for (Index i = 0; i < 3; ++i) {
       const Index v = partition_->localVertex(surface.triangles[triangles[t]].vertices[i]);
-      vertex_[3 * t + i] = v, corner_[v] = 3 * t + i, ++first[v + 1];
+      vertex_[3 * t + i] = v, corner_[v] = 3 * t + i;
     }
   }
+  opposite_.assign(3 * triangleCount_, kNone);
+  if (surface.triangles.data() == reference_->faces().data()) {
+    copyOpposites(triangles);
+  } else {
+    matchOpposites();
+  }
+}
+
+// The surface is the reference, which knows them.
+void Part::copyOpposites(std::span<const Index> triangles) {
+  for (Index t = 0; t < triangleCount_; ++t) {
+    for (Index i = 0; i < 3; ++i) {
+      const Index c = reference_->opposite(3 * triangles[t] + i);
+      if (c == kNone || partition_->partOf(reference_->vertices(c / 3)[c % 3]) != number_) continue;
+      opposite_[3 * t + i] = 3 * partition_->localTriangle(c / 3) + c % 3;
+    }
+  }
+}
+
+// An edge that comes from another vertex meets the one that goes back there.
+void Part::matchOpposites() {
+  const Index corners = 3 * triangleCount_;
+  auto& first = firstScratch_;
+  first.assign(vertexCount_ + 1, 0);
+  for (const Index v : vertex_) ++first[v + 1];
   for (Index i = 0; i < vertexCount_; ++i) first[i + 1] += first[i];
   edgeScratch_.resize(corners);  // by start: end and opposite corner
   for (Index c = 0; c < corners; ++c) {
@@ -97,14 +119,15 @@ void Part::loadSamples(const Surface& surface) {
   }
 }
 
-void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) const {
+void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) {
   const auto vertices = partition_->vertices(number_);
   const auto triangles = partition_->triangles(number_);
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
     if (inner_[i] != 0) surface.axis[v] = axis_[i], surface.flags[v] = flags_[i];
     if (moved_[i] == 0) continue;
-    surface.position[v] = position_[i], surface.face[v] = face_[i];
+    stored_.moved.push_back({v, position_[i]});
+    surface.face[v] = face_[i];
     if (!isOnLine(i)) surface.source[v] = kNone;
   }
   for (Index t = 0; t < triangleCount_; ++t) {
@@ -113,9 +136,9 @@ void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) const {
       dead[own] = 1;
       continue;
     }
-    for (Index i = 0; i < 3; ++i) {
-      surface.triangles[own].vertices[i] = vertices[vertex_[3 * t + i]];
-    }
+    Triangle now;
+    for (Index i = 0; i < 3; ++i) now.vertices[i] = vertices[vertex_[3 * t + i]];
+    if (!(now == surface.triangles[own])) stored_.changed.push_back({own, now});
     for (Index s = firstSample_[t]; s != kNone; s = samples_[s].next) {
       surface.owner[sampleIds_[s]] = own;
     }

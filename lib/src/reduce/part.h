@@ -36,9 +36,11 @@ class Part {
   void collapseAll();
   /// Flips edges of slivers.
   void flipAll();
-  /// Writes back what changed. Parts write to places of their own. `dead`: for each triangle of the
-  /// surface whether it has vanished.
-  void store(Surface& surface, std::vector<std::uint8_t>& dead) const;
+  /// Writes back what changed, but for stored(). Parts write to places of their own. `dead`: for
+  /// each triangle of the surface whether it has vanished.
+  void store(Surface& surface, std::vector<std::uint8_t>& dead);
+  /// Positions and triangles that changed in all parts so far.
+  [[nodiscard]] SurfaceChanges& stored() { return stored_; }
 
   /// What was tried in all parts so far.
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
@@ -103,6 +105,8 @@ class Part {
 
   // part.cpp: tables and queue.
   void loadTables(const Surface& surface, std::span<const Index> triangles);
+  void copyOpposites(std::span<const Index> triangles);
+  void matchOpposites();
   void loadQuadrics();
   void loadSamples(const Surface& surface);
   void push(float cost, const Candidate& candidate);
@@ -262,6 +266,7 @@ class Part {
   const Partition* partition_ = nullptr;
   PhaseLimits limits_;
   OperationCounts counts_;
+  SurfaceChanges stored_;
   Index number_ = 0, vertexCount_ = 0, triangleCount_ = 0;
   float distance_ = 0, squaredDistance_ = 0;  ///< allowed at the attempt at hand
   Box3f box_;

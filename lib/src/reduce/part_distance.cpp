@@ -42,7 +42,7 @@ Outcome Part::distanceGuard(Index a, Index b) {
 // reference below a vertex of them. Whether there is any left.
 bool Part::scaleTolerance(std::span<const Index> triangles, Index vertex) {
   if (face_[vertex] == kNone) return false;
-  const auto& below = reference_->faces()[face_[vertex]].vertex;
+  const auto& below = reference_->vertices(face_[vertex]);
   float scale = reference_->scaleAt(below[0]);
   for (const Index r : below) scale = std::min(scale, reference_->scaleAt(r));
   for (const Index t : triangles) {
@@ -256,7 +256,7 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
 void Part::noteFacesBetween(Index face, Index vertex) {
   for (const Index f : {face, face_[vertex]}) {
     if (f == kNone) continue;
-    for (const Index v : reference_->faces()[f].vertex) {
+    for (const Index v : reference_->vertices(f)) {
       reference_->allAround(v, [&](Index around) {
         roughFaces_.push_back(around);
         return true;
@@ -274,8 +274,8 @@ bool Part::isBelow(Index face, Index vertex, Vec3f axis) const {
   const Index found =
       reference_->locate(face, position_[vertex], hasAxis(vertex) ? axis_[vertex] : axis);
   if (found == kNone) return false;
-  const auto& f = reference_->faces()[found].vertex;
-  const auto& g = reference_->faces()[own].vertex;
+  const auto& f = reference_->vertices(found);
+  const auto& g = reference_->vertices(own);
   return std::any_of(f.begin(), f.end(),
                      [&](Index v) { return v == g[0] || v == g[1] || v == g[2]; });
 }
@@ -365,7 +365,7 @@ bool Part::facesNear() {
 
 bool Part::faceNear(Index face) const {
   const Changed mesh{*this};
-  const auto& v = reference_->faces()[face].vertex;
+  const auto& v = reference_->vertices(face);
   OwnedFace owned{{}, v, {ownerAfter(v[0]), ownerAfter(v[1]), ownerAfter(v[2])}};
   for (const Index owner : owned.owners) {
     if (owner == kNone) return false;

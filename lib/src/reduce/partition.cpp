@@ -177,16 +177,18 @@ void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   triangles_ = base::groupBy(
       count, parts, [&](Index t) { return partOfTriangle_[t]; },
       [&](Index t, Index at) { localTriangle_[t] = at; }, job);
-  std::vector<std::array<Index, 2>> across;
+  across_.clear();
+  std::vector<std::array<Index, 2>> reached;
   for (Index t = 0; t < count; ++t) {
     if (partOfTriangle_[t] != kNone) continue;
+    across_.push_back(t);
     Box3f box;
     for (const Index i : surface.triangles[t].vertices) box.add(surface.position[i]);
-    forPartsAt(box, [&](Index part) { across.push_back({part, t}); });
+    forPartsAt(box, [&](Index part) { reached.push_back({part, t}); });
   }
   foreign_ = base::groupBy(
-      across.size(), parts, [&](Index i) { return across[i][0]; }, [](Index, Index) {}, job);
-  for (Index& member : foreign_.members) member = across[member][1];
+      reached.size(), parts, [&](Index i) { return reached[i][0]; }, [](Index, Index) {}, job);
+  for (Index& member : foreign_.members) member = reached[member][1];
 }
 
 void Partition::shareSamples(const Surface& surface, base::Job& job) {

@@ -46,6 +46,8 @@ class Partition {
   [[nodiscard]] std::span<const Index> foreign(Index p) const {
     return of(foreign_.members, foreign_.first, p);
   }
+  /// Triangles of several parts, in rising order.
+  [[nodiscard]] std::span<const Index> acrossParts() const { return across_; }
   /// Reference vertices whose owners are triangles of a part; where these have several, those of a
   /// triangle together.
   [[nodiscard]] std::span<const Index> samples(Index p) const {
@@ -102,6 +104,7 @@ class Partition {
   std::vector<Index> vertices_, ranges_, partOf_, localVertex_;
   std::vector<Index> partOfTriangle_, localTriangle_, localSample_;
   base::Groups triangles_, foreign_, samples_;
+  std::vector<Index> across_;
   std::vector<std::uint8_t> inner_;
 };
 

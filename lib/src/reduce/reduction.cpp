@@ -65,11 +65,7 @@ float shareOf(Index phase) {
 }
 
 Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::Job& job) {
-  std::vector<Triangle> triangles(reference.faces().size());
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    triangles[f].vertices = reference.faces()[f].vertex;
-  }
-  Surface surface = makeSurface(reference.positions(), triangles, job);
+  Surface surface = makeSurface(reference.positions(), reference.faces(), job);
   surface.rounded = options.rounded;
   locateAll(surface, reference, {}, job);
   return surface;
@@ -85,7 +81,7 @@ Options optionsForAngle(double degrees) {
   return options;
 }
 
-Reduction::Meshes Reduction::meshesOf(MeshView input, MeshView reference,
+Reduction::Meshes Reduction::meshesOf(const InputMesh& input, const InputMesh& reference,
                                       std::span<const Index> standsFor, std::vector<float> scales,
                                       base::Job& job) {
   const CornersOfVertices corners(input.positions.size(), input.triangles);
@@ -98,8 +94,9 @@ Reduction::Meshes Reduction::meshesOf(MeshView input, MeshView reference,
   return {std::move(surface), ReferenceMesh(other, std::move(scales), job)};
 }
 
-Reduction::Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor,
-                     std::vector<float> scales, Options options, base::Job& job)
+Reduction::Reduction(const InputMesh& input, const InputMesh& reference,
+                     std::span<const Index> standsFor, std::vector<float> scales, Options options,
+                     base::Job& job)
     : Reduction(meshesOf(input, reference, standsFor, std::move(scales), job), standsFor.empty(),
                 std::move(options), job) {
   locateAll(surface_, reference_, standsFor, job);
@@ -368,6 +365,8 @@ void Reduction::returnPart(std::unique_ptr<Part> part) {
   part->changes().clear();
   lastForms_.insert(lastForms_.end(), part->forms().begin(), part->forms().end());
   part->forms().clear();
+  lastStored_.push_back(std::move(part->stored()));
+  part->stored() = {};
   parts_.push_back(std::move(part));
 }
 
@@ -395,7 +394,8 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
   surface_.oldForms.insert(surface_.oldForms.end(), lastForms_.begin(), lastForms_.end());
   lastForms_.clear();
   isReference_ = false;
-  compact(surface_, dead);
+  apply(surface_, lastStored_, dead);
+  lastStored_.clear();
   ++phaseNumber_;
 }
 
@@ -404,7 +404,12 @@ void Reduction::measure(float expected) {
 }
 
 ReducedMesh Reduction::mesh() const {
-  return {surface_.position, surface_.triangles, surface_.source, surface_.face, surface_.region};
+  const Surface& s = surface_;
+  return {{s.position.begin(), s.position.end()},
+          {s.triangles.begin(), s.triangles.end()},
+          s.source,
+          s.face,
+          s.region};
 }
 
 }  // namespace tufa::reduce

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/shared_array.h"
 #include "reduce/certificate.h"
 #include "reduce/operations.h"
 #include "reduce/partition.h"
@@ -23,9 +24,9 @@ inline constexpr float kLeastTolerance = 1e-3f;
 
 /// A mesh as it comes in. Positions are in voxels, counted from a place in the middle of the mesh,
 /// so that single precision is enough.
-struct MeshView {
-  std::span<const Vec3f> positions;
-  std::span<const Triangle> triangles;
+struct InputMesh {
+  base::SharedArray<Vec3f> positions;
+  base::SharedArray<Triangle> triangles;
 };
 
 /// The reduced mesh.
@@ -88,7 +89,7 @@ class Reduction {
   /// `standsFor`: for each reference vertex the input vertex that stands for it; empty if the input
   /// is the reference. `scales`: for each reference vertex what the tolerance is multiplied with
   /// there, 0: nothing may change; empty: 1 everywhere. `job` must outlive this.
-  Reduction(MeshView input, MeshView reference, std::span<const Index> standsFor,
+  Reduction(const InputMesh& input, const InputMesh& reference, std::span<const Index> standsFor,
             std::vector<float> scales, Options options, base::Job& job);
   ~Reduction();
   Reduction(const Reduction&) = delete;
@@ -143,8 +144,9 @@ class Reduction {
   };
 
   Reduction(Meshes meshes, bool isReference, Options options, base::Job& job);
-  static Meshes meshesOf(MeshView input, MeshView reference, std::span<const Index> standsFor,
-                         std::vector<float> scales, base::Job& job);
+  static Meshes meshesOf(const InputMesh& input, const InputMesh& reference,
+                         std::span<const Index> standsFor, std::vector<float> scales,
+                         base::Job& job);
   [[nodiscard]] State state() const;
   void restore(const State& state);
   void descendTo(float tolerance, Index count);
@@ -168,6 +170,7 @@ class Reduction {
   OperationCounts counts_, lastCounts_;
   std::vector<std::array<Index, 2>> lastChanges_;  ///< see Part::changes()
   std::vector<Form> lastForms_;                    ///< see Part::forms()
+  std::vector<SurfaceChanges> lastStored_;         ///< see Part::stored()
   Certificate certificate_;
   bool isReference_;                                 ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance

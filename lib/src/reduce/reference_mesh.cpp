@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "base/huge_pages.h"
-
 namespace tufa::reduce {
 namespace {
 constexpr std::size_t kGrain = 16384;
@@ -16,18 +14,11 @@ ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, ba
 ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corners,
                              std::vector<float> scales, base::Job& job)
     : positions_(input.position),
+      faces_(input.triangles),
+      opposite_(oppositeCorners(input.triangles, corners, job)),
       cornerOf_(input.position.size(), kNone),
       rough_(input.position.size(), 0),
       scales_(std::move(scales)) {
-  base::resizeLarge(faces_, input.triangles.size(), job);
-  job.forRanges(faces_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Index t = static_cast<Index>(begin); t < end; ++t) {
-      faces_[t].vertex = input.triangles[t].vertices;
-    }
-  });
-  forOppositeCorners(input.triangles, corners, job, [&](Index corner, Index other) {
-    faces_[corner / 3].opposite[corner % 3] = other;
-  });
   job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) {
       if (!corners.of(v).empty()) cornerOf_[v] = corners.of(v).back();
@@ -44,7 +35,7 @@ void ReferenceMesh::hold(std::span<const Index> faces, float radius) {
     const Vec3f middle = (corners[0] + corners[1] + corners[2]) * (1.0f / 3);
     reached.clear();
     const auto reach = [&](Index f) {
-      for (const Index v : faces_[f].vertex) {
+      for (const Index v : vertices(f)) {
         if (seenFrom[v] == face) continue;
         seenFrom[v] = face;
         reached.push_back(v);
@@ -82,7 +73,7 @@ Index ReferenceMesh::locate(Index start, Vec3f p, Vec3f axis, int steps) const {
       if (side < worst) worst = side, out = i;
     }
     if (out < 0) return dot(cross(q[1] - q[0], q[2] - q[0]), axis) > 0 ? face : kNone;
-    const Index c = faces_[face].opposite[static_cast<std::size_t>(out)];
+    const Index c = opposite_[3 * face + static_cast<Index>(out)];
     face = c == kNone ? kNone : c / 3;
   }
   return kNone;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/shared_array.h"
 #include "reduce/corners.h"
 #include "reduce/surface.h"
 #include "reduce/triangles.h"
@@ -17,11 +18,6 @@ namespace tufa::reduce {
 /// may be set anew.
 class ReferenceMesh {
  public:
-  struct Face {
-    std::array<Index, 3> vertex;
-    std::array<Index, 3> opposite;  ///< the corner across the edge opposite each corner, or kNone
-  };
-
   /// The mesh of a surface as makeSurface() gives it. `scales`: see scaleAt(); one for each vertex,
   /// or none.
   ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job);
@@ -29,8 +25,14 @@ class ReferenceMesh {
   ReferenceMesh(const Surface& input, const CornersOfVertices& corners, std::vector<float> scales,
                 base::Job& job);
 
-  [[nodiscard]] std::span<const Vec3f> positions() const { return positions_; }
-  [[nodiscard]] std::span<const Face> faces() const { return faces_; }
+  [[nodiscard]] const base::SharedArray<Vec3f>& positions() const { return positions_; }
+  [[nodiscard]] const base::SharedArray<Triangle>& faces() const { return faces_; }
+  [[nodiscard]] Index faceCount() const { return static_cast<Index>(faces_.size()); }
+  [[nodiscard]] const std::array<Index, 3>& vertices(Index face) const {
+    return faces_[face].vertices;
+  }
+  /// The corner across the edge opposite a corner, or kNone.
+  [[nodiscard]] Index opposite(Index c) const { return opposite_[c]; }
   /// One of a vertex's corners, or kNone.
   [[nodiscard]] Index cornerOf(Index vertex) const { return cornerOf_[vertex]; }
   /// Whether the tolerance differs from place to place.
@@ -45,19 +47,19 @@ class ReferenceMesh {
   void releaseAll();
   /// Whether a vertex of a face is held.
   [[nodiscard]] bool isHeld(Index face) const {
-    const auto& v = faces_[face].vertex;
+    const auto& v = vertices(face);
     return ((rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) & kHeld) != 0;
   }
   /// Whether a vertex of a face is rough.
   [[nodiscard]] bool isRoughFace(Index face) const {
-    const auto& v = faces_[face].vertex;
+    const auto& v = vertices(face);
     return (rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) != 0;
   }
   /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
   /// what is seen along one axis may not be all.
   [[nodiscard]] bool isRough(Index vertex) const { return rough_[vertex] != 0; }
   [[nodiscard]] const Vec3f& corner(Index face, std::size_t i) const {
-    return positions_[faces_[face].vertex[i]];
+    return positions_[vertices(face)[i]];
   }
   [[nodiscard]] std::array<Vec3f, 3> cornersOf(Index face) const {
     return {corner(face, 0), corner(face, 1), corner(face, 2)};
@@ -81,7 +83,7 @@ class ReferenceMesh {
   }
   /// The corner at the same vertex of the next face counter-clockwise, or kNone at a border.
   [[nodiscard]] Index around(Index c) const {
-    const Index across = faces_[c / 3].opposite[nextCorner(c) % 3];
+    const Index across = opposite_[nextCorner(c)];
     return across == kNone ? kNone : nextCorner(across);
   }
 
@@ -155,9 +157,9 @@ class ReferenceMesh {
                                std::abs(s[2]) <= beside};
       for (std::size_t i = 0; i < 3; ++i) {
         if (isAt[i]) {
-          (void)allAround(faces_[first].vertex[i], [&](Index f) { return tryFace(f), out < 0; });
+          (void)allAround(vertices(first)[i], [&](Index f) { return tryFace(f), out < 0; });
         } else if (isBeside[(i + 1) % 3] && isBeside[(i + 2) % 3]) {
-          const Index c = faces_[first].opposite[i];
+          const Index c = opposite_[3 * first + static_cast<Index>(i)];
           tryFace(c == kNone ? kNone : c / 3);
         }
       }
@@ -175,13 +177,13 @@ class ReferenceMesh {
       }
       if (!visit(face, m, right, left)) return {};
       before = m;
-      const Index c = faces_[face].opposite[static_cast<std::size_t>(out)];
+      const Index c = opposite_[3 * face + static_cast<Index>(out)];
       if (c == kNone) return {};
       face = c / 3;
       const int at = static_cast<int>(c - 3 * face);
       prefetchAcross(at == 2 ? c - 2 : c + 1);
       prefetchAcross(at == 0 ? c + 2 : c - 1);
-      const Vec3f w = positions_[faces_[face].vertex[static_cast<std::size_t>(at)]] - section.start;
+      const Vec3f w = positions_[vertices(face)[static_cast<std::size_t>(at)]] - section.start;
       const float sw = dot(w, side);
       // The edge from right to left is opposite c, turned round: right comes after c's successor.
       if (sw > 0) {
@@ -196,7 +198,7 @@ class ReferenceMesh {
  private:
   // Asks for a face that a walk may enter next while the position that decides it is read.
   void prefetchAcross(Index c) const {
-    const Index across = faces_[c / 3].opposite[c % 3];
+    const Index across = opposite_[c];
     __builtin_prefetch(faces_.data() + (across == kNone ? 0 : across / 3));
   }
 
@@ -204,8 +206,9 @@ class ReferenceMesh {
   static constexpr int kMostSteps = 2000;
   static constexpr std::uint8_t kRough = 1, kHeld = 2;
 
-  std::vector<Vec3f> positions_;
-  std::vector<Face> faces_;
+  base::SharedArray<Vec3f> positions_;
+  base::SharedArray<Triangle> faces_;
+  std::vector<Index> opposite_;  ///< of each corner
   std::vector<Index> cornerOf_;
   std::vector<std::uint8_t> rough_;  ///< of kRough and kHeld
   std::vector<float> scales_;

@@ -57,8 +57,8 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
 void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index> standsFor,
                base::Job& job) {
   std::vector<float> nearest(s.position.size(), kFar);
-  for (Index f = 0; f < reference.faces().size(); ++f) {
-    for (const Index r : reference.faces()[f].vertex) {
+  for (Index f = 0; f < reference.faceCount(); ++f) {
+    for (const Index r : reference.vertices(f)) {
       const Index v = standsFor[r];
       const float d = squaredLength(reference.positions()[r] - s.position[v]);
       if (d < nearest[v]) nearest[v] = d, s.face[v] = f;
@@ -110,17 +110,18 @@ int linesAt(const Surface& s, std::span<const Index> around) {
 
 }  // namespace
 
-Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triangle> triangles,
                     base::Job& job) {
-  return makeSurface(positions, triangles, CornersOfVertices(positions.size(), triangles), job);
+  const CornersOfVertices corners(positions.size(), triangles);
+  return makeSurface(std::move(positions), std::move(triangles), corners, job);
 }
 
-Surface makeSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triangle> triangles,
                     const CornersOfVertices& corners, base::Job& job) {
   Surface s;
   const std::size_t count = positions.size();
-  s.position.assign(positions.begin(), positions.end());
-  s.triangles.assign(triangles.begin(), triangles.end());
+  s.position = std::move(positions);
+  s.triangles = std::move(triangles);
   s.source.resize(count);
   for (Index i = 0; i < count; ++i) s.source[i] = i;
   base::resizeLarge(s.axis, count, job);
@@ -180,35 +181,52 @@ void setRegions(Surface& s, const Regions& regions, base::Job& job) {
   findChords(s);
 }
 
-void compact(Surface& s, const std::vector<std::uint8_t>& dead) {
+void apply(Surface& s, const std::vector<SurfaceChanges>& changes,
+           const std::vector<std::uint8_t>& dead) {
   std::vector<Index> vertexNumber(s.position.size(), kNone), triangleNumber(s.triangles.size());
-  Index triangles = 0, vertices = 0;
+  const auto left = static_cast<std::size_t>(std::count(dead.begin(), dead.end(), 0));
+  std::vector<Triangle> triangles;
+  triangles.reserve(left);
   for (Index t = 0; t < s.triangles.size(); ++t) {
     if (dead[t] != 0) continue;
-    for (const Index v : s.triangles[t].vertices) vertexNumber[v] = 0;
-    triangleNumber[t] = triangles;
-    if (s.hasLines()) s.region[triangles] = s.region[t];
-    if (!s.changeOf.empty()) s.changeOf[triangles] = s.changeOf[t];
-    s.triangles[triangles++] = s.triangles[t];
+    const Index n = triangleNumber[t] = static_cast<Index>(triangles.size());
+    if (s.hasLines()) s.region[n] = s.region[t];
+    if (!s.changeOf.empty()) s.changeOf[n] = s.changeOf[t];
+    triangles.push_back(s.triangles[t]);
   }
+  for (const SurfaceChanges& some : changes) {
+    for (const auto& [t, now] : some.changed) triangles[triangleNumber[t]] = now;
+  }
+  for (const Triangle& t : triangles) {
+    for (const Index v : t.vertices) vertexNumber[v] = 0;
+  }
+  std::vector<Vec3f> positions;
+  positions.reserve(triangles.size());
   for (Index v = 0; v < vertexNumber.size(); ++v) {
     if (vertexNumber[v] == kNone) continue;
-    const Index n = vertexNumber[v] = vertices++;
-    s.position[n] = s.position[v], s.axis[n] = s.axis[v];
-    s.flags[n] = s.flags[v], s.source[n] = s.source[v], s.face[n] = s.face[v];
+    const Index n = vertexNumber[v] = static_cast<Index>(positions.size());
+    positions.push_back(s.position[v]);
+    s.axis[n] = s.axis[v], s.flags[n] = s.flags[v];
+    s.source[n] = s.source[v], s.face[n] = s.face[v];
     if (s.hasLines()) s.line[n] = s.line[v];
   }
-  s.triangles.resize(triangles);
-  for (Triangle& t : s.triangles) {
+  for (const SurfaceChanges& some : changes) {
+    for (const auto& [v, to] : some.moved) {
+      if (vertexNumber[v] != kNone) positions[vertexNumber[v]] = to;
+    }
+  }
+  for (Triangle& t : triangles) {
     for (Index& v : t.vertices) v = vertexNumber[v];
   }
-  s.position.resize(vertices), s.axis.resize(vertices);
-  s.flags.resize(vertices), s.source.resize(vertices), s.face.resize(vertices);
-  if (s.hasLines()) s.region.resize(triangles), s.line.resize(vertices);
-  if (!s.changeOf.empty()) s.changeOf.resize(triangles);
+  const std::size_t vertices = positions.size();
+  s.axis.resize(vertices), s.flags.resize(vertices);
+  s.source.resize(vertices), s.face.resize(vertices);
+  if (s.hasLines()) s.region.resize(left), s.line.resize(vertices);
+  if (!s.changeOf.empty()) s.changeOf.resize(left);
   for (Index& t : s.owner) {
     if (t != kNone) t = triangleNumber[t];
   }
+  s.position = std::move(positions), s.triangles = std::move(triangles);
 }
 
 }  // namespace tufa::reduce

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/shared_array.h"
 #include "reduce/corners.h"
 #include "reduce/lines.h"
 
@@ -21,16 +22,17 @@ enum VertexFlag : std::uint8_t {
 
 class ReferenceMesh;
 
-/// The mesh between phases: arrays without gaps.
+/// The mesh between phases: arrays without gaps. As long as nothing is reduced, the reference has
+/// the same positions and triangles.
 struct Surface {
   // For each vertex.
-  std::vector<Vec3f> position;
+  base::SharedArray<Vec3f> position;
   std::vector<Vec3f> axis;          ///< all triangles at the vertex face it; 0 if there is none
   std::vector<std::uint8_t> flags;  ///< of VertexFlag
   std::vector<Index> source;        ///< the input's vertex that it still is, or kNone
   std::vector<Index> face;          ///< of the reference, at the vertex seen along its axis
 
-  std::vector<Triangle> triangles;
+  base::SharedArray<Triangle> triangles;
   /// For each reference vertex its owner: the triangle that answers for it. kNone for those without
   /// faces.
   std::vector<Index> owner;
@@ -71,11 +73,11 @@ struct Surface {
 
 /// A surface of these positions and triangles, with axes, and flags of borders and steep stars.
 /// Vertices without an axis, and those beside them, are narrow.
-[[nodiscard]] Surface makeSurface(std::span<const Vec3f> positions,
-                                  std::span<const Triangle> triangles, base::Job& job);
+[[nodiscard]] Surface makeSurface(base::SharedArray<Vec3f> positions,
+                                  base::SharedArray<Triangle> triangles, base::Job& job);
 /// The same where the corners at its vertices are known.
-[[nodiscard]] Surface makeSurface(std::span<const Vec3f> positions,
-                                  std::span<const Triangle> triangles,
+[[nodiscard]] Surface makeSurface(base::SharedArray<Vec3f> positions,
+                                  base::SharedArray<Triangle> triangles,
                                   const CornersOfVertices& corners, base::Job& job);
 
 /// Gives every reference vertex an owner at the vertex that stands for it, and every vertex a face
@@ -88,8 +90,23 @@ void locateAll(Surface& surface, const ReferenceMesh& reference, std::span<const
 /// lines.
 void setRegions(Surface& surface, const Regions& regions, base::Job& job);
 
-/// Removes the triangles marked in `dead` and the vertices without triangles; the others keep their
-/// order.
-void compact(Surface& surface, const std::vector<std::uint8_t>& dead);
+/// What a phase has done to a surface.
+struct SurfaceChanges {
+  struct Moved {
+    Index vertex;
+    Vec3f to;
+  };
+  struct Changed {
+    Index triangle;
+    Triangle now;
+  };
+  std::vector<Moved> moved;
+  std::vector<Changed> changed;
+};
+
+/// Makes changes, removes the triangles marked in `dead` and the vertices without triangles; the
+/// others keep their order.
+void apply(Surface& surface, const std::vector<SurfaceChanges>& changes,
+           const std::vector<std::uint8_t>& dead);
 
 }  // namespace tufa::reduce

@@ -53,7 +53,7 @@ class Finder {
 
   // Nothing is asked of open ones.
   void findComponents() {
-    const std::vector<Triangle>& triangles = overlay_.surface.triangles;
+    const base::SharedArray<Triangle>& triangles = overlay_.surface.triangles;
     const std::size_t count = overlay_.surface.position.size();
     componentOf_ = base::connectedItems(count, [&](const auto& connect) {
       for (const Triangle& t : triangles) {
@@ -123,7 +123,7 @@ class Finder {
 
   // With their components, in order.
   [[nodiscard]] std::vector<std::pair<Index, Index>> facesNearSeeds() const {
-    const std::size_t count = reference_.faces().size();
+    const std::size_t count = reference_.faceCount();
     std::vector<std::vector<std::pair<Index, Index>>> lists((count + kGrain - 1) / kGrain);
     job_.forRanges(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t list = begin; list < end; ++list) {
@@ -143,7 +143,7 @@ class Finder {
 
   // Of the component that a face goes to.
   [[nodiscard]] Index seedOf(Index face) const {
-    const Index t = owner_[reference_.faces()[face].vertex[0]];
+    const Index t = owner_[reference_.vertices(face)[0]];
     return t == kNone ? kNone : seedOf_[componentOf(t)];
   }
 
@@ -157,7 +157,7 @@ class Finder {
   }
 
   [[nodiscard]] OwnedFace ownedFace(Index f) const {
-    const auto& v = reference_.faces()[f].vertex;
+    const auto& v = reference_.vertices(f);
     return {reference_.cornersOf(f), v, {owner_[v[0]], owner_[v[1]], owner_[v[2]]}};
   }
 
@@ -168,8 +168,8 @@ class Finder {
     }
     if (uncovered.triangles.empty()) return uncovered;
     std::vector<std::uint8_t> hasFaces(componentOf_.size(), 0);
-    for (Index face = 0; face < reference_.faces().size(); ++face) {
-      const Index t = owner_[reference_.faces()[face].vertex[0]];
+    for (Index face = 0; face < reference_.faceCount(); ++face) {
+      const Index t = owner_[reference_.vertices(face)[0]];
       if (t == kNone || answers_[componentOf(t)] == Answer::Covered) continue;
       uncovered.faces.push_back(face);
       hasFaces[componentOf(t)] = 1;
@@ -177,7 +177,7 @@ class Finder {
     const bool isLost = std::any_of(uncovered.triangles.begin(), uncovered.triangles.end(),
                                     [&](Index t) { return hasFaces[componentOf(t)] == 0; });
     if (isLost) {  // no face goes to some component: all of the reference must do
-      uncovered.faces.resize(reference_.faces().size());
+      uncovered.faces.resize(reference_.faceCount());
       std::iota(uncovered.faces.begin(), uncovered.faces.end(), Index{0});
     }
     return uncovered;

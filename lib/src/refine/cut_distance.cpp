@@ -286,13 +286,15 @@ Deviation CutDistance::total(const octree::Cut& cut, const Mesh& mesh) const {
 
 Deviation CutDistance::measureWhole(const octree::Cut& cut, const Mesh& mesh,
                                     float expected) const {
-  const std::vector<Triangle> faces = triangulate(owners_.base.mesh);
-  const reduce::ReferenceMesh reference(reduce::makeSurface(owners_.points, faces, owners_.job), {},
-                                        owners_.job);
+  const reduce::ReferenceMesh reference(
+      reduce::makeSurface(base::SharedArray<Vec3f>(owners_.points), triangulate(owners_.base.mesh),
+                          owners_.job),
+      {}, owners_.job);
   std::vector<Vec3f> positions(mesh.positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i)
     positions[i] = owners_.toVoxels(mesh.positions[i]);
-  reduce::Surface surface = reduce::makeSurface(positions, triangulate(mesh), owners_.job);
+  reduce::Surface surface =
+      reduce::makeSurface(std::move(positions), triangulate(mesh), owners_.job);
   reduce::locateAll(surface, reference, cut.vertexOf, owners_.job);
   const reduce::Certificate certificate =
       reduce::certify(surface, reference, expected, owners_.job);

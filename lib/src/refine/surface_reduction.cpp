@@ -71,13 +71,12 @@ SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutR
       positions[i] = Vec3f((Vec3(mesh.positions[i]) - middle_) * perVoxel);
     }
   });
-  const std::vector<Triangle> faces = facesOf(mesh, job);
-  const reduce::MeshView view{positions, faces};
+  const reduce::InputMesh input{std::move(positions), facesOf(mesh, job)};
   reduce::Options options = reduce::optionsForAngle(rule.minAngle);
   if (model.repairs()) {
     options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
   }
-  reduction_.emplace(view, view, std::span<const reduce::Index>(),
+  reduction_.emplace(input, input, std::span<const reduce::Index>(),
                      scalesOf(mesh, model.affine(), rule, job), std::move(options), job);
 }
 

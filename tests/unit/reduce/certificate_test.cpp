@@ -35,8 +35,8 @@ std::vector<Index> nearestVertices(const test::FineMesh& mesh, const test::FineM
 
 Certificate certified(const test::FineMesh& mesh, const test::FineMesh& reference, float expected) {
   base::Job job(1, {});
-  const ReferenceMesh to(makeSurface(reference.positions, reference.triangles, job), {}, job);
-  Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  const ReferenceMesh to(surfaceOf(reference, job), {}, job);
+  Surface surface = surfaceOf(mesh, job);
   locateAll(surface, to, nearestVertices(mesh, reference), job);
   return certify(surface, to, expected, job);
 }

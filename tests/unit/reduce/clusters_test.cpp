@@ -23,7 +23,7 @@ struct Result {
 
 Result reduced(const test::FineMesh& mesh, float tolerance, Options options = {}) {
   base::Job job(1, {});
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, std::move(options), job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, std::move(options), job);
   reduction.toTolerance(tolerance);
   const ReducedMesh out = reduction.mesh();
   return {test::toMesh(out.positions, out.triangles), reduction.certificate(), reduction.counts()};
@@ -90,7 +90,7 @@ TEST(Clusters, KeepTheirPromisesOnNoise) {
 TEST(Clusters, StopAtANumberOfTriangles) {
   const test::FineMesh mesh = test::subdivided(test::box(30, 20, 10), 5);
   base::Job job(1, {});
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, {}, job);
   const auto asked = static_cast<Index>(mesh.triangles.size() * 2 / 3);
   EXPECT_LT(reduction.toCount(asked, 100), 1);
   EXPECT_LE(reduction.triangleCount(), asked);

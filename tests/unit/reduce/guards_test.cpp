@@ -22,7 +22,7 @@ Result reduced(const test::FineMesh& mesh, float tolerance, Outcome switchedOff 
   Options options;
   options.switchedOff = switchedOff;
   options.attempts = 0;
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
   reduction.toTolerance(tolerance);
   const ReducedMesh out = reduction.mesh();
   return {test::toMesh(out.positions, out.triangles), reduction.certificate(), reduction.counts()};

@@ -39,7 +39,7 @@ TEST(Knots, OnSharpEdgesAreTakenAtOnce) {
     SCOPED_TRACE(degrees);
     const test::FineMesh fine = knottyWedge(degrees);
     base::Job job(1, {});
-    Reduction reduction(fine.view(), fine.view(), {}, {}, {}, job);
+    Reduction reduction(fine.input(), fine.input(), {}, {}, {}, job);
     reduction.toTolerance(0.2f);
     EXPECT_GT(knotsOf(reduction.counts(), Outcome::Done), 0U);
     EXPECT_LT(reduction.triangleCount(), 30U);
@@ -62,7 +62,7 @@ TEST(Knots, KeepTheirPromisesOnNoise) {
     const test::FineMesh fine = test::noiseSolid(12, 5, seed);
     const Mesh input = test::toMesh(fine.positions, fine.triangles);
     base::Job job(1, {});
-    Reduction reduction(fine.view(), fine.view(), {}, {}, {}, job);
+    Reduction reduction(fine.input(), fine.input(), {}, {}, {}, job);
     for (const float tolerance : {0.1f, 0.5f, 2.0f}) {
       reduction.toTolerance(tolerance);
       const ReducedMesh out = reduction.mesh();

@@ -47,7 +47,7 @@ struct Reducer {
   Reduction reduction;
 
   explicit Reducer(test::FineMesh mesh, std::vector<Vec3f> normals = {})
-      : input(std::move(mesh)), reduction(input.view(), input.view(), {}, {}, {}, job) {
+      : input(std::move(mesh)), reduction(input.input(), input.input(), {}, {}, {}, job) {
     Regions regions = halvesOf(input);
     regions.normals = std::move(normals);
     reduction.setRegions(regions);
@@ -233,7 +233,7 @@ TEST(Lines, NeverVanishWithTheirRegion) {
     regions.ofTriangle.push_back(sum > 3 * 7.2f ? 1 : 0);
   }
   base::Job job(1, {});
-  Reduction reduction(ball.view(), ball.view(), {}, {}, {}, job);
+  Reduction reduction(ball.input(), ball.input(), {}, {}, {}, job);
   reduction.setRegions(regions);
   for (const float tolerance : {0.5f, 2.0f, 6.0f}) {
     reduction.toTolerance(tolerance, LineMode::Alone);

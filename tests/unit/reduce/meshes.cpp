@@ -58,6 +58,11 @@ double distanceOf(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
+reduce::Surface surfaceOf(const FineMesh& mesh, base::Job& job) {
+  const reduce::InputMesh input = mesh.input();
+  return reduce::makeSurface(input.positions, input.triangles, job);
+}
+
 Mesh toMesh(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {
   Mesh mesh;
   for (const Vec3f& p : positions) mesh.positions.push_back(static_cast<Vec3>(p));

@@ -15,8 +15,13 @@ struct FineMesh {
   std::vector<base::Vec3f> positions;
   std::vector<Triangle> triangles;
 
-  [[nodiscard]] reduce::MeshView view() const { return {positions, triangles}; }
+  [[nodiscard]] reduce::InputMesh input() const {
+    return {base::SharedArray<base::Vec3f>(positions), base::SharedArray<Triangle>(triangles)};
+  }
 };
+
+/// As it is before it is reduced.
+[[nodiscard]] reduce::Surface surfaceOf(const FineMesh& mesh, base::Job& job);
 
 /// As the library's other parts take it.
 [[nodiscard]] Mesh toMesh(const std::vector<base::Vec3f>& positions,

@@ -148,7 +148,7 @@ class ReferenceMeshTest : public testing::Test {
  protected:
   base::Job job{1, {}};
   test::FineMesh mesh = test::subdivided(test::box(8, 8, 8), 4);
-  ReferenceMesh reference{makeSurface(mesh.positions, mesh.triangles, job), {}, job};
+  ReferenceMesh reference{surfaceOf(mesh, job), {}, job};
 
   // A face at the vertex nearest to p.
   Index faceAt(Vec3f p) const {
@@ -216,7 +216,7 @@ TEST_F(ReferenceMeshTest, TellsWhereASectionPassesItsEnd) {
 TEST(Partition, CutsBetweenVertices) {
   const test::FineMesh mesh = test::subdivided(test::box(24, 16, 8), 5);  // in rows
   base::Job job(1, {});
-  const Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  const Surface surface = surfaceOf(mesh, job);
   for (const float share : {1.0f / 3, 0.5f}) {
     Partition partition;
     partition.build(surface, 300, share, job);
@@ -232,8 +232,8 @@ TEST(Partition, CutsBetweenVertices) {
 TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   const test::FineMesh mesh = test::bumpySphere(5, 20, 1, 1);
   base::Job job(1, {});
-  const ReferenceMesh reference(makeSurface(mesh.positions, mesh.triangles, job), {}, job);
-  Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  const ReferenceMesh reference(surfaceOf(mesh, job), {}, job);
+  Surface surface = surfaceOf(mesh, job);
   locateAll(surface, reference, {}, job);
   Partition partition;
   partition.build(surface, 500, 0.5f, job);
@@ -278,7 +278,7 @@ TEST(Partition, IsTheSameAlongItsOwnTreeAndForAnyThreads) {
     job.run([&] {
       Partition partition;
       for (const test::FineMesh* mesh : {&large, &small}) {
-        const Surface surface = makeSurface(mesh->positions, mesh->triangles, job);
+        const Surface surface = surfaceOf(*mesh, job);
         partition.build(surface, 500, 0.5f, job);
         found.push_back(verticesOf(partition));
         const std::vector<Partition::Node> tree = partition.tree();
@@ -306,8 +306,8 @@ std::size_t marksOfPlate(float thickness, float reach, bool isTurned = false) {
     if (isTurned) p = frame.x * p.x + frame.y * p.y + up * p.z;
   }
   base::Job job(1, {});
-  const ReferenceMesh reference(makeSurface(mesh.positions, mesh.triangles, job), {}, job);
-  Surface surface = makeSurface(mesh.positions, mesh.triangles, job);
+  const ReferenceMesh reference(surfaceOf(mesh, job), {}, job);
+  Surface surface = surfaceOf(mesh, job);
   locateAll(surface, reference, {}, job);
   Partition partition;
   partition.build(surface, 500, 0.5f, job);
@@ -341,11 +341,11 @@ TEST(Sections, StartAtAVertexInWhateverFaceIsGiven) {
   test::FineMesh ball = test::subdivided(test::octahedron(8), 3);
   for (Vec3f& p : ball.positions) p = unit(p) * 8;
   base::Job job(1, {});
-  const ReferenceMesh reference(makeSurface(ball.positions, ball.triangles, job), {}, job);
+  const ReferenceMesh reference(surfaceOf(ball, job), {}, job);
   for (Index v = 0; v < ball.positions.size(); ++v) {
     const Vec3f from = ball.positions[v];
     reference.allAround(v, [&](Index towards) {
-      for (const Index w : reference.faces()[towards].vertex) {
+      for (const Index w : reference.vertices(towards)) {
         if (w == v) continue;
         reference.allAround(v, [&](Index first) {
           const auto anywhere = [](Index, Vec3f, Vec3f, Vec3f) { return true; };

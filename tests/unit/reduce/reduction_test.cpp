@@ -35,7 +35,7 @@ ReducedMesh reduced(const test::FineMesh& mesh, float tolerance, int threads) {
   job.run([&] {
     Options options;
     options.partVertices = 500;  // so that there are several parts
-    Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+    Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
     reduction.toTolerance(tolerance);
     out = reduction.mesh();
   });
@@ -54,7 +54,7 @@ TEST_P(RandomMeshes, StaySound) {
   base::Job job(1, {});
   Options options;
   options.partVertices = seed % 2 == 0 ? 4096 : 300;
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
   reduction.toTolerance(tolerance);
   Certificate certificate = reduction.certificate();
   EXPECT_LE(certificate.largest, tolerance * 1.15f) << tolerance;
@@ -81,7 +81,7 @@ double shareUnder(const ReducedMesh& mesh, double degrees) {
 ReducedMesh reducedAtAngle(const test::FineMesh& mesh, double asked) {
   constexpr float kTolerance = 0.2f;
   base::Job job(1, {});
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, optionsForAngle(asked), job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, optionsForAngle(asked), job);
   reduction.toTolerance(kTolerance);
   EXPECT_LE(reduction.certificate().largest, kTolerance * 1.15f) << asked;
   expectSound(mesh, reduction.mesh(), reduction.certificate());
@@ -108,7 +108,7 @@ TEST(Reduction, MakesFewSliversAndNoLongFans) {
   });
   const auto reducedWith = [&](const Options& options) {
     base::Job job(1, {});
-    Reduction reduction(cylinder.view(), cylinder.view(), {}, {}, options, job);
+    Reduction reduction(cylinder.input(), cylinder.input(), {}, {}, options, job);
     reduction.toTolerance(0.1f);
     return reduction.mesh();
   };
@@ -155,7 +155,7 @@ TEST(Reduction, PlacesVerticesAsTheyWillBeWritten) {
     const auto toSixteenths = [](float x) { return std::round(x * 16) / 16; };
     return Vec3f(toSixteenths(p.x), toSixteenths(p.y), toSixteenths(p.z));
   };
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, options, job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
   reduction.toTolerance(0.3f);
   const ReducedMesh out = reduction.mesh();
   for (std::size_t v = 0; v < out.positions.size(); ++v) {
@@ -168,7 +168,7 @@ TEST(Reduction, PlacesVerticesAsTheyWillBeWritten) {
 TEST(Reduction, OfAChainGoesOnFromLevelToLevel) {
   const test::FineMesh mesh = test::bumpySphere(4, 8, 1, 4);
   base::Job job(1, {});
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, {}, job);
   Index last = reduction.triangleCount();
   EXPECT_EQ(last, mesh.triangles.size());
   EXPECT_LT(reduction.certificate().largest, 1e-5f);
@@ -184,7 +184,7 @@ TEST(Reduction, ReachesACount) {
   const test::FineMesh mesh = test::bumpySphere(4, 8, 1, 4);
   for (const Index count : {1000U, 300U, 60U}) {
     base::Job job(1, {});
-    Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+    Reduction reduction(mesh.input(), mesh.input(), {}, {}, {}, job);
     const float tolerance = reduction.toCount(count, 8);
     EXPECT_LE(reduction.triangleCount(), count + 1);
     EXPECT_GE(reduction.triangleCount(), count * 95 / 100);
@@ -196,7 +196,7 @@ TEST(Reduction, ReachesACount) {
 TEST(Reduction, GivesUpACountOutOfReach) {
   const test::FineMesh mesh = test::bumpySphere(3, 8, 1, 4);
   base::Job job(1, {});
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, {}, job);
   EXPECT_EQ(reduction.toCount(10, 0.2f), 0.2f);
   EXPECT_GT(reduction.triangleCount(), 10U);
   EXPECT_LE(reduction.certificate().largest, 0.2f);
@@ -207,7 +207,7 @@ TEST(Reduction, TakesSliversNearTheLeastCount) {
   test::FineMesh mesh = test::bumpySphere(4, 8, 1, 4);
   for (Vec3f& p : mesh.positions) p = {6 * p.x, p.y, 0.1f * p.z};
   base::Job job(1, {});
-  Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, {}, job);
   EXPECT_LT(reduction.toCount(75, 1000), 1000);
   EXPECT_LE(reduction.triangleCount(), 75U);
 }
@@ -225,7 +225,7 @@ TEST(Reduction, MeasuresToAReferenceThatIsNotItsInput) {
     standsFor.push_back(nearest);
   }
   base::Job job(1, {});
-  Reduction reduction(coarse.view(), fine.view(), standsFor, {}, {}, job);
+  Reduction reduction(coarse.input(), fine.input(), standsFor, {}, {}, job);
   reduction.toTolerance(0.3f);
   EXPECT_LT(reduction.triangleCount(), coarse.triangles.size() / 2);
   const Certificate certificate = reduction.certificate();
@@ -239,7 +239,7 @@ TEST(Reduction, StopsWhenItIsCancelled) {
   base::Job job(1, [&](std::string_view, double) { return ++calls < 10; });
   const auto reduce = [&] {
     job.beginStage("collapse", 1);
-    Reduction reduction(mesh.view(), mesh.view(), {}, {}, {}, job);
+    Reduction reduction(mesh.input(), mesh.input(), {}, {}, {}, job);
     reduction.toTolerance(0.5f);
   };
   try {

@@ -38,18 +38,17 @@ ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
     });
     return local;
   };
-  const std::vector<Vec3f> positions = localsOf(cut.mesh.positions);
-  const std::vector<Vec3f> reference = localsOf(cut.reference);
-  const reduce::MeshView view{positions, cut.mesh.triangles};
-  const reduce::MeshView before{reference, cut.mesh.triangles};
-  std::vector<reduce::Index> same(reference.size());
+  const reduce::InputMesh input{localsOf(cut.mesh.positions),
+                                base::SharedArray<Triangle>(cut.mesh.triangles)};
+  const reduce::InputMesh reference{localsOf(cut.reference), input.triangles};
+  std::vector<reduce::Index> same(cut.reference.size());
   std::iota(same.begin(), same.end(), 0);
-  reduction_.emplace(view, reference.empty() ? view : before, same,
+  reduction_.emplace(input, same.empty() ? input : reference, same,
                      refine::scalesOf(cut.mesh, model.affine(), rule, job),
                      reduce::optionsForAngle(rule.minAngle), job);
   reduction_->setRegions(regionsOf());
   const reduce::Surface& surface = reduction_->surface();
-  kinds_.reserve(positions.size());
+  kinds_.reserve(input.positions.size());
   for (const reduce::LineVertex& line : surface.line) kinds_.push_back(line.kind);
 }
 
