@@ -26,9 +26,10 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
     const Index v = vertices[i];
     position_[i] = surface.position[v], axis_[i] = surface.axis[v];
     flags_[i] = surface.flags[v];
-    face_[i] = surface.face[v], inner_[i] = partition.isInner(v);
+    face_[i] = faceOf(surface, reference, v), inner_[i] = partition.isInner(v);
   }
   loadTables(surface, partition.triangles(number));
+  matchOpposites();
   loadQuadrics();
   loadSamples(surface);
   loadLines(surface);
@@ -47,28 +48,12 @@ void Part::loadTables(const Surface& surface, std::span<const Index> triangles) 
       vertex_[3 * t + i] = v, corner_[v] = 3 * t + i;
     }
   }
-  opposite_.assign(3 * triangleCount_, kNone);
-  if (surface.triangles.data() == reference_->faces().data()) {
-    copyOpposites(triangles);
-  } else {
-    matchOpposites();
-  }
-}
-
-// The surface is the reference, which knows them.
-void Part::copyOpposites(std::span<const Index> triangles) {
-  for (Index t = 0; t < triangleCount_; ++t) {
-    for (Index i = 0; i < 3; ++i) {
-      const Index c = reference_->opposite(3 * triangles[t] + i);
-      if (c == kNone || partition_->partOf(reference_->vertices(c / 3)[c % 3]) != number_) continue;
-      opposite_[3 * t + i] = 3 * partition_->localTriangle(c / 3) + c % 3;
-    }
-  }
 }
 
 // An edge that comes from another vertex meets the one that goes back there.
 void Part::matchOpposites() {
   const Index corners = 3 * triangleCount_;
+  opposite_.assign(corners, kNone);
   auto& first = firstScratch_;
   first.assign(vertexCount_ + 1, 0);
   for (const Index v : vertex_) ++first[v + 1];
@@ -105,17 +90,34 @@ void Part::loadQuadrics() {
 void Part::loadSamples(const Surface& surface) {
   firstSample_.assign(triangleCount_, kNone);
   wasFar_.assign(triangleCount_, 0);
-  sampleIds_ = partition_->samples(number_);
-  samples_.resize(sampleIds_.size()), owners_.resize(sampleIds_.size());
-  isRough_.resize(sampleIds_.size());
+  sampleIds_ = surface.isWhole ? partition_->vertices(number_) : partition_->samples(number_);
+  samples_.resize(sampleIds_.size()), isRough_.resize(sampleIds_.size());
+  owners_.assign(sampleIds_.size(), {kNone, 0, kNone});
+  if (surface.isWhole) {
+    findOwnersAtVertices(surface);
+  } else {
+    for (Index s = 0; s < sampleIds_.size(); ++s) {
+      owners_[s].triangle = partition_->localTriangle(surface.owner[sampleIds_[s]]);
+    }
+  }
   hasRough_ = false;
   for (Index s = 0; s < sampleIds_.size(); ++s) {
-    const Index r = sampleIds_[s], t = partition_->localTriangle(surface.owner[r]);
+    const Index r = sampleIds_[s], t = owners_[s].triangle;
+    if (t == kNone) continue;
     samples_[s] = {reference_->positions()[r], firstSample_[t]};
-    owners_[s] = {t, 0, kNone};
     isRough_[s] = reference_->isRough(r);
     hasRough_ |= isRough_[s] != 0;
     firstSample_[t] = s;
+  }
+}
+
+// Of the samples of a surface that is whole, those whose owners are in the part.
+void Part::findOwnersAtVertices(const Surface& surface) {
+  const auto vertices = partition_->vertices(number_);
+  const auto triangles = partition_->triangles(number_);
+  for (Index c = 0; c < vertex_.size(); ++c) {
+    const Index v = vertex_[c];
+    if (surface.owner[vertices[v]] == triangles[c / 3]) owners_[v].triangle = c / 3;
   }
 }
 
@@ -125,10 +127,7 @@ void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) {
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
     if (inner_[i] != 0) surface.axis[v] = axis_[i], surface.flags[v] = flags_[i];
-    if (moved_[i] == 0) continue;
-    stored_.moved.push_back({v, position_[i]});
-    surface.face[v] = face_[i];
-    if (!isOnLine(i)) surface.source[v] = kNone;
+    if (moved_[i] != 0) stored_.moved.push_back({v, position_[i], face_[i]});
   }
   for (Index t = 0; t < triangleCount_; ++t) {
     const Index own = triangles[t];

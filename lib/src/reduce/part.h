@@ -105,10 +105,10 @@ class Part {
 
   // part.cpp: tables and queue.
   void loadTables(const Surface& surface, std::span<const Index> triangles);
-  void copyOpposites(std::span<const Index> triangles);
   void matchOpposites();
   void loadQuadrics();
   void loadSamples(const Surface& surface);
+  void findOwnersAtVertices(const Surface& surface);
   void push(float cost, const Candidate& candidate);
   bool pop(Candidate& candidate);
   void giveSamples();

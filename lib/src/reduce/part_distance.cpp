@@ -336,7 +336,7 @@ struct Part::Changed {
 // The triangle that would own a reference vertex, or kNone if it is none of this part. Owners in
 // the surface may not be read here: other parts write theirs.
 Index Part::ownerAfter(Index r) const {
-  const Index local = partition_->localSample(r);
+  const Index local = surface_->isWhole ? partition_->localVertex(r) : partition_->localSample(r);
   if (local >= sampleIds_.size() || sampleIds_[local] != r) return kNone;
   const Owner& owner = owners_[local];
   return owner.stamp == now_ ? owner.taker : owner.triangle;

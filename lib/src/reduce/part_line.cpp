@@ -176,7 +176,9 @@ Outcome Part::tryInto(Index kept, Index gone, Vec3f place) {
 // Whether an edge other than of a line would run from the vertex that stays to another one of a
 // line in the same plane, or one of a line where two planes meet or where such a chord was before.
 bool Part::makesChord() const {
-  const auto sourceOf = [&](Index v) { return surface_->source[partition_->vertices(number_)[v]]; };
+  const auto sourceOf = [&](Index v) {
+    return surface_->sourceOf(partition_->vertices(number_)[v]);
+  };
   // In a triangle that vanishes, a chord would become an edge of a line.
   for (const int i : {0, split_}) {
     if (isOnLine(ring_[i]) && surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) return true;

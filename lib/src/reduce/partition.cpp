@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/shrink.h"
 
 namespace tufa::reduce {
 namespace {
@@ -62,7 +63,7 @@ void Partition::finish(const Surface& surface, base::Job& job) {
   numberVertices(job);
   items_ = {};
   shareTriangles(surface, job);
-  shareSamples(surface, job);
+  if (!surface.isWhole) shareSamples(surface, job);
   partOfTriangle_ = {};
 }
 
@@ -141,7 +142,9 @@ void Partition::splitAlong(Index node, Index begin, Index end, const Box3f& box)
 
 void Partition::numberVertices(base::Job& job) {
   const std::size_t count = items_.size();
-  vertices_.resize(count), partOf_.resize(count), localVertex_.resize(count);
+  base::shrinkTo(vertices_, count);
+  base::shrinkTo(partOf_, count);
+  base::shrinkTo(localVertex_, count);
   job.forRanges(size(), 1, [&](std::size_t firstPart, std::size_t endPart) {
     for (std::size_t p = firstPart; p < endPart; ++p) {
       const Index begin = ranges_[p], end = ranges_[p + 1];
@@ -157,11 +160,12 @@ void Partition::numberVertices(base::Job& job) {
 
 void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   const std::size_t parts = size(), count = surface.triangles.size();
-  inner_.resize(surface.position.size());
+  base::shrinkTo(inner_, surface.position.size());
   job.forRanges(inner_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
   });
-  partOfTriangle_.resize(count), localTriangle_.resize(count);
+  partOfTriangle_.resize(count);
+  base::shrinkTo(localTriangle_, surface.isWhole ? 0 : count);
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto& v = surface.triangles[t].vertices;
@@ -176,7 +180,10 @@ void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   });
   triangles_ = base::groupBy(
       count, parts, [&](Index t) { return partOfTriangle_[t]; },
-      [&](Index t, Index at) { localTriangle_[t] = at; }, job);
+      [&](Index t, Index at) {
+        if (!surface.isWhole) localTriangle_[t] = at;
+      },
+      job);
   across_.clear();
   std::vector<std::array<Index, 2>> reached;
   for (Index t = 0; t < count; ++t) {

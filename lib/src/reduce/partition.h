@@ -49,12 +49,13 @@ class Partition {
   /// Triangles of several parts, in rising order.
   [[nodiscard]] std::span<const Index> acrossParts() const { return across_; }
   /// Reference vertices whose owners are triangles of a part; where these have several, those of a
-  /// triangle together.
+  /// triangle together. Not of a surface that is whole, where they are at the part's vertices.
   [[nodiscard]] std::span<const Index> samples(Index p) const {
     return of(samples_.members, samples_.first, p);
   }
   [[nodiscard]] Index partOf(Index vertex) const { return partOf_[vertex]; }
-  /// Numbers in their part. That of a reference vertex means nothing if its owner is in none.
+  /// Numbers in their part. That of a reference vertex means nothing if its owner is in none. Of a
+  /// surface that is whole there are those of vertices alone.
   [[nodiscard]] Index localVertex(Index vertex) const { return localVertex_[vertex]; }
   [[nodiscard]] Index localTriangle(Index triangle) const { return localTriangle_[triangle]; }
   [[nodiscard]] Index localSample(Index sample) const { return localSample_[sample]; }

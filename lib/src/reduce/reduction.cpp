@@ -148,7 +148,8 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
 void Reduction::addFacesNear(const std::vector<Index>& triangles, std::vector<Index>& faces) const {
   for (const Index t : triangles) {
     for (const Index v : surface_.triangles[t].vertices) {
-      if (surface_.face[v] != kNone) faces.push_back(surface_.face[v]);
+      const Index face = faceOf(surface_, reference_, v);
+      if (face != kNone) faces.push_back(face);
     }
   }
 }
@@ -394,7 +395,7 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
   surface_.oldForms.insert(surface_.oldForms.end(), lastForms_.begin(), lastForms_.end());
   lastForms_.clear();
   isReference_ = false;
-  apply(surface_, lastStored_, dead);
+  apply(surface_, reference_, lastStored_, dead);
   lastStored_.clear();
   ++phaseNumber_;
 }
@@ -405,11 +406,17 @@ void Reduction::measure(float expected) {
 
 ReducedMesh Reduction::mesh() const {
   const Surface& s = surface_;
-  return {{s.position.begin(), s.position.end()},
-          {s.triangles.begin(), s.triangles.end()},
-          s.source,
-          s.face,
-          s.region};
+  ReducedMesh mesh{{s.position.begin(), s.position.end()},
+                   {s.triangles.begin(), s.triangles.end()},
+                   s.source,
+                   s.face,
+                   s.region};
+  if (!s.isWhole) return mesh;
+  for (Index v = 0; v < s.position.size(); ++v) {
+    mesh.sources.push_back(v);
+    mesh.faces.push_back(faceOf(s, reference_, v));
+  }
+  return mesh;
 }
 
 }  // namespace tufa::reduce

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base/huge_pages.h"
+#include "base/ranked_bits.h"
+#include "base/shrink.h"
 #include "reduce/reference_mesh.h"
 #include "reduce/star.h"
 
@@ -122,8 +125,6 @@ Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triang
   const std::size_t count = positions.size();
   s.position = std::move(positions);
   s.triangles = std::move(triangles);
-  s.source.resize(count);
-  for (Index i = 0; i < count; ++i) s.source[i] = i;
   base::resizeLarge(s.axis, count, job);
   s.flags.assign(count, 0);
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
@@ -132,19 +133,25 @@ Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triang
   return s;
 }
 
+Index faceOf(const Surface& s, const ReferenceMesh& reference, Index vertex) {
+  if (!s.isWhole) return s.face[vertex];
+  const Index c = reference.cornerOf(vertex);
+  return c == kNone ? kNone : c / 3;
+}
+
 void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index> standsFor,
                base::Job& job) {
-  s.face.assign(s.position.size(), kNone);
+  s.isWhole = standsFor.empty();
   s.owner.assign(reference.positions().size(), kNone);
-  if (standsFor.empty()) {
+  if (s.isWhole) {
     job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (Index v = static_cast<Index>(begin); v < end; ++v) {
-        const Index c = reference.cornerOf(v);
-        if (c != kNone) s.owner[v] = s.face[v] = c / 3;
-      }
+      for (Index v = static_cast<Index>(begin); v < end; ++v) s.owner[v] = faceOf(s, reference, v);
     });
     return;
   }
+  s.face.assign(s.position.size(), kNone);
+  s.source.resize(s.position.size());
+  std::iota(s.source.begin(), s.source.end(), 0);
   const CornersOfVertices corners(s.position.size(), s.triangles);
   job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index r = static_cast<Index>(begin); r < end; ++r) {
@@ -181,52 +188,59 @@ void setRegions(Surface& s, const Regions& regions, base::Job& job) {
   findChords(s);
 }
 
-void apply(Surface& s, const std::vector<SurfaceChanges>& changes,
+void apply(Surface& s, const ReferenceMesh& reference, const std::vector<SurfaceChanges>& changes,
            const std::vector<std::uint8_t>& dead) {
-  std::vector<Index> vertexNumber(s.position.size(), kNone), triangleNumber(s.triangles.size());
-  const auto left = static_cast<std::size_t>(std::count(dead.begin(), dead.end(), 0));
+  base::RankedBits leftTriangles(s.triangles.size()), leftVertices(s.position.size());
+  for (std::size_t t = 0; t < dead.size(); ++t) {
+    if (dead[t] == 0) leftTriangles.add(t);
+  }
+  leftTriangles.count();
   std::vector<Triangle> triangles;
-  triangles.reserve(left);
-  for (Index t = 0; t < s.triangles.size(); ++t) {
-    if (dead[t] != 0) continue;
-    const Index n = triangleNumber[t] = static_cast<Index>(triangles.size());
+  triangles.reserve(leftTriangles.size());
+  leftTriangles.forAll([&](std::size_t t) {
+    const std::size_t n = triangles.size();
     if (s.hasLines()) s.region[n] = s.region[t];
     if (!s.changeOf.empty()) s.changeOf[n] = s.changeOf[t];
     triangles.push_back(s.triangles[t]);
-  }
+  });
   for (const SurfaceChanges& some : changes) {
-    for (const auto& [t, now] : some.changed) triangles[triangleNumber[t]] = now;
+    for (const auto& [t, now] : some.changed) triangles[leftTriangles.rank(t)] = now;
   }
   for (const Triangle& t : triangles) {
-    for (const Index v : t.vertices) vertexNumber[v] = 0;
+    for (const Index v : t.vertices) leftVertices.add(v);
   }
-  std::vector<Vec3f> positions;
-  positions.reserve(triangles.size());
-  for (Index v = 0; v < vertexNumber.size(); ++v) {
-    if (vertexNumber[v] == kNone) continue;
-    const Index n = vertexNumber[v] = static_cast<Index>(positions.size());
-    positions.push_back(s.position[v]);
+  leftVertices.count();
+  const std::size_t count = leftVertices.size();
+  std::vector<Vec3f> positions(count);
+  std::vector<Index> sources(count), faces(count);
+  Index n = 0;
+  leftVertices.forAll([&](std::size_t at) {
+    const auto v = static_cast<Index>(at);
+    positions[n] = s.position[v], sources[n] = s.sourceOf(v), faces[n] = faceOf(s, reference, v);
     s.axis[n] = s.axis[v], s.flags[n] = s.flags[v];
-    s.source[n] = s.source[v], s.face[n] = s.face[v];
     if (s.hasLines()) s.line[n] = s.line[v];
-  }
+    ++n;
+  });
   for (const SurfaceChanges& some : changes) {
-    for (const auto& [v, to] : some.moved) {
-      if (vertexNumber[v] != kNone) positions[vertexNumber[v]] = to;
+    for (const auto& [v, to, face] : some.moved) {
+      if (!leftVertices.has(v)) continue;
+      const Index now = leftVertices.rank(v);
+      positions[now] = to, faces[now] = face;
+      if (!s.isOnLine(now)) sources[now] = kNone;
     }
   }
   for (Triangle& t : triangles) {
-    for (Index& v : t.vertices) v = vertexNumber[v];
+    for (Index& v : t.vertices) v = leftVertices.rank(v);
   }
-  const std::size_t vertices = positions.size();
-  s.axis.resize(vertices), s.flags.resize(vertices);
-  s.source.resize(vertices), s.face.resize(vertices);
-  if (s.hasLines()) s.region.resize(left), s.line.resize(vertices);
-  if (!s.changeOf.empty()) s.changeOf.resize(left);
   for (Index& t : s.owner) {
-    if (t != kNone) t = triangleNumber[t];
+    if (t != kNone) t = leftTriangles.rank(t);
   }
+  base::shrinkTo(s.axis, count), base::shrinkTo(s.flags, count);
+  if (s.hasLines()) base::shrinkTo(s.region, triangles.size()), base::shrinkTo(s.line, count);
+  if (!s.changeOf.empty()) base::shrinkTo(s.changeOf, triangles.size());
   s.position = std::move(positions), s.triangles = std::move(triangles);
+  s.source = std::move(sources), s.face = std::move(faces);
+  s.isWhole = false;
 }
 
 }  // namespace tufa::reduce

@@ -22,9 +22,13 @@ enum VertexFlag : std::uint8_t {
 
 class ReferenceMesh;
 
-/// The mesh between phases: arrays without gaps. As long as nothing is reduced, the reference has
-/// the same positions and triangles.
+/// The mesh between phases: arrays without gaps.
 struct Surface {
+  /// Nothing is reduced yet: the triangles are those of the reference, the owner of each reference
+  /// vertex is one of those at it, and `source` and `face` are empty. So that a fine mesh takes
+  /// less memory.
+  bool isWhole = false;
+
   // For each vertex.
   base::SharedArray<Vec3f> position;
   std::vector<Vec3f> axis;          ///< all triangles at the vertex face it; 0 if there is none
@@ -62,6 +66,7 @@ struct Surface {
   [[nodiscard]] bool isChord(Index a, Index b) const {
     return std::binary_search(chords.begin(), chords.end(), chordKey(a, b));
   }
+  [[nodiscard]] Index sourceOf(Index v) const { return isWhole ? v : source[v]; }
   [[nodiscard]] bool hasLines() const { return !line.empty(); }
   [[nodiscard]] bool isOnLine(Index v) const { return hasLines() && line[v].kind != LineKind::Off; }
   [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis[v]) != 0; }
@@ -80,9 +85,12 @@ struct Surface {
                                   base::SharedArray<Triangle> triangles,
                                   const CornersOfVertices& corners, base::Job& job);
 
+/// The face of the reference below a vertex, or kNone.
+[[nodiscard]] Index faceOf(const Surface& surface, const ReferenceMesh& reference, Index vertex);
+
 /// Gives every reference vertex an owner at the vertex that stands for it, and every vertex a face
 /// of the reference. `standsFor`: for each reference vertex a vertex; empty if the two meshes are
-/// the same.
+/// the same, and the surface whole.
 void locateAll(Surface& surface, const ReferenceMesh& reference, std::span<const Index> standsFor,
                base::Job& job);
 
@@ -95,6 +103,7 @@ struct SurfaceChanges {
   struct Moved {
     Index vertex;
     Vec3f to;
+    Index face;  ///< of the reference, there
   };
   struct Changed {
     Index triangle;
@@ -106,7 +115,7 @@ struct SurfaceChanges {
 
 /// Makes changes, removes the triangles marked in `dead` and the vertices without triangles; the
 /// others keep their order.
-void apply(Surface& surface, const std::vector<SurfaceChanges>& changes,
-           const std::vector<std::uint8_t>& dead);
+void apply(Surface& surface, const ReferenceMesh& reference,
+           const std::vector<SurfaceChanges>& changes, const std::vector<std::uint8_t>& dead);
 
 }  // namespace tufa::reduce
