@@ -57,7 +57,7 @@ struct Reducer {
     const Surface surface = reduction.surface();
     std::set<Index> sources;
     for (Index v = 0; v < surface.line.size(); ++v) {
-      if (surface.line[v].kind != LineKind::Off) sources.insert(surface.source[v]);
+      if (surface.line[v].kind != LineKind::Off) sources.insert(surface.sourceOf(v));
     }
     return sources;
   }
@@ -132,7 +132,7 @@ TEST(Lines, MayMoveInTheirPlaneWithTheRest) {
   for (Index v = 0; v < surface.line.size(); ++v) {
     if (surface.line[v].kind == LineKind::Off) continue;
     EXPECT_EQ(surface.position[v].x, kMiddle);
-    moved += surface.position[v] == moving.input.positions[surface.source[v]] ? 0 : 1;
+    moved += surface.position[v] == moving.input.positions[surface.sourceOf(v)] ? 0 : 1;
   }
   EXPECT_GT(moved, 4U);
 }

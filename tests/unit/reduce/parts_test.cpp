@@ -235,6 +235,7 @@ TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   const ReferenceMesh reference(surfaceOf(mesh, job), {}, job);
   Surface surface = surfaceOf(mesh, job);
   locateAll(surface, reference, {}, job);
+  apply(surface, reference, {}, std::vector<std::uint8_t>(mesh.triangles.size(), 0));
   Partition partition;
   partition.build(surface, 500, 0.5f, job);
   ASSERT_GT(partition.size(), 8U);
@@ -257,6 +258,56 @@ TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   }
   EXPECT_LT(samples, mesh.positions.size());
   EXPECT_GT(samples, mesh.positions.size() / 2);
+}
+
+// A collapse in the middle of an octahedron whose faces are in four, and nothing else.
+TEST(Surface, AppliesChanges) {
+  const test::FineMesh mesh = test::subdivided(test::octahedron(8), 1);
+  base::Job job(1, {});
+  const ReferenceMesh reference(surfaceOf(mesh, job), {}, job);
+  Surface surface = surfaceOf(mesh, job);
+  locateAll(surface, reference, {}, job);
+  ASSERT_TRUE(surface.isWhole);
+  EXPECT_EQ(surface.triangles.data(), reference.faces().data());
+  const Index gone = mesh.triangles[3].vertices[0], kept = mesh.triangles[3].vertices[1];
+  std::vector<std::uint8_t> dead(mesh.triangles.size(), 0);
+  SurfaceChanges changes;
+  changes.moved.push_back({kept, Vec3f(1, 2, 3), 5});
+  for (Index t = 0; t < dead.size(); ++t) {
+    Triangle now = mesh.triangles[t];
+    const bool hasKept =
+        std::find(now.vertices.begin(), now.vertices.end(), kept) != now.vertices.end();
+    const auto at = std::find(now.vertices.begin(), now.vertices.end(), gone);
+    if (at == now.vertices.end()) continue;
+    *at = kept;
+    if (hasKept) {
+      dead[t] = 1;
+    } else {
+      changes.changed.push_back({t, now});
+    }
+  }
+  ASSERT_EQ(std::count(dead.begin(), dead.end(), 1), 2);
+  apply(surface, reference, {changes}, dead);
+  EXPECT_FALSE(surface.isWhole);
+  ASSERT_EQ(surface.position.size(), mesh.positions.size() - 1);
+  ASSERT_EQ(surface.triangles.size(), mesh.triangles.size() - 2);
+  const auto now = [&](Index v) { return v - (v > gone ? 1 : 0); };
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    if (v == gone) continue;
+    EXPECT_EQ(surface.position[now(v)], v == kept ? Vec3f(1, 2, 3) : mesh.positions[v]);
+    EXPECT_EQ(surface.source[now(v)], v == kept ? kNone : v);
+    EXPECT_EQ(surface.face[now(v)], v == kept ? 5 : reference.cornerOf(v) / 3);
+  }
+  Index n = 0;
+  for (Index t = 0; t < dead.size(); ++t) {
+    if (dead[t] != 0) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index was = mesh.triangles[t].vertices[i];
+      EXPECT_EQ(surface.triangles[n].vertices[i], now(was == gone ? kept : was));
+    }
+    ++n;
+  }
+  EXPECT_EQ(reference.positions()[kept], mesh.positions[kept]);
 }
 
 std::vector<std::vector<Index>> verticesOf(const Partition& partition) {

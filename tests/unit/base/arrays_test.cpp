@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/ranked_bits.h"
+#include "base/shared_array.h"
+#include "base/shrink.h"
+
+namespace tufa::base {
+namespace {
+
+TEST(SharedArray, IsNotCopied) {
+  std::vector<int> three{1, 2, 3};
+  const int* const data = three.data();
+  const SharedArray<int> first(std::move(three));
+  SharedArray<int> second = first;
+  EXPECT_EQ(first.data(), data);
+  EXPECT_EQ(second.data(), data);
+  EXPECT_EQ(second[2], 3);
+  second = std::vector<int>{4};
+  EXPECT_EQ(second.size(), 1U);
+  EXPECT_EQ(std::vector<int>(first.begin(), first.end()), (std::vector<int>{1, 2, 3}));
+  const std::vector<int> kept{7, 8};
+  const SharedArray<int> copy{std::span<const int>(kept)};
+  EXPECT_NE(copy.data(), kept.data());
+  EXPECT_EQ(copy[1], 8);
+  EXPECT_EQ(SharedArray<int>().size(), 0U);
+}
+
+TEST(RankedBits, TellHowManyAreBelow) {
+  std::mt19937 random(1);
+  for (const std::size_t size : {0U, 1U, 63U, 64U, 65U, 1000U}) {
+    std::vector<bool> all(size);
+    RankedBits bits(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (random() % 3 == 0) all[i] = true, bits.add(i);
+    }
+    bits.count();
+    std::uint32_t below = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      EXPECT_EQ(bits.has(i), all[i]);
+      EXPECT_EQ(bits.rank(i), below);
+      below += all[i] ? 1 : 0;
+    }
+    EXPECT_EQ(bits.size(), below);
+    std::vector<std::size_t> members;
+    bits.forAll([&](std::size_t i) { members.push_back(i); });
+    ASSERT_EQ(members.size(), below);
+    for (std::size_t i = 0; i < members.size(); ++i) EXPECT_EQ(bits.rank(members[i]), i);
+  }
+}
+
+TEST(Shrink, GivesRoomBack) {
+  std::vector<int> numbers(1000);
+  for (int i = 0; i < 1000; ++i) numbers[static_cast<std::size_t>(i)] = i;
+  shrinkTo(numbers, 10);
+  EXPECT_EQ(numbers.size(), 10U);
+  EXPECT_LT(numbers.capacity(), 1000U);
+  EXPECT_EQ(numbers[9], 9);
+}
+
+}  // namespace
+}  // namespace tufa::base
