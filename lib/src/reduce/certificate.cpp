@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t kGrain = 8192;
 // Voxels; a larger tolerance is many faces wide.
 constexpr float kLarge = 2;
+// Voxels; where less is expected, rounding may take as much.
+constexpr float kRounding = 1e-4f;
 
 // A triangle beside a face of the reference, where the map may jump.
 struct Gap {
@@ -29,14 +31,15 @@ struct Gap {
 // What one range of vertices or faces gives.
 struct Measured {
   float largest = 0;
+  float mostOver = 1;  // the largest distance in what is expected there
   double sum = 0;
   Index worst = kNone;
   std::vector<Index> open;  // faces without a way within what is expected
   std::vector<Index> beyond;
 
-  void see(float value, Index face, float expected) {
+  void see(float value, Index face, float limit) {
     if (value > largest) largest = value, worst = face;
-    if (value > expected) beyond.push_back(face);
+    if (value > limit) beyond.push_back(face), mostOver = std::max(mostOver, value / limit);
   }
 };
 
@@ -108,8 +111,9 @@ class Measure {
       const float d = distance(reference_.positions()[r], owner_[r]);
       measured.sum += static_cast<double>(d);
       regions_.see(owner_[r], d);
-      if (d > std::min(measured.largest, expected_)) {
-        measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, expected_);
+      const float limit = limitAt(static_cast<Index>(r));
+      if (d > std::min(measured.largest, limit)) {
+        measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, limit);
       }
     }
   }
@@ -130,13 +134,13 @@ class Measure {
     for (std::size_t i = 0; i < 3; ++i) {
       const Index r = face.vertices[i];
       if (reference_.isAtBorder(r)) continue;
-      for (const auto& [d, t] : nearest(face.corners[i], around)) {
+      for (const auto& [d, t] : nearest(face.corners[i], limitOf(f), around)) {
         owner_[r] = t;
         Measured there;
         if (t != face.owners[i] && passes(f, there) &&
             reference_.allAround(r, [&](Index g) { return passes(g, there); })) {
           regions_.see(t, d);
-          measured.see(std::max(d, there.largest), f, expected_);
+          measured.see(std::max(d, there.largest), f, limitOf(f));
           return true;
         }
       }
@@ -154,10 +158,11 @@ class Measure {
       if (isBetween(t, face.owners)) gaps.push_back({t, f});
     }
     const auto toTriangle = [&](Vec3f q, Index t) { return distance(q, t); };
+    const float limit = limitOf(f);
     const float way =
-        Halving(toTriangle, Sphere{{}, kEverywhere}, expected_).bound(face.corners, around);
+        Halving(toTriangle, Sphere{{}, kEverywhere}, limit).bound(face.corners, around);
     regions_.seeAround(face.owners, way);
-    measured.see(way, f, expected_);
+    measured.see(way, f, limit);
   }
 
   // The reference vertices that each triangle owns.
@@ -183,7 +188,7 @@ class Measure {
       const Corners face = reference_.cornersOf(gap.face);
       Sphere about{(face[0] + face[1] + face[2]) * (1.0f / 3), 0};
       for (const Vec3f& p : face) about.radius = std::max(about.radius, length(p - about.middle));
-      about.radius += 2 * expected_ + kBeyond;
+      about.radius += 2 * limitOf(gap.face) + kBeyond;
       parts.push_back(about);
       partsArea += 3 * about.radius * about.radius;
     }
@@ -195,7 +200,8 @@ class Measure {
   void wayBack(Index triangle, const FacesNear& faces, Measured& measured) const {
     const Corners p{s_.corner(triangle, 0), s_.corner(triangle, 1), s_.corner(triangle, 2)};
     const std::vector<Index> near = faces.of(p);
-    seeWayBack(triangle, near.front(), boundTo(near, p, {{}, kEverywhere}), measured);
+    const float limit = limitOf(near.front());
+    seeWayBack(triangle, near.front(), boundTo(near, p, {{}, kEverywhere}, limit), measured);
   }
 
   [[nodiscard]] const CornersOfVertices& corners() const { return corners_; }
@@ -204,6 +210,17 @@ class Measure {
   }
 
  private:
+  // What is expected at a reference vertex, and of a face: the most at one of its vertices, as a
+  // guard that sees none of them allows.
+  [[nodiscard]] float limitAt(Index r) const {
+    return reference_.isScaled() ? std::max(expected_ * reference_.scaleAt(r), kRounding)
+                                 : expected_;
+  }
+  [[nodiscard]] float limitOf(Index f) const {
+    const auto& v = reference_.vertices(f);
+    return std::max({limitAt(v[0]), limitAt(v[1]), limitAt(v[2])});
+  }
+
   // From what of a triangle is in a sphere. With a large tolerance a few of the faces nearby do for
   // most, as each of them gives a bound.
   void wayBack(const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned,
@@ -211,29 +228,30 @@ class Measure {
     const Index t = gap.triangle;
     const Corners p{s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2)};
     float back = kFar2;
-    if (expected_ >= kLarge) back = boundTo(someFacesNear(gap, about, owned), p, about);
-    if (back > expected_) back = boundTo(allFacesNear(gap, about, owned), p, about);
+    const float limit = limitOf(gap.face);
+    if (limit >= kLarge) back = boundTo(someFacesNear(gap, about, owned), p, about, limit);
+    if (back > limit) back = boundTo(allFacesNear(gap, about, owned), p, about, limit);
     seeWayBack(t, gap.face, back, measured);
   }
 
   [[nodiscard]] float boundTo(const std::vector<Index>& faces, const Corners& p,
-                              const Sphere& about) const {
+                              const Sphere& about, float limit) const {
     const auto toFace = [&](Vec3f q, Index f) { return reference_.distance(f, q); };
-    return Halving(toFace, about, expected_).bound(p, faces);
+    return Halving(toFace, about, limit).bound(p, faces);
   }
 
   void seeWayBack(Index triangle, Index face, float back, Measured& measured) const {
     regions_.see(triangle, back);
-    measured.see(back, face, expected_);
+    measured.see(back, face, limitOf(face));
   }
 
-  // Calls f(vertex) for the reference vertices of the triangles around one that are so near a
+  // Calls f(vertex) for the reference vertices of the triangles around a gap's that are so near a
   // sphere that a face there may be the nearest.
   template <class F>
-  void forVerticesNear(Index triangle, const Sphere& about,
+  void forVerticesNear(const Gap& gap, const Sphere& about,
                        const std::vector<std::vector<Index>>& owned, F&& f) const {
-    const float reach = about.radius + kBeyond + 2 * expected_ + 1;
-    for (const Index t : trianglesAround({&triangle, 1})) {
+    const float reach = about.radius + kBeyond + 2 * limitOf(gap.face) + 1;
+    for (const Index t : trianglesAround({&gap.triangle, 1})) {
       for (const Index r : owned[t]) {
         if (squaredLength(reference_.positions()[r] - about.middle) <= reach * reach) f(r);
       }
@@ -243,7 +261,7 @@ class Measure {
   [[nodiscard]] std::vector<Index> allFacesNear(
       const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned) const {
     std::vector<Index> faces{gap.face};
-    forVerticesNear(gap.triangle, about, owned, [&](Index r) {
+    forVerticesNear(gap, about, owned, [&](Index r) {
       reference_.allAround(r, [&](Index f) {
         faces.push_back(f);
         return true;
@@ -257,10 +275,10 @@ class Measure {
   [[nodiscard]] std::vector<Index> someFacesNear(
       const Gap& gap, const Sphere& about, const std::vector<std::vector<Index>>& owned) const {
     constexpr float kShare = 0.125f;
-    const float perCube = 1 / (kShare * expected_);
+    const float perCube = 1 / (kShare * limitOf(gap.face));
     std::vector<Index> faces{gap.face};
     std::unordered_set<std::uint64_t> seen;
-    forVerticesNear(gap.triangle, about, owned, [&](Index r) {
+    forVerticesNear(gap, about, owned, [&](Index r) {
       const Vec3f at = (reference_.positions()[r] - about.middle) * perCube;
       std::uint64_t cube = 0;
       for (int axis = 0; axis < 3; ++axis) {
@@ -278,14 +296,14 @@ class Measure {
     return {reference_.cornersOf(f), v, {owner_[v[0]], owner_[v[1]], owner_[v[2]]}};
   }
 
-  // The nearest of some triangles that are as near as expected, with their distances.
+  // The nearest of some triangles within a limit, with their distances.
   [[nodiscard]] std::vector<std::pair<float, Index>> nearest(
-      Vec3f p, const std::vector<Index>& triangles) const {
+      Vec3f p, float limit, const std::vector<Index>& triangles) const {
     constexpr std::size_t kMost = 6;
     std::vector<std::pair<float, Index>> found;
     for (const Index t : triangles) {
       const float d = distance(p, t);
-      if (d <= expected_) found.emplace_back(d, t);
+      if (d <= limit) found.emplace_back(d, t);
     }
     std::sort(found.begin(), found.end());
     found.resize(std::min(found.size(), kMost));
@@ -297,10 +315,10 @@ class Measure {
     const auto& v = reference_.vertices(f);
     if (owner_[v[0]] == owner_[v[1]] && owner_[v[1]] == owner_[v[2]]) return true;
     const OwnedFace face = owned(f);
-    const float way = std::sqrt(overlayBound2(overlay_, face, expected_ * expected_));
-    if (!(way <= expected_)) return false;
+    const float limit = limitOf(f), way = std::sqrt(overlayBound2(overlay_, face, limit * limit));
+    if (!(way <= limit)) return false;
     regions_.seeAround(face.owners, way);
-    measured.see(way, f, expected_);
+    measured.see(way, f, limit);
     return true;
   }
 
@@ -417,6 +435,7 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
   double sum = 0;
   for (const Measured& p : parts) {
     if (p.largest > all.largest) all.largest = p.largest, all.worst = p.worst;
+    all.mostOver = std::max(all.mostOver, p.mostOver);
     sum += p.sum;
     all.beyond.insert(all.beyond.end(), p.beyond.begin(), p.beyond.end());
   }

@@ -14,13 +14,15 @@ struct Certificate {
   float mean = 0;       ///< of the reference vertices from their owners, voxels
   Index halved = 0;     ///< faces of the reference whose bound had to be found by halving
   Index worst = kNone;  ///< a face of the reference at the largest distance
+  /// Where it is more than expected, the largest distance over what is expected there; else 1.
+  float mostOver = 1;
   /// The faces of the reference where it is more than expected, in rising order.
   std::vector<Index> beyond;
   /// For each region the largest distance at its triangles; empty without regions.
   std::vector<float> ofRegion;
 };
 
-/// Measures a surface.
+/// Measures a surface. What is expected at a vertex of the reference is `expected` times its scale.
 ///
 /// Every reference vertex goes to the nearest point of its owner. An edge of the reference whose
 /// ends belong to triangles A and B is cut at the point nearest to what A and B share, which goes

@@ -71,6 +71,19 @@ Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::
   return surface;
 }
 
+// Divides scales by the largest, which is returned: tolerances in here are those where the scale is
+// 1, and the largest ones that there are. 1 where there are none, or none above 0.
+float takeLargest(std::vector<float>& scales) {
+  const auto most = std::max_element(scales.begin(), scales.end());
+  if (most == scales.end() || !(*most > 0)) return 1;
+  const float largest = *most;
+  for (float& scale : scales) scale /= largest;
+  if (std::all_of(scales.begin(), scales.end(), [](float scale) { return scale == 1; })) {
+    scales.clear();
+  }
+  return largest;
+}
+
 }  // namespace
 
 Options optionsForAngle(double degrees) {
@@ -84,14 +97,15 @@ Options optionsForAngle(double degrees) {
 Reduction::Meshes Reduction::meshesOf(const InputMesh& input, const InputMesh& reference,
                                       std::span<const Index> standsFor, std::vector<float> scales,
                                       base::Job& job) {
+  const float largestScale = takeLargest(scales);
   const CornersOfVertices corners(input.positions.size(), input.triangles);
   Surface surface = makeSurface(input.positions, input.triangles, corners, job);
   if (standsFor.empty()) {
     ReferenceMesh own(surface, corners, std::move(scales), job);
-    return {std::move(surface), std::move(own)};
+    return {std::move(surface), std::move(own), largestScale};
   }
   const Surface other = makeSurface(reference.positions, reference.triangles, job);
-  return {std::move(surface), ReferenceMesh(other, std::move(scales), job)};
+  return {std::move(surface), ReferenceMesh(other, std::move(scales), job), largestScale};
 }
 
 Reduction::Reduction(const InputMesh& input, const InputMesh& reference,
@@ -107,6 +121,7 @@ Reduction::Reduction(Meshes meshes, bool isReference, Options options, base::Job
       job_(job),
       surface_(std::move(meshes.surface)),
       reference_(std::move(meshes.reference)),
+      largestScale_(meshes.largestScale),
       isReference_(isReference) {
   surface_.rounded = options_.rounded;
 }
@@ -116,6 +131,7 @@ Reduction::~Reduction() = default;
 // Where the certificate is beyond the tolerance, the mesh is reduced again, and left as it was
 // around there. Smaller tolerances there instead take more attempts, and hardly fewer triangles.
 void Reduction::toTolerance(float tolerance, LineMode lines) {
+  tolerance *= largestScale_;
   if (lines == LineMode::Alone) beginLines();
   if (tolerance < kLeastTolerance) return;
   lines_ = lines;
@@ -128,7 +144,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   for (attempt_ = 0;; ++attempt_) {
     nextTree_ = 0;
     descendTo(tolerance, 0);
-    measure(tolerance_);
+    measureWithin(tolerance_);
     std::vector<Index> held = certificate_.beyond;
     if (options_.faults) addFacesNear(options_.faults(mesh()), held);
     if (held.empty() || attempt_ == options_.attempts) break;
@@ -251,11 +267,15 @@ void Reduction::restore(const State& state) {
   isReference_ = state.isReference;
 }
 
+float Reduction::toCount(Index count, float mostTolerance) {
+  return toCountWithin(count, mostTolerance * largestScale_) / largestScale_;
+}
+
 // Where the certificate is beyond the tolerance that was found, the mesh is left as it was around
 // there, and the search begins again, as in toTolerance(). The mesh of the least error is taken.
-float Reduction::toCount(Index count, float mostTolerance) {
+float Reduction::toCountWithin(Index count, float mostTolerance) {
   if (triangleCount() <= count) {
-    measure(tolerance_);
+    measureWithin(tolerance_);
     return tolerance_;
   }
   const std::vector<float> scales = reference_.scales();
@@ -265,12 +285,11 @@ float Reduction::toCount(Index count, float mostTolerance) {
   for (attempt_ = 0;; ++attempt_) {
     const bool isReached = findCount(count, mostTolerance);
     if (best && !isReached) break;
-    measure(tolerance_);
+    measureWithin(tolerance_);
     if (!best || certificate_.largest < certificate.largest) {
       best = state(), certificate = certificate_;
     }
-    if (!isReached || certificate_.largest <= kNearTolerance * tolerance_ ||
-        attempt_ == options_.attempts) {
+    if (!isReached || certificate_.mostOver <= kNearTolerance || attempt_ == options_.attempts) {
       break;
     }
     reference_.hold(certificate_.beyond, kHeldTolerances * tolerance_ + kHeldVoxels);
@@ -400,7 +419,9 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
   ++phaseNumber_;
 }
 
-void Reduction::measure(float expected) {
+void Reduction::measure(float expected) { measureWithin(expected * largestScale_); }
+
+void Reduction::measureWithin(float expected) {
   certificate_ = isReference_ ? Certificate() : certify(surface_, reference_, expected, job_);
 }
 

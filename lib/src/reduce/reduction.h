@@ -135,6 +135,7 @@ class Reduction {
   struct Meshes {
     Surface surface;
     ReferenceMesh reference;
+    float largestScale;
   };
   struct State {
     Surface surface;
@@ -150,9 +151,11 @@ class Reduction {
   [[nodiscard]] State state() const;
   void restore(const State& state);
   void descendTo(float tolerance, Index count);
+  float toCountWithin(Index count, float mostTolerance);
   bool findCount(Index count, float mostTolerance);
   void buildParts();
   void beginLines();
+  void measureWithin(float expected);
   void addFacesNear(const std::vector<Index>& triangles, std::vector<Index>& faces) const;
   void reduce(float tolerance, Index count, int phases);
   void runPhase(const PhaseLimits& limits, Index count);
@@ -172,7 +175,8 @@ class Reduction {
   std::vector<Form> lastForms_;                    ///< see Part::forms()
   std::vector<SurfaceChanges> lastStored_;         ///< see Part::stored()
   Certificate certificate_;
-  bool isReference_;                                 ///< the mesh is the reference still
+  float largestScale_;  ///< what tolerances from outside are multiplied with
+  bool isReference_;    ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance
   std::size_t nextTree_ = 0;
   int attempt_ = 0;  ///< at the present tolerance, from 0 on

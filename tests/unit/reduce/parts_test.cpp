@@ -264,8 +264,8 @@ TEST(Partition, OwnsEachVertexAndTriangleOnce) {
 TEST(Surface, AppliesChanges) {
   const test::FineMesh mesh = test::subdivided(test::octahedron(8), 1);
   base::Job job(1, {});
-  const ReferenceMesh reference(surfaceOf(mesh, job), {}, job);
   Surface surface = surfaceOf(mesh, job);
+  const ReferenceMesh reference(surface, {}, job);
   locateAll(surface, reference, {}, job);
   ASSERT_TRUE(surface.isWhole);
   EXPECT_EQ(surface.triangles.data(), reference.faces().data());
