@@ -89,6 +89,8 @@ class Bvh {
   template <class Visit>
   void itemsAlong(const BoxRay& ray, double& to, const Visit& visit) const {
     if (empty()) return;
+    // Boxes that the ray misses are entered at infinity.
+    to = std::min(to, std::numeric_limits<double>::max());
     std::array<Passed, kMaxDepth> stack;
     std::size_t depth = 0;
     stack[depth++] = {root(), ray.entry(boxOf(root()), to)};

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <set>
@@ -71,6 +73,30 @@ TEST(CheckBvh, NearestIsTheNearest) {
     EXPECT_EQ(boxes[found].distanceSquared(from), expected);
     EXPECT_EQ(tree.nearest(from, best, squared), Bvh::kNone) << "nothing is nearer than that";
   }
+}
+
+// However far the ray goes, and whether it meets anything or not.
+TEST(CheckBvh, RaysVisitWhatTheyPassAndNothingElse) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-1, 2);
+  const std::vector<Box> boxes = randomBoxes(2000, 0.2, random);
+  base::Job job(0, {});
+  const Bvh tree(boxes, job);
+  std::size_t met = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 from(place(random), place(random), place(random));
+    const Vec3 direction = Vec3(place(random), place(random), place(random)) - from;
+    const base::BoxRay ray(from, direction, 0);
+    double to = std::numeric_limits<double>::infinity();
+    std::set<std::uint32_t> visited;
+    tree.itemsAlong(ray, to, [&](std::uint32_t item) { visited.insert(item); });
+    for (std::uint32_t item = 0; item < boxes.size(); ++item) {
+      EXPECT_EQ(visited.contains(item), std::isfinite(ray.entry(boxes[item], 1e300)));
+    }
+    met += visited.size();
+  }
+  EXPECT_GT(met, 100U);
+  EXPECT_LT(met, 40000U);
 }
 
 TEST(CheckBvh, EqualBoxesDoNoHarm) {
