@@ -213,8 +213,8 @@ class Measure {
   // What is expected at a reference vertex, and of a face: the most at one of its vertices, as a
   // guard that sees none of them allows.
   [[nodiscard]] float limitAt(Index r) const {
-    return reference_.isScaled() ? std::max(expected_ * reference_.scaleAt(r), kRounding)
-                                 : expected_;
+    if (!reference_.hasScales()) return expected_;
+    return std::max(expected_ * reference_.promisedScaleAt(r), kRounding);
   }
   [[nodiscard]] float limitOf(Index f) const {
     const auto& v = reference_.vertices(f);

@@ -53,9 +53,14 @@ constexpr int kMostValenceAtLast = 40;
 constexpr float kMostTurnAtLast = 120;
 // Voxels; at larger tolerances the first attempt lets edges end anywhere near.
 constexpr float kLooseTolerance = 4;
-// What was beyond the tolerance is held within so many tolerances and voxels.
+// What was beyond the tolerance is held within so many tolerances and voxels: at this share of the
+// tolerance, down to so many voxels; below, and where that does not help, it stays as it is.
 constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 2;
+constexpr float kHeldShare = 0.25f;
+constexpr float kLeastHeld = 0.2f;
+
+float heldShareOf(float tolerance) { return kHeldShare * tolerance < kLeastHeld ? 0 : kHeldShare; }
 
 // The share of the vertices on the lower side of each cut between parts. It differs in all phases,
 // so that no two have borders at the same places: multiples of the golden ratio are far apart.
@@ -136,7 +141,6 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   if (tolerance < kLeastTolerance) return;
   lines_ = lines;
   keepsShape_ = true;
-  const std::vector<float> scales = reference_.scales();
   const float toleranceBefore = tolerance_;
   std::optional<Surface> before;
   if (!isReference_ || surface_.hasLines()) before = surface_;
@@ -148,7 +152,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     std::vector<Index> held = certificate_.beyond;
     if (options_.faults) addFacesNear(options_.faults(mesh()), held);
     if (held.empty() || attempt_ == options_.attempts) break;
-    reference_.hold(held, kHeldTolerances * tolerance + kHeldVoxels);
+    reference_.hold(held, kHeldTolerances * tolerance + kHeldVoxels, heldShareOf(tolerance));
     tolerance_ = toleranceBefore;
     if (before) {
       surface_ = *before;
@@ -157,7 +161,6 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     }
   }
   reference_.releaseAll();
-  reference_.setScales(scales);
 }
 
 // The faces of the reference below the corners of some triangles.
@@ -278,7 +281,6 @@ float Reduction::toCountWithin(Index count, float mostTolerance) {
     measureWithin(tolerance_);
     return tolerance_;
   }
-  const std::vector<float> scales = reference_.scales();
   const State start = state();
   std::optional<State> best;
   Certificate certificate;
@@ -292,13 +294,13 @@ float Reduction::toCountWithin(Index count, float mostTolerance) {
     if (!isReached || certificate_.mostOver <= kNearTolerance || attempt_ == options_.attempts) {
       break;
     }
-    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance_ + kHeldVoxels);
+    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance_ + kHeldVoxels,
+                    heldShareOf(tolerance_));
     restore(start);
   }
   restore(*best);
   certificate_ = std::move(certificate);
   reference_.releaseAll();
-  reference_.setScales(scales);
   return triangleCount() <= count ? tolerance_ : mostTolerance;
 }
 

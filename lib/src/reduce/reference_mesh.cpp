@@ -27,7 +27,7 @@ ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corn
   });
 }
 
-void ReferenceMesh::hold(std::span<const Index> faces, float radius) {
+void ReferenceMesh::hold(std::span<const Index> faces, float radius, float share) {
   std::vector<Index> seenFrom(positions_.size(), kNone), reached;
   std::vector<std::uint8_t> isNew(positions_.size(), 0);
   for (const Index face : faces) {
@@ -49,16 +49,17 @@ void ReferenceMesh::hold(std::span<const Index> faces, float radius) {
       if (squaredLength(positions_[v] - middle) <= radius * radius) allAround(v, reach);
     }
   }
-  if (!isScaled()) scales_.assign(positions_.size(), 1);
+  heldShare_ = share;
   for (std::size_t v = 0; v < isNew.size(); ++v) {
     if (isNew[v] == 0) continue;
+    if (share == 0 || (rough_[v] & kHeld) != 0) rough_[v] |= kFrozen;
     rough_[v] |= kHeld;
-    scales_[v] = 0;
   }
 }
 
 void ReferenceMesh::releaseAll() {
   for (std::uint8_t& flags : rough_) flags &= kRough;
+  heldShare_ = 1;
 }
 
 Index ReferenceMesh::locate(Index start, Vec3f p, Vec3f axis, int steps) const {

@@ -14,8 +14,7 @@
 
 namespace tufa::reduce {
 
-/// The mesh that distances are measured to, the uniform one. Only what is held and scales
-/// may be set anew.
+/// The mesh that distances are measured to, the uniform one. Only what is held changes.
 class ReferenceMesh {
  public:
   /// The mesh of a surface as makeSurface() gives it. `scales`: see scaleAt(); one for each vertex,
@@ -35,15 +34,22 @@ class ReferenceMesh {
   [[nodiscard]] Index opposite(Index c) const { return opposite_[c]; }
   /// One of a vertex's corners, or kNone.
   [[nodiscard]] Index cornerOf(Index vertex) const { return cornerOf_[vertex]; }
-  /// Whether the tolerance differs from place to place.
-  [[nodiscard]] bool isScaled() const { return !scales_.empty(); }
-  /// What the tolerance is multiplied with at a vertex.
-  [[nodiscard]] float scaleAt(Index vertex) const { return isScaled() ? scales_[vertex] : 1; }
-  [[nodiscard]] const std::vector<float>& scales() const { return scales_; }
-  void setScales(std::vector<float> scales) { scales_ = std::move(scales); }
+  /// Whether what guards allow differs from place to place.
+  [[nodiscard]] bool isScaled() const { return hasScales() || heldShare_ < 1; }
+  /// What the tolerance is multiplied with at a vertex for the guards.
+  [[nodiscard]] float scaleAt(Index vertex) const {
+    if ((rough_[vertex] & kFrozen) != 0) return 0;
+    return promisedScaleAt(vertex) * ((rough_[vertex] & kHeld) != 0 ? heldShare_ : 1);
+  }
+  /// Whether the tolerance that is promised differs from place to place.
+  [[nodiscard]] bool hasScales() const { return !scales_.empty(); }
+  /// What it is multiplied with at a vertex.
+  [[nodiscard]] float promisedScaleAt(Index vertex) const {
+    return hasScales() ? scales_[vertex] : 1;
+  }
   /// Holds faces near others: within `radius` voxels of them, over connected faces, all vertices
-  /// count as rough and have a scale of 0.
-  void hold(std::span<const Index> faces, float radius);
+  /// count as rough, and guards allow a share of the tolerance; 0, where they are held already.
+  void hold(std::span<const Index> faces, float radius, float share);
   void releaseAll();
   /// Whether a vertex of a face is held.
   [[nodiscard]] bool isHeld(Index face) const {
@@ -204,14 +210,15 @@ class ReferenceMesh {
 
   static constexpr float kBeside = 1e-4f;  ///< voxels from a section, for an edge along it
   static constexpr int kMostSteps = 2000;
-  static constexpr std::uint8_t kRough = 1, kHeld = 2;
+  static constexpr std::uint8_t kRough = 1, kHeld = 2, kFrozen = 4;
 
   base::SharedArray<Vec3f> positions_;
   base::SharedArray<Triangle> faces_;
   std::vector<Index> opposite_;  ///< of each corner
   std::vector<Index> cornerOf_;
-  std::vector<std::uint8_t> rough_;  ///< of kRough and kHeld
+  std::vector<std::uint8_t> rough_;  ///< of kRough, kHeld and kFrozen
   std::vector<float> scales_;
+  float heldShare_ = 1;
 };
 
 }  // namespace tufa::reduce

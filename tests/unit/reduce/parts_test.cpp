@@ -168,6 +168,37 @@ TEST_F(ReferenceMeshTest, IsRoughAtEdgesAndCorners) {
   }
 }
 
+TEST_F(ReferenceMeshTest, HoldsAShareFirstAndAllTheSecondTime) {
+  const Vec3f middle(4, 4, 8);
+  const Index face = faceAt(middle);
+  const auto farthest = [&](float most) {
+    float farthest = 0;
+    for (Index v = 0; v < mesh.positions.size(); ++v) {
+      if (reference.scaleAt(v) <= most) {
+        farthest = std::max(farthest, length(mesh.positions[v] - middle));
+      }
+    }
+    return farthest;
+  };
+  EXPECT_FALSE(reference.isScaled());
+  reference.hold({&face, 1}, 2, 0.25f);
+  EXPECT_TRUE(reference.isScaled());
+  EXPECT_FALSE(reference.hasScales());
+  EXPECT_TRUE(reference.isHeld(face));
+  EXPECT_EQ(reference.scaleAt(reference.vertices(face)[0]), 0.25f);
+  EXPECT_NEAR(farthest(0.25f), 2.5f, 1);
+  EXPECT_EQ(farthest(0), 0);
+  reference.hold({&face, 1}, 1, 0.25f);
+  EXPECT_EQ(reference.scaleAt(reference.vertices(face)[0]), 0);
+  EXPECT_LT(farthest(0), farthest(0.25f));
+  EXPECT_EQ(reference.promisedScaleAt(reference.vertices(face)[0]), 1);
+  reference.releaseAll();
+  EXPECT_FALSE(reference.isScaled());
+  EXPECT_FALSE(reference.isHeld(face));
+  reference.hold({&face, 1}, 1, 0);
+  EXPECT_GT(farthest(0), 0);
+}
+
 TEST_F(ReferenceMeshTest, LocatesTheFaceBelow) {
   const Vec3f p(6.3f, 2.2f, 9);
   const Index f = reference.locate(faceAt({1, 7, 8}), p, {0, 0, 1});
