@@ -38,6 +38,7 @@ Json toJson(const SamplingReport& report) {
           {"thin_sharp_cells", report.thinSharp},
           {"thin_sheet_cells", report.thinSheets},
           {"unresolved_kinks", report.unresolvedKinks},
+          {"spared_cells", report.sparedCells},
           {"hidden_sheets", report.hiddenSheets},
           {"reach_voxels", report.reachVoxels},
           {"least_voxels", report.leastVoxels},
@@ -58,6 +59,18 @@ std::string shareOf(std::size_t cells, std::size_t all) {
 /// A size, of which those of larger features are not known.
 std::string sizeText(double voxels, const SamplingReport& report) {
   return (voxels < report.reachVoxels ? "" : "over ") + shortNumber(voxels) + " voxels";
+}
+
+/// What a grid that is not fine enough misses.
+std::string whyNotEnough(const SamplingReport& report) {
+  std::string text;
+  const auto add = [&](bool misses, const char* what) {
+    if (misses) text += (text.empty() ? "" : ", and ") + std::string(what);
+  };
+  add(report.voxelSizeNeeded < report.voxelSize, "features are too thin");
+  add(report.unresolvedKinks > report.sparedCells, "cells have more than one crease");
+  add(report.hiddenSheets > 0, "sheets are hidden between samples");
+  return text;
 }
 
 std::string describe(const SamplingReport& report, const AdviseOptions& options) {
@@ -94,7 +107,7 @@ std::string describe(const SamplingReport& report, const AdviseOptions& options)
                                 (report.voxelSizeNeeded < report.voxelSize
                                      ? ", it would take " + shortNumber(report.voxelSizeNeeded)
                                      : ""));
-  line("fine enough      ", report.enough() ? "yes" : "no");
+  line("fine enough      ", report.enough() ? "yes" : "no, as " + whyNotEnough(report));
   return text;
 }
 

@@ -17,7 +17,8 @@ struct AdviseOptions {
   double sheetVoxels = 2;   ///< under so many voxels a feature is a thin sheet
   /// Normals in a cell that differ by more, in degrees, mean a crease; 0 to 180.
   double sharpAngle = 25.84;
-  /// The share of the surface cells, those with the smallest features, that may go without: 0 to 1.
+  /// The share of the surface cells, those with the smallest features, that may go without, and the
+  /// share that may have more than one crease: 0 to 1.
   double spared = 0.01;
 };
 
@@ -36,6 +37,7 @@ struct SamplingReport {
   /// Sharp cells whose tangent planes meet in no point in the cell or a voxel around it, to a
   /// quarter of a voxel: more than one crease or corner is in them.
   std::size_t unresolvedKinks = 0;
+  std::size_t sparedCells = 0;  ///< AdviseOptions::spared of the surface cells
   /// Lattice edges between two samples of one side from both of which the distances fall to the
   /// other side: a sheet or a gap that the signs do not show.
   std::size_t hiddenSheets = 0;
@@ -53,7 +55,7 @@ struct SamplingReport {
 
   /// Whether the grid is fine enough.
   [[nodiscard]] bool enough() const {
-    return voxelSizeNeeded >= voxelSize && unresolvedKinks == 0 && hiddenSheets == 0;
+    return voxelSizeNeeded >= voxelSize && unresolvedKinks <= sparedCells && hiddenSheets == 0;
   }
 };
 

@@ -243,6 +243,8 @@ class Adviser {
       if (cell.size < should) ++(cell.sharp ? report.thinSharp : report.thinSmooth);
     }
     report.surfaceCells = sizes.size();
+    report.sparedCells =
+        static_cast<std::size_t>(options_.spared * static_cast<double>(sizes.size()));
     report.nyquist = std::numbers::pi / report.voxelSize;
     report.voxelSizeNeeded = report.voxelSize;
     if (sizes.empty()) return;
