@@ -111,7 +111,13 @@ bool SceneObject::has(const std::string& key) {
 }
 
 SceneValue SceneObject::at(const std::string& key) {
-  if (!has(key)) value_.fail("has no \"" + key + "\"");
+  if (!has(key)) {
+    std::string others;  // one of them may be the key, misspelled
+    for (const auto& item : value_.json().items()) {
+      others += (others.empty() ? "\"" : ", \"") + item.key() + "\"";
+    }
+    value_.fail("has no \"" + key + "\"" + (others.empty() ? "" : ", but " + others));
+  }
   return value_.at(key);
 }
 
