@@ -128,7 +128,8 @@ struct LodWriteReport {
 /// A .usda has the LODs as a variant set, LOD, of which LOD0 is chosen.
 ///
 /// A file name with braces makes one file for each LOD, see lodFile(), of any format that write()
-/// has; other than .glb, they are in world units as write() makes them.
+/// has; other than .glb, they are in world units as write() makes them. Without LODs that is an
+/// empty mesh as level 0.
 ///
 /// Each file appears whole or not at all. Throws Error: UnwritableFile, InvalidArgument (an option
 /// out of its range, one file of a format without LODs), LimitExceeded (more than the format can

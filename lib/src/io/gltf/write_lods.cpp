@@ -134,6 +134,7 @@ class LodWriter {
   }
 
   void writeMany(const std::filesystem::path& path) {
+    if (chain_.levels.empty()) return writeNothing(lodFile(path, 0));
     job_.run([&] {
       for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
         writeLevel(lodFile(path, level), level);
@@ -143,6 +144,14 @@ class LodWriter {
   }
 
  private:
+  // An empty mesh where a surface has no LODs.
+  void writeNothing(const std::filesystem::path& path) {
+    WriteOptions options;
+    options.name = options_.name + "_LOD0";
+    tufa::write(Mesh(), path, options);
+    report_.files.push_back(path);
+  }
+
   static void requireLevels(MeshFormat format, const std::string& target) {
     if (format == MeshFormat::Glb || format == MeshFormat::Usda) return;
     throw Error(ErrorCode::InvalidArgument,
