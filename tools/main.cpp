@@ -66,6 +66,7 @@ int runGuarded(const Command& command, const Failures& failures) {
 
 int main(int argc, char** argv) {
   installSignalHandlers();
+  giveLargeMemoryBack();
   keepMemoryInReserve();
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   // Also where the command line cannot be read otherwise.

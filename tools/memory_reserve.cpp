@@ -1,5 +1,6 @@
 #include "memory_reserve.h"
 
+#include <malloc.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 namespace tufa::tools {
 namespace {
 
+// From this size on.
+constexpr int kLargeBytes = 1 << 20;
 constexpr std::size_t kReserveBytes = std::size_t{16} << 20;
 
 std::atomic<void*> reserve = nullptr;
@@ -53,6 +56,12 @@ bool isMemoryAtItsEnd() {
   if (probe == MAP_FAILED) return true;
   ::munmap(probe, kStack);
   return false;
+}
+
+void giveLargeMemoryBack() {
+#ifdef M_MMAP_THRESHOLD
+  static_cast<void>(mallopt(M_MMAP_THRESHOLD, kLargeBytes));
+#endif
 }
 
 void keepMemoryInReserve() {

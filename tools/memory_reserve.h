@@ -8,6 +8,10 @@ namespace tufa::tools {
 /// program says that it is out of memory and ends, where it would be aborted.
 void keepMemoryInReserve();
 
+/// Has large arrays given back to the system as soon as they are freed, where the allocator would
+/// keep those up to 32 MB for later ones of other sizes.
+void giveLargeMemoryBack();
+
 /// Whether there is no room for a thread's stack. Safe in a signal handler.
 [[nodiscard]] bool isMemoryAtItsEnd();
 
