@@ -4,10 +4,12 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -59,8 +61,17 @@ struct Truth {
   std::optional<double> isovalue;
 };
 
+/// Throws Error(InvalidArgument) for a folder of chunks, whose files each hold a part of a surface.
+void requireMesh(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::path(file) / "chunks.json", error)) return;
+  throw Error(ErrorCode::InvalidArgument, file + " is a folder of chunks: tufa chunks --assemble " +
+                                              file + " --lods all:0 -o MESH --check checks them");
+}
+
 int checkFile(const std::string& file, const Truth& truth, const CheckArguments& arguments,
               FileList& files) {
+  requireMesh(file);
   const Mesh mesh = readMeshInput(file, isStandard(file) ? arguments.format : std::nullopt);
   // Distances are measured at many places of both surfaces, about as long as all else takes.
   ProgressBar bar(arguments.quiet, truth.grid ? std::vector{1.0, 1.0} : std::vector{1.0});
@@ -77,7 +88,10 @@ int checkFile(const std::string& file, const Truth& truth, const CheckArguments&
     Json json;
     json["file"] = file;
     json.update(toJson(report));
-    if (distance) json["distance"] = toJson(*distance);
+    if (distance) {
+      json["distance"] = {{"file", *arguments.against}, {"grid", nameOf(*truth.grid)}};
+      json["distance"].update(toJson(*distance));
+    }
     files.add(std::move(json));
   } else if (!arguments.quiet) {
     print(shownInput(file) + "\n" + (distance ? describe(*distance) : "") + describe(report));
@@ -103,6 +117,7 @@ int runCheck(const CheckArguments& arguments) {
   Truth truth;
   if (arguments.against) {
     truth.grid = readVolume(*arguments.against, arguments.grid);
+    if (!arguments.grid && !arguments.quiet) noteChoice(*arguments.against, nameOf(*truth.grid));
     truth.isovalue = readIsovalue(arguments.isovalue, *truth.grid, *arguments.against);
   }
   FileList files(arguments.inputs, arguments.json);

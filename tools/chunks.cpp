@@ -313,6 +313,9 @@ std::string summary(const ChunksRun& run, const ChunksArguments& arguments) {
       text += "; " + describeAngles(sum.smallestAngle, sum.trianglesUnderMinAngle,
                                     sum.interior + sum.regular, asked);
     }
+    if (sum.pairsLeft > 0) {
+      text += "; " + formatCount(sum.pairsLeft) + " intersecting pairs of triangles";
+    }
     text += "\n";
   }
   std::size_t files = 1;  // chunks.json
@@ -343,8 +346,10 @@ int runBuild(const ChunksArguments& arguments) {
 void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
   const bool assembling = !arguments.assemble.folder.empty();
   if (assembling == !arguments.input.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                assembling ? "--assemble takes no volume" : "FILE or --assemble DIR is needed");
+    throw Error(ErrorCode::InvalidArgument, assembling ? "--assemble takes no volume"
+                                            : arguments.only.empty()
+                                                ? "FILE or --assemble DIR is needed"
+                                                : "FILE is needed, before --only and its indices");
   }
   const std::vector<const char*> others =
       assembling
@@ -398,7 +403,7 @@ void addBuildOptions(CLI::App& app, ChunksArguments& arguments) {
   addCompressionOptions(app, options.compression);
   addAttributeOptions(app, arguments.attributes);
   app.add_option("--only", arguments.only,
-                 "indices of the chunks to make, such as 0,-1,2; default: all");
+                 "indices of the chunks to make, such as 0,-1,2, behind FILE; default: all");
 }
 
 void addAssembleOptions(CLI::App& app, AssembleArguments& arguments) {

@@ -78,9 +78,10 @@ void addThreadsOption(CLI::App& app, int& threads) {
 }
 
 CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isovalue) {
-  return app.add_option("--iso", isovalue,
-                        "value on the surface; default: 0 for level sets; fog volumes need one, or "
-                        "auto: half way between the least and the greatest value");
+  return app.add_option(
+      "--iso", isovalue,
+      "value on the surface; default: 0 for level sets; fog volumes need one, or "
+      "auto: half way between the least and the greatest value, 0 for level sets");
 }
 
 void addNonFiniteOption(CLI::App& app, NonFinite& nonFinite) {

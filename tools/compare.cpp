@@ -126,13 +126,16 @@ void addCompareCommand(CLI::App& app, Command& chosen) {
       "compare", checkerHelp("Mesh a volume in several ways and measure what each costs and "
                              "breaks"));
   compare->add_option("FILE", arguments->input, "a .vdb file, or - for standard input")->required();
-  compare->add_option("-o,--output", arguments->outputs,
-                      "a report: .html with pictures, .json or .md; may be given several times");
+  compare
+      ->add_option("-o,--output", arguments->outputs,
+                   "a report: .html with pictures, .json or .md; may be given several times")
+      ->allow_extra_args(false);
   compare->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
   compare
       ->add_option("--methods", arguments->options.methods,
                    "which ones, with commas between; default: all")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(
           CLI::IsMember(std::vector<std::string>(comparedNames().begin(), comparedNames().end())));
   compare

@@ -54,6 +54,7 @@ nlohmann::ordered_json toJson(const BlobFit& fit) {
 }
 
 int runFit(const FitArguments& arguments) {
+  requireFile(arguments.output, "a scene");
   if (!arguments.output.ends_with(".json")) {
     throw Error(ErrorCode::InvalidArgument,
                 "cannot write " + arguments.output + ": a scene is a .json file");

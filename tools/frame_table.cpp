@@ -78,7 +78,14 @@ std::string describeMesh(const FrameRow& row) {
   if (const auto wrong = sumOf(result, "non_finite_values"); wrong > 0) {
     text += ", " + formatCount(wrong) + " NaN or infinite values";
   }
-  return text + ", " + shortNumber(secondsOf(result)) + " s: " + row.output;
+  text += ", " + shortNumber(secondsOf(result)) + " s: ";
+  std::string last;
+  for (const Json& grid : gridsOf(result)) {
+    const std::string output = grid.value("output", row.output);
+    if (output != last) text += (last.empty() ? "" : ", ") + output;
+    last = output;
+  }
+  return text;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <regex>
 #include <string_view>
 #include <system_error>
 
@@ -71,6 +72,15 @@ void sortOnce(std::vector<int>& frames) {
 
 bool namesFrames(const std::string& name) {
   return placeIn(std::filesystem::path(name).filename().string()).length > 0;
+}
+
+std::string framesInAnotherWay(const std::string& name) {
+  static const std::regex place("%(0?)([1-9]?)d|\\$F([1-9]?)");
+  std::smatch found;
+  if (!std::regex_search(name, found, place)) return "";
+  const std::string digits = found[2].str() + found[3].str();
+  const std::size_t count = digits.empty() ? 1 : static_cast<std::size_t>(digits[0] - '0');
+  return found.prefix().str() + std::string(count, '#') + found.suffix().str();
 }
 
 std::string frameFile(const std::string& name, int frame) {

@@ -12,6 +12,10 @@ namespace tufa::tools {
 /// Whether a name has a place for a frame's number in its last part.
 [[nodiscard]] bool namesFrames(const std::string& name);
 
+/// With # for the digits of a frame's number, a name that has a place for it as other programs
+/// write it: %04d, $F4; empty for any other.
+[[nodiscard]] std::string framesInAnotherWay(const std::string& name);
+
 /// The file of a frame.
 [[nodiscard]] std::string frameFile(const std::string& name, int frame);
 

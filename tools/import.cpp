@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "commands.h"
+#include "console.h"
 #include "image_reader.h"
 #include "number_list.h"
 #include "paths.h"
@@ -112,12 +115,29 @@ int runImport(const ImportArguments& arguments) {
   keepApart(arguments.output);
   requireVolumeOutput(arguments.output);
   const Files files(arguments.inputs.begin(), arguments.inputs.end());
+  for (const std::filesystem::path& file : files) {
+    if (isStandard(file.string())) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "images are read from files, which standard input, -, is not");
+    }
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+      throw Error(ErrorCode::UnreadableFile,
+                  "cannot read " + file.string() + ": there is no such file");
+    }
+  }
   requireDistinct(arguments.output, files);
   std::shared_ptr<openvdb::GridBase> grid;
   const double seconds = timed([&] {
     ProgressBar bar(arguments.quiet);
     grid = arguments.size ? importRawFiles(arguments, files, bar) : importImage(arguments, bar);
   });
+  if (grid->empty()) {
+    printNote("note: the volume is empty: every value is background" +
+              (arguments.options.threshold ? ", as none is above the threshold of " +
+                                                 formatNumber(*arguments.options.threshold)
+                                           : std::string()));
+  }
   WrittenGrid written;
   written.input = arguments.inputs.front();
   written.output = arguments.output;

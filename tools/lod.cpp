@@ -142,13 +142,17 @@ void addChainOptions(CLI::App& app, LodArguments& arguments) {
   app.add_option("--tolerances", arguments.tolerances,
                  "tolerances of all levels, rising, with commas between")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->excludes("--levels")
       ->excludes("--tolerance")
       ->excludes("--factor");
+  app.add_option("--tolerance-grid", arguments.toleranceGrid,
+                 "float grid of the file that multiplies the tolerances in space");
   app.add_option("--triangles", arguments.lod.triangles,
                  "most triangles of all levels, falling, with commas between: each level has up to "
                  "5 % fewer")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->excludes("--levels")
       ->excludes("--tolerance")
       ->excludes("--factor")

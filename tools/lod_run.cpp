@@ -23,6 +23,9 @@ LodOptions chainOptions(const LodArguments& arguments, const ContourOptions& mes
   for (const std::string& text : arguments.tolerances) {
     options.tolerances.push_back(readTolerance("--tolerances", text, grid));
   }
+  if (arguments.toleranceGrid) {
+    options.contour.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
+  }
   options.contour.progress = bar.callback();
   return options;
 }

@@ -24,6 +24,7 @@ struct LodArguments {
   LodOptions lod;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
+  std::optional<std::string> toleranceGrid;
   std::vector<std::string> tolerances;
   LodWriteOptions writing;
   std::string scenes = "one";

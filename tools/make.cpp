@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include <tufa/error.h>
 #include <tufa/io.h>
 #include <tufa/shapes.h>
 #include <memory>
@@ -25,6 +26,18 @@ struct MakeArguments {
   bool json = false;
   bool quiet = false;
 };
+
+/// Throws Error(InvalidArgument) for options that mean nothing to the shape.
+void requireMeaning(const CLI::App& app, const std::string& shape) {
+  const auto refuse = [&](const char* option, bool isMeant, const char* shapes) {
+    if (isMeant || app.count(option) == 0) return;
+    throw Error(ErrorCode::InvalidArgument,
+                std::string(option) + " is for " + shapes + ", and means nothing to " + shape);
+  };
+  const bool isBand = shape != "noise" && shape != "fog";
+  refuse("--seed", !isBand || shape == "terrain", "terrain, noise and fog");
+  refuse("--half-width", isBand, "level sets");
+}
 
 int runMake(const MakeArguments& arguments) {
   keepApart(arguments.output);
@@ -65,7 +78,12 @@ void addMakeCommand(CLI::App& app, Command& chosen) {
   addThreadsOption(*make, options.threads);
   make->add_flag("--json", arguments->json, "one JSON object on standard output");
   make->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
-  make->callback([arguments, &chosen] { chosen = [arguments] { return runMake(*arguments); }; });
+  make->callback([make, arguments, &chosen] {
+    chosen = [make, arguments] {
+      requireMeaning(*make, arguments->shape);
+      return runMake(*arguments);
+    };
+  });
 }
 
 }  // namespace tufa::tools

@@ -70,25 +70,47 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
       pairTriangles(run.mesh, options.tolerance * voxelSizeOf(*grid));
     }
   });
-  if (!arguments.quiet) noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
-  if (!arguments.allowEmpty) {
-    requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
+  if (!arguments.quiet && !arguments.labels) {
+    noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
   }
+  if (arguments.allowEmpty) return;
+  if (arguments.labels && run.mesh.triangleCount() == 0) {
+    throw Error(ErrorCode::UnsupportedGrid,
+                "no surface is left of " + run.grid + " in " + shownInput(arguments.input) +
+                    (run.filters.reports.empty() ? "" : " once it is filtered") +
+                    "; --allow-empty goes on with an empty mesh");
+  }
+  requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
 }
 
 void sampleAttributes(const MeshArguments& arguments, GridRun& run) {
-  if (arguments.attributes.empty()) return;
+  if (arguments.attributes.empty() || run.mesh.positions.empty()) return;
   run.attributeSeconds = timed([&] {
     run.mesh.attributes = AttributeGrids(arguments.input, arguments.attributes)
                               .sample(run.mesh.positions, arguments.contour.threads);
   });
 }
 
+/// Throws what readVolume() throws, with a hint where labels stand in the place of a surface.
+std::shared_ptr<openvdb::GridBase> readForMesh(const MeshArguments& arguments,
+                                               const std::optional<std::string>& name) {
+  try {
+    return readVolume(arguments.input, name);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::UnsupportedGrid) throw;
+    const std::string what = error.what();
+    const bool isInteger =
+        what.find("int32") != std::string::npos || what.find("int64") != std::string::npos;
+    if (!isInteger) throw;
+    throw Error(error.code(), what + "; --labels all meshes the labels of a grid of integers");
+  }
+}
+
 GridRun meshGrid(const MeshArguments& arguments, const std::optional<std::string>& name,
                  ProgressBar& bar) {
   GridRun run;
   std::shared_ptr<openvdb::GridBase> grid;
-  run.readSeconds = timed([&] { grid = readVolume(arguments.input, name); });
+  run.readSeconds = timed([&] { grid = readForMesh(arguments, name); });
   run.grid = name.value_or(nameOf(*grid));
   meshVolume(arguments, std::move(grid), bar, run);
   return run;
@@ -115,8 +137,10 @@ GridRun meshUnion(const MeshArguments& arguments, const std::vector<std::string>
 }
 
 void checkMesh(GridRun& run, const MeshArguments& arguments, ProgressBar& bar) {
-  // There is nothing to say of an empty mesh.
-  if (run.mesh.triangleCount() == 0) return;
+  if (run.mesh.triangleCount() == 0) {
+    if (!arguments.quiet) printNote("note: an empty mesh is not checked");
+    return;
+  }
   CheckOptions options;
   options.threads = arguments.contour.threads;
   options.progress = bar.callback();

@@ -106,12 +106,16 @@ int runModel(const ModelArguments& arguments) {
   });
   const std::string hidden = hiddenNote(report);
   if (report.activeVoxels == 0) {
-    throw Error(ErrorCode::UnsupportedGrid,
-                shownInput(arguments.input) + " has no surface that voxels of " +
-                    formatNumber(options.voxelSize) + " show within its bounds" +
-                    (hidden.empty() ? "" : "; " + hidden));
+    const implicit::Box box = scene.field->extent();
+    const bool isOutside = box.least.x > box.greatest.x || box.least.y > box.greatest.y ||
+                           box.least.z > box.greatest.z;
+    throw Error(
+        ErrorCode::UnsupportedGrid,
+        shownInput(arguments.input) + " has no surface " +
+            (isOutside ? "" : "that voxels of " + formatNumber(options.voxelSize) + " show ") +
+            "within its bounds" + (hidden.empty() ? "" : "; " + hidden));
   }
-  if (!hidden.empty()) printNote(hidden);
+  if (!hidden.empty()) printNote("note: " + hidden);
   grid->setName(scene.name);
   WrittenGrid written;
   written.input = arguments.input;

@@ -76,6 +76,12 @@ void requireMeshOutput(const std::string& output, const std::optional<std::strin
   requireWritable(output);
 }
 
+void requireFile(const std::string& output, const std::string& what) {
+  if (!isStandard(output)) return;
+  throw Error(ErrorCode::InvalidArgument,
+              what + " is written to a file, which standard output, -, is not");
+}
+
 void requirePageEnding(const std::filesystem::path& path) {
   const std::string ending = endingOf(path);
   if (ending == ".html" || ending == ".htm" || isPipeOrDevice(path)) return;

@@ -29,6 +29,9 @@ void requirePictureOutput(const std::string& output);
 /// `--format` say; UnwritableFile if nothing can be written there.
 void requireMeshOutput(const std::string& output, const std::optional<std::string>& format);
 
+/// Throws Error(InvalidArgument) for standard output, where `what` is written to files only.
+void requireFile(const std::string& output, const std::string& what);
+
 /// Throws Error(InvalidArgument) unless the name of a page to write ends in .html or .htm.
 void requirePageEnding(const std::filesystem::path& path);
 

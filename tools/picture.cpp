@@ -120,6 +120,9 @@ void requireSense(const PictureArguments& arguments) {
   refuse(scene && arguments.isovalue, "--iso", "a volume");
   refuse(!scene && arguments.bounds, "--bounds", "a scene");
   refuse(!scene && arguments.voxelSize, "--voxel", "a scene");
+  if (arguments.voxelSize && !arguments.compare) {
+    throw Error(ErrorCode::InvalidArgument, "--voxel is for --compare, which is not there");
+  }
   if (arguments.output.empty() && !arguments.compare) {
     throw Error(ErrorCode::InvalidArgument, "--output is required, or --compare to look at a mesh");
   }

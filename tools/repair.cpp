@@ -53,6 +53,7 @@ std::string describe(const RepairReport& report) {
 
 int runRepair(const RepairArguments& arguments) {
   requireChecker();
+  requireFile(arguments.output, "a repaired mesh");
   requireMeshEnding(arguments.output);
   requireDistinct(arguments.output, {arguments.input});
   requireWritable(arguments.output);

@@ -9,9 +9,11 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <system_error>
 
 #include "console.h"
 #include "crash_guard.h"
+#include "frames.h"
 #include "number.h"
 #include "open_edges.h"
 #include "standard_streams.h"
@@ -68,6 +70,34 @@ std::vector<GridName> listVolume(const std::string& file) {
   return guarded(file, [](const auto& source) { return listGrids(source); });
 }
 
+/// Throws Error(InvalidArgument) if a file is not there whose name stands for a sequence.
+void requireVolume(const std::string& file) {
+  std::error_code error;
+  if (isStandard(file) || std::filesystem::exists(file, error)) return;
+  if (namesFrames(file)) {
+    throw Error(ErrorCode::InvalidArgument,
+                file + " stands for a sequence, and only tufa mesh takes one; name a single frame");
+  }
+  if (const std::string hashes = framesInAnotherWay(file); !hashes.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "there is no file " + file +
+                                                "; a sequence is named with # for each digit of "
+                                                "the frame's number: " +
+                                                hashes);
+  }
+}
+
+/// Throws Error(InvalidArgument) if a pattern stands where one grid is named.
+void requireName(const std::string& file, const std::string& name) {
+  std::string names;
+  for (const GridName& grid : listVolume(file)) {
+    if (grid.name == name) return;
+    names += (names.empty() ? "\"" : ", \"") + grid.name + "\"";
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              "\"" + name + "\" is a pattern, and the name of one grid is wanted; " +
+                  shownInput(file) + " holds " + names);
+}
+
 }  // namespace
 
 std::optional<double> readIsovalue(const std::optional<std::string>& text,
@@ -95,8 +125,8 @@ void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBas
                   double isovalue) {
   if (text && *text != "auto") return;
   if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return;
-  printNote("note: isovalue " + formatNumber(isovalue) +
-            " was taken, half way between the least and the greatest value");
+  printNote("note: isovalue " + formatNumber(isovalue) + " was taken for " +
+            shownGrid(grid.getName()) + ", half way between the least and the greatest value");
 }
 
 std::vector<std::string> chooseGrids(const std::string& file,
@@ -154,6 +184,8 @@ void requireVoxelSize(const std::string& option, double size) {
 
 std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
                                               const std::optional<std::string>& name) {
+  requireVolume(file);
+  if (name && name->find_first_of("*?") != std::string::npos) requireName(file, *name);
   return guarded(file, [&](const auto& source) { return readGrid(source, name); });
 }
 

@@ -23,6 +23,7 @@ if(NOT help MATCHES "no mesh checker")
 endif()
 
 # The same of images without ITK, in one line that names the way out.
+file(WRITE none.nii "")
 execute_process(COMMAND ${TUFA} import none.nii -o none.vdb
   RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE error)
 if(NOT code EQUAL 2 OR NOT error MATCHES "^tufa: [^\n]*built without ITK[^\n]*--size[^\n]*\n$"

@@ -172,13 +172,11 @@ TEST_F(ReferenceMeshTest, HoldsAShareFirstAndAllTheSecondTime) {
   const Vec3f middle(4, 4, 8);
   const Index face = faceAt(middle);
   const auto farthest = [&](float most) {
-    float farthest = 0;
+    float far = 0;
     for (Index v = 0; v < mesh.positions.size(); ++v) {
-      if (reference.scaleAt(v) <= most) {
-        farthest = std::max(farthest, length(mesh.positions[v] - middle));
-      }
+      if (reference.scaleAt(v) <= most) far = std::max(far, length(mesh.positions[v] - middle));
     }
-    return farthest;
+    return far;
   };
   EXPECT_FALSE(reference.isScaled());
   reference.hold({&face, 1}, 2, 0.25f);
