@@ -17,7 +17,7 @@ namespace tufa::tools {
 namespace {
 
 // From this size on.
-constexpr int kLargeBytes = 1 << 20;
+constexpr int kLargeBytes = 8 << 20;
 constexpr std::size_t kReserveBytes = std::size_t{16} << 20;
 
 std::atomic<void*> reserve = nullptr;
