@@ -12,4 +12,10 @@ void shrinkTo(std::vector<T>& vector, std::size_t count) {
   if (vector.capacity() > 2 * count) vector.shrink_to_fit();
 }
 
+/// Empties a vector and gives its room back, which `vector = {}` does not do.
+template <class T>
+void release(std::vector<T>& vector) {
+  std::vector<T>().swap(vector);
+}
+
 }  // namespace tufa::base

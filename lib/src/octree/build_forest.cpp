@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/huge_pages.h"
+#include "base/shrink.h"
 #include "octree/block_levels.h"
 #include "octree/upper_levels.h"
 
@@ -153,7 +154,7 @@ ClusterForest buildForest(const uniform::SurfaceView& base, int maxLevel, bool a
     if (above.cells.size() == forest.levels.back().cells.size()) break;
     forest.levels.push_back(std::move(above));
   }
-  forest.levels.back().parentCells = {};
+  base::release(forest.levels.back().parentCells);
   return forest;
 }
 

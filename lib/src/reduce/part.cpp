@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/shrink.h"
+
 namespace tufa::reduce {
 
 void Part::load(const Surface& surface, const ReferenceMesh& reference, const Partition& partition,
@@ -92,17 +94,18 @@ void Part::loadSamples(const Surface& surface) {
   wasFar_.assign(triangleCount_, 0);
   sampleIds_ = surface.isWhole ? partition_->vertices(number_) : partition_->samples(number_);
   samples_.resize(sampleIds_.size()), isRough_.resize(sampleIds_.size());
-  owners_.assign(sampleIds_.size(), {kNone, 0, kNone});
+  owners_.assign(sampleIds_.size(), kNone);
+  base::release(takers_);
   if (surface.isWhole) {
     findOwnersAtVertices(surface);
   } else {
     for (Index s = 0; s < sampleIds_.size(); ++s) {
-      owners_[s].triangle = partition_->localTriangle(surface.owner[sampleIds_[s]]);
+      owners_[s] = partition_->localTriangle(surface.owner[sampleIds_[s]]);
     }
   }
   hasRough_ = false;
   for (Index s = 0; s < sampleIds_.size(); ++s) {
-    const Index r = sampleIds_[s], t = owners_[s].triangle;
+    const Index r = sampleIds_[s], t = owners_[s];
     if (t == kNone) continue;
     samples_[s] = {reference_->positions()[r], firstSample_[t]};
     isRough_[s] = reference_->isRough(r);
@@ -117,7 +120,7 @@ void Part::findOwnersAtVertices(const Surface& surface) {
   const auto triangles = partition_->triangles(number_);
   for (Index c = 0; c < vertex_.size(); ++c) {
     const Index v = vertex_[c];
-    if (surface.owner[vertices[v]] == triangles[c / 3]) owners_[v].triangle = c / 3;
+    if (surface.owner[vertices[v]] == triangles[c / 3]) owners_[v] = c / 3;
   }
 }
 
@@ -169,7 +172,7 @@ void Part::giveSamples() {
   for (const Taken& taken : taken_) {
     Index& first = firstSample_[taken.triangle];
     samples_[taken.sample].next = first;
-    owners_[taken.sample].triangle = taken.triangle;
+    owners_[taken.sample] = taken.triangle;
     first = taken.sample;
   }
 }

@@ -66,9 +66,9 @@ class Part {
     Vec3f p;
     Index next;
   };
-  struct Owner {
-    Index triangle;
-    Index stamp, taker;  ///< in the attempt `stamp` it would be `taker`
+  /// Who would own a sample in the attempt `stamp`.
+  struct Taker {
+    Index triangle, stamp;
   };
   struct Taken {
     Index sample, triangle;
@@ -288,7 +288,8 @@ class Part {
   std::vector<Index> vertex_, opposite_, firstSample_;
   std::vector<std::uint8_t> wasFar_;  ///< the first sample of a triangle, in an attempt before
   std::vector<Sample> samples_;
-  std::vector<Owner> owners_;
+  std::vector<Index> owners_;
+  std::vector<Taker> takers_;  ///< empty until one is asked for
   std::vector<std::uint8_t> isRough_;
   bool hasRough_ = false;  ///< any of the samples
   std::span<const Index> sampleIds_;

@@ -338,8 +338,8 @@ struct Part::Changed {
 Index Part::ownerAfter(Index r) const {
   const Index local = surface_->isWhole ? partition_->localVertex(r) : partition_->localSample(r);
   if (local >= sampleIds_.size() || sampleIds_[local] != r) return kNone;
-  const Owner& owner = owners_[local];
-  return owner.stamp == now_ ? owner.taker : owner.triangle;
+  const Taker& taker = takers_[local];
+  return taker.stamp == now_ ? taker.triangle : owners_[local];
 }
 
 // Faces of the reference at rough vertices that change their owner, and held ones below an edge
@@ -356,9 +356,9 @@ bool Part::facesNear() {
   if (roughFaces_.empty()) return true;
   std::sort(roughFaces_.begin(), roughFaces_.end());
   roughFaces_.erase(std::unique(roughFaces_.begin(), roughFaces_.end()), roughFaces_.end());
+  if (takers_.empty()) takers_.assign(owners_.size(), {kNone, 0});
   for (const Taken& t : taken_) {
-    owners_[t.sample].stamp = now_;
-    owners_[t.sample].taker = t.triangle;
+    takers_[t.sample] = {t.triangle, now_};
   }
   return std::all_of(roughFaces_.begin(), roughFaces_.end(), [&](Index f) { return faceNear(f); });
 }

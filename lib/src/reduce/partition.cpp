@@ -61,10 +61,10 @@ void Partition::begin(const Surface& surface, base::Job& job) {
 
 void Partition::finish(const Surface& surface, base::Job& job) {
   numberVertices(job);
-  items_ = {};
+  base::release(items_);
   shareTriangles(surface, job);
   if (!surface.isWhole) shareSamples(surface, job);
-  partOfTriangle_ = {};
+  base::release(partOfTriangle_);
 }
 
 // Items below a plane go first; the end of them. Those on it are the upper side's, but may not

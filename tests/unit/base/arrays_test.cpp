@@ -61,6 +61,8 @@ TEST(Shrink, GivesRoomBack) {
   EXPECT_EQ(numbers.size(), 10U);
   EXPECT_LT(numbers.capacity(), 1000U);
   EXPECT_EQ(numbers[9], 9);
+  release(numbers);
+  EXPECT_EQ(numbers.capacity(), 0U);
 }
 
 }  // namespace
