@@ -182,6 +182,9 @@ TEST_F(LabelMeshes, RefuseWhatIsNoLabel) {
   expectFailure("mesh l.vdb -o m.ply --labels 2,2", 2, "asked for twice");
   expectFailure("mesh l.vdb -o m.ply --labels all", 2, "would hold 3");
   expectFailure("mesh l.vdb -o m.ply --labels 2 --iso 1", 2, "no --iso");
+  expectFailure("mesh l.vdb -o 'm{}.ply' --labels all --smooth mean:20", 3,
+                "is left of label_2 in l.vdb once it is filtered; --allow-empty");
+  EXPECT_EQ(run("mesh l.vdb -o 'm{}.ply' --labels all --smooth mean:20 --allow-empty").exitCode, 0);
   ASSERT_EQ(run("make sphere -o s.vdb --voxel 0.2").exitCode, 0);
   expectFailure("mesh s.vdb -o m.ply --labels all", 3, "no grid of 32- or 64-bit integers");
   expectFailure("mesh s.vdb -o m.ply --labels all --grid '*'", 2, "is a pattern");

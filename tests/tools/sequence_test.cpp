@@ -112,6 +112,29 @@ TEST_F(Sequence, EmptyFramesAreWrittenEmpty) {
   EXPECT_EQ(statesOf(json), (States{"empty", "empty", "empty"}));
 }
 
+// As where smoke has not begun, and its file holds no temperature.
+TEST_F(Sequence, EmptyFramesNeedNoAttributes) {
+  const auto empty = openvdb::createLevelSet<openvdb::FloatGrid>();
+  empty->setName("nothing");
+  writeGrids({empty}, folder / "f.0002.vdb");
+  const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --attribute sphere");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("no surface, an empty mesh: m.0002.ply"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(readBytes(folder / "m.0001.ply").find("property float sphere"), std::string::npos);
+}
+
+TEST_F(Sequence, TellsTheFilesOfSeveralGrids) {
+  const auto first = readGrid(folder / "s.vdb");
+  const auto second = first->deepCopyGrid();
+  second->setName("second");
+  writeGrids({first, second}, folder / "f.0001.vdb");
+  const Outcome outcome = run("mesh 'f.####.vdb' -o 'm_{}.####.ply' --frames 1 --grid '*'");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find(": m_sphere.0001.ply, m_second.0001.ply\n"), std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(Sequence, IsovaluesThatDifferFromFrameToFrameAreTold) {
   for (const int frame : {1, 2}) {
     auto grid = openvdb::FloatGrid::create(0);  // of no class

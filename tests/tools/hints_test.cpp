@@ -1,0 +1,127 @@
+// What is not as the command takes it, and whether it says how to go on.
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <tufa/io.h>
+#include <filesystem>
+#include <string>
+
+#include "support/json.h"
+#include "tools/command_fixture.h"
+
+namespace tufa {
+namespace {
+
+using test::CommandTest;
+using test::Outcome;
+using Json = nlohmann::json;
+
+class Hints : public CommandTest {
+ protected:
+  /// v.vdb: a sphere, another one, float values of 2 and integers, by their names.
+  void makeVolume() {
+    makeSphere();
+    const auto sphere = readGrid((folder / "s.vdb").string());
+    sphere->setName("first");
+    const auto other = sphere->deepCopyGrid();
+    other->setName("second");
+    const auto twice = openvdb::FloatGrid::create(2);
+    twice->setName("twice");
+    twice->setTransform(sphere->transform().copy());
+    twice->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(3)), 2);
+    const auto labels = openvdb::Int32Grid::create(0);
+    labels->setName("labels");
+    labels->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(3)), 5);
+    openvdb::io::File file((folder / "v.vdb").string());
+    file.write(openvdb::GridPtrVec{sphere, other, twice, labels});
+    file.close();
+    openvdb::io::File ofLabels((folder / "l.vdb").string());
+    ofLabels.write(openvdb::GridPtrVec{labels});
+    ofLabels.close();
+  }
+
+  bool exists(const char* file) { return std::filesystem::exists(folder / file); }
+};
+
+TEST_F(Hints, ForFramesNamedAsElsewhere) {
+  expectFailure("mesh 's.%04d.vdb' -o m.ply", 2, "s.####.vdb");
+  expectFailure("mesh 's.$F3.vdb' -o m.ply", 2, "s.###.vdb");
+  expectFailure("lod 's.$F.vdb' -o m.glb", 2, "s.#.vdb");
+  expectFailure("lod 's.####.vdb' -o m.glb", 2, "only tufa mesh takes one");
+  expectFailure("mesh 's.100%.vdb' -o m.ply", 3, "No such file");
+}
+
+TEST_F(Hints, ForPatternsInThePlaceOfAName) {
+  makeVolume();
+  expectFailure("lod v.vdb -o m.glb --grid '*'", 2, "holds \"first\", \"second\"");
+  EXPECT_EQ(run("mesh v.vdb -o m.glb --grid 'f*' --quiet").exitCode, 0);
+}
+
+TEST_F(Hints, ForIntegersAndFolders) {
+  makeVolume();
+  expectFailure("mesh l.vdb -o m.ply", 3, "--labels all");
+  EXPECT_NE(run("info l.vdb").out.find("tufa mesh --labels"), std::string::npos);
+  ASSERT_EQ(run("chunks s.vdb -o d --levels 1 --quiet").exitCode, 0);
+  expectFailure("check d", 2, "tufa chunks --assemble d --lods all:0");
+  expectFailure("import - -o i.vdb --size 1,1,1", 2, "read from files");
+  expectFailure("import none.png -o i.vdb", 3, "there is no such file");
+}
+
+TEST_F(Hints, NameTheGridThatADistanceIsTo) {
+  makeVolume();
+  ASSERT_EQ(run("mesh v.vdb --grid second -o m.ply --quiet").exitCode, 0);
+  const Outcome any = run("check m.ply --against v.vdb --json");
+  EXPECT_EQ(any.exitCode, 0) << any.err;
+  EXPECT_NE(any.err.find("grid \"first\" was taken, one of 3"), std::string::npos) << any.err;
+  const Json distance = test::parseJson(any.out).at("distance");
+  EXPECT_EQ(distance.at("grid"), "first");
+  EXPECT_EQ(distance.at("file"), "v.vdb");
+  EXPECT_EQ(run("check m.ply --against v.vdb --grid second").err, "");
+}
+
+TEST_F(Hints, FilesMayStandBehindOptionsOfSeveralValues) {
+  makeSphere();
+  EXPECT_EQ(run("lod --triangles 300,100 s.vdb -o a.glb --quiet").exitCode, 0);
+  EXPECT_EQ(run("lod --tolerances 0.1,1 s.vdb -o b.glb --quiet").exitCode, 0);
+  EXPECT_EQ(run("compare --methods mc -o c.json -o c.md s.vdb --quiet").exitCode, 0);
+  EXPECT_TRUE(exists("c.json") && exists("c.md"));
+  expectFailure("chunks --only 0,0,0 s.vdb -o d", 2, "before --only");
+}
+
+TEST_F(Hints, OptionsThatMeanNothingAreRefused) {
+  expectFailure("make sphere --seed 5 -o x.vdb", 2, "--seed is for terrain, noise and fog");
+  expectFailure("make noise --half-width 9 -o x.vdb", 2, "--half-width is for level sets");
+  EXPECT_EQ(run("make terrain --seed 5 --voxel 0.2 --half-width 4 -o x.vdb").exitCode, 0);
+  expectFailure("repair x.stl -o -", 2, "written to a file");
+}
+
+TEST_F(Hints, ChainsMultiplyTheirTolerances) {
+  makeVolume();
+  const auto trianglesOf = [&](const std::string& options) {
+    const Outcome outcome = run("lod v.vdb --grid first -o m.glb --json --levels 1 " + options);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return test::parseJson(outcome.out).at("levels").at(0).at("triangles").get<int>();
+  };
+  EXPECT_EQ(trianglesOf("--tolerance-grid twice"), trianglesOf("--tolerance 0.2"));
+  EXPECT_NE(trianglesOf("--tolerance-grid twice"), trianglesOf(""));
+}
+
+TEST_F(Hints, EmptyChainsAreWritten) {
+  openvdb::initialize();
+  const auto empty = openvdb::createLevelSet<openvdb::FloatGrid>();
+  empty->setName("e");
+  openvdb::io::File file((folder / "e.vdb").string());
+  file.write(openvdb::GridPtrVec{empty});
+  file.close();
+  const Outcome outcome = run("lod e.vdb -o 'e{}.ply' --allow-empty");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("wrote e0.ply"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(readMesh((folder / "e0.ply").string()).triangles.empty());
+  const Outcome mesh = run("mesh e.vdb -o m.ply --allow-empty --check");
+  EXPECT_EQ(mesh.exitCode, 0);
+  EXPECT_NE(mesh.err.find("an empty mesh is not checked"), std::string::npos) << mesh.err;
+}
+
+}  // namespace
+}  // namespace tufa
