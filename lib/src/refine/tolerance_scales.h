@@ -13,8 +13,8 @@ namespace tufa::refine {
 [[nodiscard]] double toleranceAt(const octree::CutRule& rule, const grid::Affine& affine,
                                  const Vec3& point);
 
-/// What the rule multiplies the tolerance with at each vertex of a mesh; none if that is 1
-/// everywhere.
+/// What the rule multiplies the tolerance with at each vertex of a mesh, as far as that makes it no
+/// larger than the mesh; none if it is 1 everywhere.
 [[nodiscard]] std::vector<float> scalesOf(const Mesh& mesh, const grid::Affine& affine,
                                           const octree::CutRule& rule, base::Job& job);
 

@@ -94,6 +94,22 @@ TEST(ToleranceGrids, HoldWhereTheScaleRises) {
   EXPECT_LT(mesh.triangles.size(), contour(*grid, options).triangles.size());
 }
 
+// As a mask for "as few as you like" may have them.
+TEST(ToleranceGrids, MayHaveAnyValues) {
+  const auto grid = bracket();
+  for (const double most : {1e4, 1e30}) {
+    ContourOptions options;
+    options.toleranceGrid = scalesFor(*grid, [&](const Coord& at) {
+      return at[0] < 0 ? 1 : at[1] < 0 ? -1 : most;
+    });
+    ContourReport report;
+    const Mesh mesh = contour(*grid, options, &report);
+    const test::MeshTopology topology = test::inspect(mesh);
+    EXPECT_TRUE(topology.manifold() && topology.closed()) << most << " " << topology;
+    EXPECT_EQ(report.intersectionsLeft, 0U) << most;
+  }
+}
+
 TEST(ToleranceGrids, HoldForBudgets) {
   const auto grid = bracket();
   LodOptions options;
