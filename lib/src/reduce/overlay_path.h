@@ -12,7 +12,7 @@ namespace tufa::reduce {
 // mesh as a type M: mesh(t, i) is the position of a triangle's corner i, mesh.vertex(t, i) its
 // vertex, and mesh.across(t, i) the triangle across the edge opposite it, or kNone. If it has a
 // function mesh.mayPass(t, from, to), ways from one triangle to another lead only over those for
-// which that is true; it is of what is beside one of the two.
+// which that is true, as it is of the neighbours of both.
 
 /// More than any squared distance.
 inline constexpr float kFar2 = 1e30f;
@@ -31,8 +31,8 @@ float squaredDistanceToEdge(const M& mesh, const std::array<Vec3f, 2>& pq, Index
   return squaredDistanceOfSegments(pq[0], pq[1], mesh(t, (i + 1) % 3), mesh(t, (i + 2) % 3));
 }
 
-/// As findOverlayPath(), of one step or of two, which most ways are. What is beyond needs no look
-/// at an edge that does not lead to `to`.
+/// As findOverlayPath(), for ways of one step or two, which most are. Edges that do not lead to `to`
+/// are not measured.
 template <class M>
 bool findShortPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, Index to,
                    float limit2, OverlayPath& path) {
