@@ -31,8 +31,8 @@ float squaredDistanceToEdge(const M& mesh, const std::array<Vec3f, 2>& pq, Index
   return squaredDistanceOfSegments(pq[0], pq[1], mesh(t, (i + 1) % 3), mesh(t, (i + 2) % 3));
 }
 
-/// As findOverlayPath(), for ways of one step or two, which most are. Edges that do not lead to `to`
-/// are not measured.
+/// As findOverlayPath(), for ways of one step or two, which most are. Edges that do not lead to
+/// `to` are not measured.
 template <class M>
 bool findShortPath(const M& mesh, const std::array<Vec3f, 2>& pq, Index from, Index to,
                    float limit2, OverlayPath& path) {
