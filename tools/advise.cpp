@@ -167,8 +167,10 @@ void addAdviseCommand(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   advise
-      ->add_option("--spare", options.spared,
-                   "share of the cells, those with the smallest features, that may go without")
+      ->add_option(
+          "--spare", options.spared,
+          "share of the cells, those with the smallest features, that may go without, and share "
+          "that may have more than one crease")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   addNonFiniteOption(*advise, options.contour.nonFinite);

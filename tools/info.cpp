@@ -69,9 +69,8 @@ std::string describe(const GridInfo& info) {
                                   ", background " + formatNumber(info.background));
   }
   line("NaN or infinite  ", formatCount(info.nonFiniteValues));
-  const bool isInteger = info.valueType == "int32" || info.valueType == "int64";
   line("can be meshed    ", info.meshable ? "yes"
-                            : isInteger && info.activeVoxels > 0
+                            : holdsLabels(info) && info.activeVoxels > 0
                                 ? "by tufa mesh --labels, label by label: " + info.whyNot
                                 : "no: " + info.whyNot);
   return text;

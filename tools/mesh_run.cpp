@@ -98,11 +98,10 @@ std::shared_ptr<openvdb::GridBase> readForMesh(const MeshArguments& arguments,
     return readVolume(arguments.input, name);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::UnsupportedGrid) throw;
-    const std::string what = error.what();
-    const bool isInteger =
-        what.find("int32") != std::string::npos || what.find("int64") != std::string::npos;
-    if (!isInteger) throw;
-    throw Error(error.code(), what + "; --labels all meshes the labels of a grid of integers");
+    const std::vector<GridInfo> grids = describeVolumes(arguments.input);
+    if (std::none_of(grids.begin(), grids.end(), holdsLabels)) throw;
+    throw Error(error.code(), std::string(error.what()) +
+                                  "; --labels all meshes the labels of a grid of integers");
   }
 }
 
@@ -248,7 +247,7 @@ Labels readLabels(const MeshArguments& arguments) {
   std::optional<std::string> name;
   if (!arguments.grids.empty()) name = arguments.grids.front();
   for (const GridInfo& info : describeVolumes(arguments.input)) {
-    if (!name && (info.valueType == "int32" || info.valueType == "int64")) name = info.name;
+    if (!name && holdsLabels(info)) name = info.name;
   }
   if (!name) {
     throw Error(ErrorCode::UnsupportedGrid,

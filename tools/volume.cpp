@@ -193,6 +193,10 @@ std::vector<GridInfo> describeVolumes(const std::string& file) {
   return guarded(file, [](const auto& source) { return describeGrids(source); });
 }
 
+bool holdsLabels(const GridInfo& info) {
+  return info.valueType == "int32" || info.valueType == "int64";
+}
+
 std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,
                                                            const std::string& name) {
   const openvdb::GridBase::Ptr grid = readVolume(file, name);

@@ -84,6 +84,9 @@ struct Length {
                                                             const std::optional<std::string>& name);
 [[nodiscard]] std::vector<GridInfo> describeVolumes(const std::string& file);
 
+/// Whether a grid holds integers, whose labels are meshed one by one.
+[[nodiscard]] bool holdsLabels(const GridInfo& info);
+
 /// readVolume() for a grid that multiplies the tolerance. Throws Error(UnsupportedGrid) if its
 /// values are no floats: contour() would find that only after much work.
 [[nodiscard]] std::shared_ptr<const openvdb::GridBase> readToleranceGrid(const std::string& file,

@@ -33,12 +33,8 @@ class Hints : public CommandTest {
     const auto labels = openvdb::Int32Grid::create(0);
     labels->setName("labels");
     labels->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(3)), 5);
-    openvdb::io::File file((folder / "v.vdb").string());
-    file.write(openvdb::GridPtrVec{sphere, other, twice, labels});
-    file.close();
-    openvdb::io::File ofLabels((folder / "l.vdb").string());
-    ofLabels.write(openvdb::GridPtrVec{labels});
-    ofLabels.close();
+    writeGrids({sphere, other, twice, labels}, folder / "v.vdb");
+    writeGrids({labels}, folder / "l.vdb");
   }
 
   bool exists(const char* file) { return std::filesystem::exists(folder / file); }
@@ -111,9 +107,7 @@ TEST_F(Hints, EmptyChainsAreWritten) {
   openvdb::initialize();
   const auto empty = openvdb::createLevelSet<openvdb::FloatGrid>();
   empty->setName("e");
-  openvdb::io::File file((folder / "e.vdb").string());
-  file.write(openvdb::GridPtrVec{empty});
-  file.close();
+  writeGrids({empty}, folder / "e.vdb");
   const Outcome outcome = run("lod e.vdb -o 'e{}.ply' --allow-empty");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("wrote e0.ply"), std::string::npos) << outcome.out;

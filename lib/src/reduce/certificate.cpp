@@ -210,8 +210,8 @@ class Measure {
   }
 
  private:
-  // What is expected at a reference vertex, and of a face: the most at one of its vertices, as a
-  // guard that sees none of them allows.
+  // What is expected at a reference vertex. Of a face it is the most at one of its vertices, as a
+  // guard may see that one alone.
   [[nodiscard]] float limitAt(Index r) const {
     if (!reference_.hasScales()) return expected_;
     return std::max(expected_ * reference_.promisedScaleAt(r), kRounding);

@@ -76,8 +76,8 @@ Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::
   return surface;
 }
 
-// Divides scales by the largest, which is returned: tolerances in here are those where the scale is
-// 1, and the largest ones that there are. 1 where there are none, or none above 0.
+// Divides scales by the largest one and returns that; 1 if there are none, or none above 0. So a
+// tolerance in here is the largest anywhere, which phases and clearances go by.
 float takeLargest(std::vector<float>& scales) {
   const auto most = std::max_element(scales.begin(), scales.end());
   if (most == scales.end() || !(*most > 0)) return 1;
