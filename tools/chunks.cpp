@@ -43,10 +43,10 @@ tufa::Coord readIndex(const std::string& text) {
               "--only wants indices of chunks such as 0,-1,2, not \"" + text + "\"");
 }
 
-ChunkOptions chunkOptions(const ChunksArguments& arguments, const openvdb::GridBase& grid,
-                          ProgressBar& bar) {
+ChunkOptions chunkOptions(const ChunksArguments& arguments, const ContourOptions& meshing,
+                          const openvdb::GridBase& grid, ProgressBar& bar) {
   ChunkOptions options = arguments.chunks;
-  options.contour.isovalue = readIsovalue(arguments.isovalue, grid, arguments.input);
+  options.contour = meshing;
   options.contour.tolerance = readTolerance("--tolerance", arguments.tolerance, grid);
   for (const std::string& text : arguments.only) options.only.push_back(readIndex(text));
   options.contour.progress = bar.callback();
@@ -143,13 +143,23 @@ void noteMissing(const ChunkIndex& index, const std::vector<tufa::Coord>& only) 
   }
 }
 
+/// Of the calls that a run makes: how long each is likely to take.
+std::vector<double> callShares(const ChunksArguments& arguments) {
+  if (arguments.filters.inOrder.empty()) return {kContourShare};
+  return {kFilterShare, kContourShare};
+}
+
 ChunksRun build(const ChunksArguments& arguments) {
-  ProgressBar bar(arguments.quiet);
+  ProgressBar bar(arguments.quiet, callShares(arguments));
   ChunksRun run;
   std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   requireVoxels(*grid, arguments.input);
-  const ChunkOptions options = chunkOptions(arguments, *grid, bar);
+  ContourOptions meshing = arguments.chunks.contour;
+  meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
+  grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run.filters);
+  requireLeft(*grid, arguments.input, run.filters);
+  const ChunkOptions options = chunkOptions(arguments, meshing, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
   std::map<tufa::Coord, std::vector<ChunkFile>> files;
   std::optional<StagedFolder> staged;
@@ -168,6 +178,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   };
   run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
   run.buildSeconds -= run.writeSeconds + run.attributeSeconds;
+  run.contour.nonFiniteValues += run.filters.nonFiniteValues();
   run.index.attributes = run.attributes;
   if (!arguments.quiet) {
     noteIsovalue(arguments.isovalue, *grid, run.contour.isovalue);
@@ -219,6 +230,10 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
                                             : arguments.only.empty()
                                                 ? "FILE or --assemble DIR is needed"
                                                 : "FILE is needed, before --only and its indices");
+  }
+  if (assembling && !arguments.filters.inOrder.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--" + arguments.filters.inOrder.front().option + " is not for --assemble");
   }
   const std::vector<const char*> others =
       assembling
@@ -299,6 +314,7 @@ void addChunksCommand(CLI::App& app, Command& chosen) {
                    "the folder to write; with --assemble the mesh")
       ->required();
   addBuildOptions(*chunks, *arguments);
+  addFilterOptions(*chunks, arguments->filters);
   addAssembleOptions(*chunks, arguments->assemble);
   addContourOptions(*chunks, arguments->chunks.contour, arguments->isovalue);
   for (const char* none : {"--no-repair", "--simplify", "--normals"}) {
@@ -308,6 +324,7 @@ void addChunksCommand(CLI::App& app, Command& chosen) {
   chunks->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   chunks->callback([arguments, chunks, &chosen] {
     chosen = [arguments, chunks] {
+      orderFilters(*chunks, arguments->filters);
       requireOneTask(*arguments, *chunks);
       if (arguments->assemble.folder.empty()) return runBuild(*arguments);
       AssembleArguments assemble = arguments->assemble;

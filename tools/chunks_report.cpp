@@ -57,6 +57,7 @@ Json toJson(const ChunksRun& run, const ChunksArguments& arguments) {
   json["inside"] = run.contour.insideIsBelow ? "below" : "above";
   json["active_voxels"] = run.contour.activeVoxels;
   json["non_finite_values"] = run.contour.nonFiniteValues;
+  if (!run.filters.reports.empty()) json["filters"] = tools::toJson(run.filters);
   json["voxel_size"] = run.index.voxelSize;
   json["chunk_size"] = run.index.chunkSize;
   json["step"] = run.index.step;
@@ -79,6 +80,7 @@ Json toJson(const ChunksRun& run, const ChunksArguments& arguments) {
          {"pairs_left", sum.pairsLeft}});
   }
   json["seconds"] = {{"read", run.readSeconds},
+                     {"filter", run.filters.seconds},
                      {"build", run.buildSeconds},
                      {"attributes", run.attributeSeconds},
                      {"write", run.writeSeconds}};
@@ -88,8 +90,9 @@ Json toJson(const ChunksRun& run, const ChunksArguments& arguments) {
 }
 
 std::string describe(const ChunksRun& run, const ChunksArguments& arguments) {
-  std::string text = shownGrid(run.index.grid) + ": " + formatCount(run.index.chunks.size()) +
-                     " chunks of " + std::to_string(run.index.chunkSize) + " voxels from " +
+  std::string text = tools::describe(run.filters) + shownGrid(run.index.grid) + ": " +
+                     formatCount(run.index.chunks.size()) + " chunks of " +
+                     std::to_string(run.index.chunkSize) + " voxels from " +
                      formatCount(run.contour.activeVoxels) + " active voxels\n";
   for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {
     const LevelSum sum = sumOf(run.index, level);

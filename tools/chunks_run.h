@@ -9,6 +9,7 @@
 
 #include "assemble.h"
 #include "attribute_options.h"
+#include "filter_options.h"
 
 namespace tufa::tools {
 
@@ -18,6 +19,7 @@ struct ChunksArguments {
   std::string output;
   std::optional<std::string> grid;
   ChunkOptions chunks;
+  FilterWords filters;
   AttributeWords attributes;
   std::optional<std::string> isovalue;
   std::string tolerance = "0.1";
@@ -32,6 +34,7 @@ struct ChunksArguments {
 struct ChunksRun {
   ChunkIndex index;
   std::vector<Attribute> attributes;  ///< without values
+  FilterRun filters;
   ContourReport contour;
   double readSeconds = 0;
   double buildSeconds = 0;

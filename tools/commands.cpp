@@ -43,6 +43,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   addPictureCommand(app, chosen);
   addInfoCommand(app, chosen);
   addAdviseCommand(app, chosen);
+  addFilterCommand(app, chosen);
   addMeshCommand(app, chosen);
   addLodCommand(app, chosen);
   addChunksCommand(app, chosen);
@@ -84,6 +85,12 @@ CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isoval
       "auto: half way between the least and the greatest value, 0 for level sets");
 }
 
+void addInsideOption(CLI::App& app, Inside& inside) {
+  addChoice<Inside>(app, "--inside", inside,
+                    {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
+                    "which side of the isovalue is solid (default auto)");
+}
+
 void addNonFiniteOption(CLI::App& app, NonFinite& nonFinite) {
   addChoice<NonFinite>(app, "--nan", nonFinite,
                        {{"refuse", NonFinite::Refuse}, {"outside", NonFinite::Outside}},
@@ -115,9 +122,7 @@ void noteFloats(const std::string& what) {
 void addContourOptions(CLI::App& app, ContourOptions& options, std::optional<std::string>& isovalue,
                        bool methods) {
   addIsovalueOption(app, isovalue);
-  addChoice<Inside>(app, "--inside", options.inside,
-                    {{"auto", Inside::Auto}, {"below", Inside::Below}, {"above", Inside::Above}},
-                    "which side of the isovalue is solid (default auto)");
+  addInsideOption(app, options.inside);
   std::map<std::string, Ambiguity> rules{{"separate", Ambiguity::Separate},
                                          {"join", Ambiguity::Join},
                                          {"asymptotic", Ambiguity::Asymptotic},

@@ -24,6 +24,7 @@ void addImportCommand(CLI::App& app, Command& chosen);
 void addPictureCommand(CLI::App& app, Command& chosen);
 void addInfoCommand(CLI::App& app, Command& chosen);
 void addAdviseCommand(CLI::App& app, Command& chosen);
+void addFilterCommand(CLI::App& app, Command& chosen);
 void addMeshCommand(CLI::App& app, Command& chosen);
 void addLodCommand(CLI::App& app, Command& chosen);
 void addChunksCommand(CLI::App& app, Command& chosen);

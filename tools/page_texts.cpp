@@ -36,6 +36,11 @@ const PageText& pageText(const std::string& subcommand) {
        {"Says, before anything is meshed, whether a grid is fine enough for the features of its "
         "surface, and what voxel size it would take.",
         {{"tufa advise scan.vdb --iso 0.5", "the thickness of solid and gaps, in voxels"}}}},
+      {"filter",
+       {"Filters a volume, as tufa mesh, tufa lod and tufa chunks do before they mesh, and writes "
+        "it.",
+        {{"tufa filter scan.vdb -o clean.vdb --smooth gaussian --keep-largest 1",
+          "smoothed, and of its largest component alone"}}}},
       {"mesh",
        {"Meshes the surface of a volume at a value. The mesh is adaptive, closed, 2-manifold and "
         "within the tolerance of the uniform mesh, which its report certifies.",

@@ -37,6 +37,9 @@ void noteFloats(const std::string& what);
 /// Declares `--nan` alone.
 void addNonFiniteOption(CLI::App& app, NonFinite& nonFinite);
 
+/// Declares `--inside` alone.
+void addInsideOption(CLI::App& app, Inside& inside);
+
 /// Declares `--iso` alone.
 CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isovalue);
 

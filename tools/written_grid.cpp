@@ -25,16 +25,19 @@ std::string toJson(const WrittenGrid& written) {
     json["hidden_voxels"] = written.scene->hiddenVoxels;
     json["undecided_voxels"] = written.scene->undecidedVoxels;
   }
+  if (written.filters) json["filters"] = tools::toJson(*written.filters);
   json["active_voxels"] = written.activeVoxels;
   json["voxel_size"] = written.voxelSize;
-  json["seconds"] = {{"make", written.makeSeconds}, {"write", written.writeSeconds}};
+  json["seconds"] = {{written.filters ? "filter" : "make", written.makeSeconds},
+                     {"write", written.writeSeconds}};
   json["peak_memory_bytes"] = peakMemoryBytes();
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string describe(const WrittenGrid& written) {
-  std::string text = shownGrid(written.grid) + ": " + formatCount(written.activeVoxels) +
-                     " active voxels of " + formatNumber(written.voxelSize);
+  std::string text = written.filters ? tools::describe(*written.filters) : "";
+  text += shownGrid(written.grid) + ": " + formatCount(written.activeVoxels) +
+          " active voxels of " + formatNumber(written.voxelSize);
   if (written.triangles) text += " from " + formatCount(*written.triangles) + " triangles";
   if (written.scene) text += " from " + formatCount(written.scene->samples) + " samples";
   return text + " in " + shortNumber(written.makeSeconds) + " s\n" +

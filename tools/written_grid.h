@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "filter_options.h"
+
 namespace tufa::tools {
 
 /// What sampling a scene took.
@@ -15,13 +17,14 @@ struct SampledScene {
   std::size_t undecidedVoxels = 0;  ///< as VoxelizeReport has them
 };
 
-/// What `make`, `voxelize` and `model` tell of the volume that they wrote.
+/// What `make`, `voxelize`, `model` and `filter` tell of the volume that they wrote.
 struct WrittenGrid {
-  std::string input;  ///< the mesh or scene it was made of; empty for a shape
+  std::string input;  ///< the mesh, scene or volume it was made of; empty for a shape
   std::string output;
   std::string grid;                      ///< its name
   std::optional<std::size_t> triangles;  ///< of the mesh it was made of
   std::optional<SampledScene> scene;     ///< if it was made of one
+  std::optional<FilterRun> filters;      ///< if it was made by them
   std::size_t activeVoxels = 0;
   double voxelSize = 0;
   double makeSeconds = 0;

@@ -117,7 +117,50 @@ TEST_F(FilterOptions, SayWhatIsWrongBeforeAnythingIsRead) {
            {"--min-component x", "above 0"}}) {
     expectFailure("mesh none.vdb -o n.ply " + words, 2, part);
     expectFailure("lod none.vdb -o n.glb " + words, 2, part);
+    expectFailure("chunks none.vdb -o n " + words, 2, part);
+    expectFailure("filter none.vdb -o n.vdb " + words, 2, part);
   }
+}
+
+TEST_F(FilterOptions, ChunksAreOfTheFilteredVolume) {
+  const Json json = report("chunks d.vdb -o d --chunk 16 --levels 2 --keep-largest 1 --offset 1");
+  ASSERT_EQ(json.at("filters").size(), 2u);
+  EXPECT_EQ(json.at("filters")[0]["components_kept"], 1);
+  EXPECT_EQ(run("chunks --assemble d --lods all:0 -o m.ply --check").exitCode, 0);
+  for (const Position& p : readMesh(folder / "m.ply").positions) {
+    ASSERT_NEAR(std::hypot(p.x, p.y, p.z), 1.1, 0.03);
+  }
+  expectFailure("chunks --assemble d --lods all:0 -o n.ply --smooth mean", 2, "--smooth is not");
+  expectFailure("chunks d.vdb -o e --min-component 1000000", 3, "leaves nothing");
+}
+
+TEST_F(FilterOptions, FilterWritesWhatOtherCommandsMesh) {
+  const std::string words = " --offset -0.5 --keep-largest 1 --offset 0.05w";
+  const Json json = report("filter d.vdb -o f.vdb" + words);
+  EXPECT_EQ(json.at("filters").size(), 3u);
+  EXPECT_EQ(json.at("grid"), "dust");
+  EXPECT_GT(json.at("seconds").at("filter"), 0);
+  ASSERT_EQ(describeGrids(folder / "f.vdb").size(), 1u);
+  EXPECT_EQ(describeGrids(folder / "f.vdb").front().name, "dust");
+  EXPECT_EQ(json.at("active_voxels"), describeGrids(folder / "f.vdb").front().activeVoxels);
+  report("mesh f.vdb -o a.ply");
+  report("mesh d.vdb -o b.ply" + words);
+  EXPECT_EQ(test::readBytes(folder / "a.ply"), test::readBytes(folder / "b.ply"));
+  const Outcome outcome = run("filter d.vdb -o - --grid half --smooth mean", "", "");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_NE(outcome.err.find("smooth mean: "), std::string::npos) << outcome.err;
+}
+
+TEST_F(FilterOptions, FilterSaysWhatIsWrong) {
+  ASSERT_EQ(run("make fog --voxel 0.05 -o fog.vdb").exitCode, 0);
+  EXPECT_EQ(run("filter fog.vdb -o g.vdb --smooth mean").exitCode, 0);
+  expectFailure("filter fog.vdb -o n.vdb --keep-largest 1", 2, "needs --iso");
+  EXPECT_EQ(run("filter fog.vdb -o g.vdb --keep-largest 1 --iso 0.5").exitCode, 0);
+  expectFailure("filter d.vdb -o n.vdb", 2, "a filter is needed");
+  expectFailure("filter d.vdb -o n.vdb --smooth mean --iso 0", 2, "--iso is for");
+  expectFailure("filter d.vdb -o n.ply --smooth mean", 2, "n.ply");
+  expectFailure("filter d.vdb -o d.vdb --smooth mean", 2, "d.vdb");
+  expectFailure("filter d.vdb -o n.vdb --min-component 1000000", 3, "leaves nothing");
 }
 
 TEST_F(FilterOptions, AFilterThatLeavesNothingIsTold) {

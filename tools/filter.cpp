@@ -1,0 +1,112 @@
+#include <CLI/CLI.hpp>
+
+#include <tufa/contour.h>
+#include <tufa/error.h>
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "commands.h"
+#include "console.h"
+#include "filter_options.h"
+#include "paths.h"
+#include "progress_bar.h"
+#include "standard_streams.h"
+#include "volume.h"
+#include "written_grid.h"
+
+namespace tufa::tools {
+namespace {
+
+struct FilterArguments {
+  std::string input;
+  std::string output;
+  std::optional<std::string> grid;
+  FilterWords filters;
+  std::optional<std::string> isovalue;
+  ContourOptions meshing;  ///< what components are the inside of
+  bool json = false;
+  bool quiet = false;
+};
+
+/// Whether a filter asks which side of the surface is inside.
+bool hasInside(const FilterWords& words) {
+  return std::any_of(words.inOrder.begin(), words.inOrder.end(), [](const FilterWord& word) {
+    return word.option == "keep-largest" || word.option == "min-component";
+  });
+}
+
+/// Throws Error(InvalidArgument) where there is nothing to do.
+void requireFilters(const FilterArguments& arguments) {
+  if (arguments.filters.inOrder.empty()) {
+    throw Error(ErrorCode::InvalidArgument,
+                "a filter is needed, such as --smooth mean or --keep-largest 1");
+  }
+  if (!hasInside(arguments.filters) && arguments.isovalue) {
+    throw Error(ErrorCode::InvalidArgument,
+                "--iso is for --keep-largest and --min-component: other filters have no use of it");
+  }
+}
+
+int runFilter(const FilterArguments& arguments) {
+  keepApart(arguments.output);
+  requireVolumeOutput(arguments.output);
+  requireDistinct(arguments.output, {arguments.input});
+  requireFilters(arguments);
+  std::shared_ptr<openvdb::GridBase> grid = readVolume(arguments.input, arguments.grid);
+  requireVoxels(*grid, arguments.input);
+  if (!arguments.grid && !arguments.quiet) noteChoice(arguments.input, nameOf(*grid));
+  ContourOptions meshing = arguments.meshing;
+  if (hasInside(arguments.filters)) {
+    meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
+  }
+  FilterRun run;
+  {
+    ProgressBar bar(arguments.quiet);
+    grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run);
+  }
+  requireLeft(*grid, arguments.input, run);
+  ContourReport report;
+  report.nonFiniteValues = run.nonFiniteValues();
+  noteData(report);
+  WrittenGrid written;
+  written.input = arguments.input;
+  written.output = arguments.output;
+  written.voxelSize = voxelSizeOf(*grid);
+  written.makeSeconds = run.seconds;
+  written.filters = std::move(run);
+  writeAndTell(grid, std::move(written), {arguments.json, arguments.quiet});
+  return kDone;
+}
+
+}  // namespace
+
+void addFilterCommand(CLI::App& app, Command& chosen) {
+  const auto arguments = std::make_shared<FilterArguments>();
+  CLI::App* const filter =
+      app.add_subcommand("filter", "Filter a volume and write what becomes of it");
+  filter->add_option("FILE", arguments->input, "a .vdb file, or - for standard input")->required();
+  filter
+      ->add_option("-o,--output", arguments->output,
+                   "the .vdb file to write, which has the filtered grid alone, or - for standard "
+                   "output")
+      ->required();
+  filter->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
+  addFilterOptions(*filter, arguments->filters);
+  addIsovalueOption(*filter, arguments->isovalue);
+  addInsideOption(*filter, arguments->meshing.inside);
+  addNonFiniteOption(*filter, arguments->meshing.nonFinite);
+  addThreadsOption(*filter, arguments->meshing.threads);
+  filter->add_flag("--json", arguments->json, "one JSON object on standard output");
+  filter->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
+  filter->callback([arguments, filter, &chosen] {
+    chosen = [arguments, filter] {
+      orderFilters(*filter, arguments->filters);
+      return runFilter(*arguments);
+    };
+  });
+}
+
+}  // namespace tufa::tools
