@@ -26,8 +26,7 @@ struct Declared {
 };
 
 constexpr std::array<Declared, 9> kDeclared = {{
-    {"smooth",
-     "smooth the values: gaussian, mean, median or curvature, with :N for N times"},
+    {"smooth", "smooth the values: gaussian, mean, median or curvature, with :N for N times"},
     {"offset",
      "move the surface of a level set outward, or inward below 0: in voxels, or with the suffix w "
      "in world units"},

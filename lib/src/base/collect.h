@@ -27,4 +27,16 @@ template <class Add>
   return all;
 }
 
+/// The numbers below `count` for which isWanted(number), in rising order. In parallel.
+template <class IsWanted>
+[[nodiscard]] std::vector<std::uint32_t> collectIf(Job& job, std::size_t count, std::size_t grain,
+                                                   const IsWanted& isWanted) {
+  return collectSorted(job, count, grain,
+                       [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& own) {
+                         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+                           if (isWanted(i)) own.push_back(i);
+                         }
+                       });
+}
+
 }  // namespace tufa::base

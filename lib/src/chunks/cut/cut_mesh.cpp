@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/collect.h"
 #include "base/single_precision.h"
 #include "base/vec3.h"
 #include "chunks/cut/flip_caps.h"
@@ -132,13 +133,12 @@ class Cutter {
           target[v] = plane;
       }
     });
-    std::vector<std::uint32_t> touched;
-    for (std::uint32_t t = 0; t < out_.mesh.triangles.size(); ++t) {
-      const auto& v = out_.mesh.triangles[t].vertices;
-      if (std::any_of(v.begin(), v.end(), [&](VertexIndex i) { return target[i] != kStays; })) {
-        touched.push_back(t);
-      }
-    }
+    const std::vector<std::uint32_t> touched =
+        base::collectIf(job_, out_.mesh.triangles.size(), kGrain, [&](std::uint32_t t) {
+          const auto& v = out_.mesh.triangles[t].vertices;
+          return std::any_of(v.begin(), v.end(),
+                             [&](VertexIndex i) { return target[i] != kStays; });
+        });
     const auto turns = [&](std::uint32_t t) {
       Vec3 before[3], after[3];
       bool isTouched = false;

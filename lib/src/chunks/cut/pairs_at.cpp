@@ -5,8 +5,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/collect.h"
+
 namespace tufa::chunks {
 namespace {
+
+constexpr std::size_t kGrain = 8192;
 
 // Calls visit(place in a table of that size, a power of two) for the cubes of the lattice that a
 // triangle is in, by a hash, until it returns true. Whether it did.
@@ -39,19 +43,15 @@ bool visitCubes(const Triangle& triangle, const std::vector<Vec3>& at, std::size
 // the same hash. Rising.
 std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
                                          const std::vector<Vec3>& at,
-                                         const std::vector<std::uint32_t>& some) {
+                                         const std::vector<std::uint32_t>& some, base::Job& job) {
   const std::size_t size = std::bit_ceil(64 * some.size());
   std::vector<std::uint8_t> isMarked(size, 0);
   for (const std::uint32_t t : some) {
     (void)visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] = 1, false; });
   }
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const bool isNear =
-        visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] != 0; });
-    if (isNear) near.push_back(t);
-  }
-  return near;
+  return base::collectIf(job, triangles.size(), kGrain, [&](std::uint32_t t) {
+    return visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] != 0; });
+  });
 }
 
 }  // namespace
@@ -61,13 +61,13 @@ std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& tri
                                                 const std::vector<Vec3>& places,
                                                 const std::vector<std::uint8_t>& marks,
                                                 base::Job& job) {
-  std::vector<std::uint32_t> touched;
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const auto& v = triangles[t].vertices;
-    if (marks[v[0]] != 0 || marks[v[1]] != 0 || marks[v[2]] != 0) touched.push_back(t);
-  }
+  const std::vector<std::uint32_t> touched =
+      base::collectIf(job, triangles.size(), kGrain, [&](std::uint32_t t) {
+        const auto& v = triangles[t].vertices;
+        return (marks[v[0]] | marks[v[1]] | marks[v[2]]) != 0;
+      });
   if (touched.empty()) return {};
-  const std::vector<std::uint32_t> near = trianglesNear(triangles, at, touched);
+  const std::vector<std::uint32_t> near = trianglesNear(triangles, at, touched, job);
   Mesh mesh;
   mesh.positions.assign(places.begin(), places.end());
   mesh.triangles.reserve(near.size());
