@@ -57,7 +57,6 @@ int runFilter(const FilterArguments& arguments) {
   requireFilters(arguments);
   std::shared_ptr<openvdb::GridBase> grid = readVolume(arguments.input, arguments.grid);
   requireVoxels(*grid, arguments.input);
-  if (!arguments.grid && !arguments.quiet) noteChoice(arguments.input, nameOf(*grid));
   ContourOptions meshing = arguments.meshing;
   if (hasInside(arguments.filters)) {
     meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
@@ -68,6 +67,7 @@ int runFilter(const FilterArguments& arguments) {
     grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run);
   }
   requireLeft(*grid, arguments.input, run);
+  if (!arguments.grid && !arguments.quiet) noteChoice(arguments.input, nameOf(*grid));
   ContourReport report;
   report.nonFiniteValues = run.nonFiniteValues();
   noteData(report);
