@@ -31,11 +31,13 @@ struct FilterArguments {
   bool quiet = false;
 };
 
-/// Whether a filter asks which side of the surface is inside.
-bool hasInside(const FilterWords& words) {
-  return std::any_of(words.inOrder.begin(), words.inOrder.end(), [](const FilterWord& word) {
-    return word.option == "keep-largest" || word.option == "min-component";
-  });
+/// Whether it matters which side of the surface is inside: to components, and to what NaN becomes.
+bool needsInside(const FilterArguments& arguments) {
+  const auto& words = arguments.filters.inOrder;
+  return arguments.meshing.nonFinite == NonFinite::Outside ||
+         std::any_of(words.begin(), words.end(), [](const FilterWord& word) {
+           return word.option == "keep-largest" || word.option == "min-component";
+         });
 }
 
 /// Throws Error(InvalidArgument) where there is nothing to do.
@@ -44,9 +46,10 @@ void requireFilters(const FilterArguments& arguments) {
     throw Error(ErrorCode::InvalidArgument,
                 "a filter is needed, such as --smooth mean or --keep-largest 1");
   }
-  if (!hasInside(arguments.filters) && arguments.isovalue) {
+  if (arguments.isovalue && !needsInside(arguments)) {
     throw Error(ErrorCode::InvalidArgument,
-                "--iso is for --keep-largest and --min-component: other filters have no use of it");
+                "--iso is for --keep-largest, --min-component and --nan outside: nothing else here "
+                "depends on it");
   }
 }
 
@@ -58,7 +61,7 @@ int runFilter(const FilterArguments& arguments) {
   std::shared_ptr<openvdb::GridBase> grid = readVolume(arguments.input, arguments.grid);
   requireVoxels(*grid, arguments.input);
   ContourOptions meshing = arguments.meshing;
-  if (hasInside(arguments.filters)) {
+  if (needsInside(arguments)) {
     meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
   }
   FilterRun run;

@@ -156,6 +156,7 @@ TEST_F(FilterOptions, FilterSaysWhatIsWrong) {
   EXPECT_EQ(run("filter fog.vdb -o g.vdb --smooth mean").exitCode, 0);
   expectFailure("filter fog.vdb -o n.vdb --keep-largest 1", 2, "needs --iso");
   EXPECT_EQ(run("filter fog.vdb -o g.vdb --keep-largest 1 --iso 0.5").exitCode, 0);
+  EXPECT_EQ(run("filter fog.vdb -o g.vdb --smooth mean --nan outside --iso 0.5").exitCode, 0);
   expectFailure("filter d.vdb -o n.vdb", 2, "a filter is needed");
   expectFailure("filter d.vdb -o n.vdb --smooth mean --iso 0", 2, "--iso is for");
   expectFailure("filter d.vdb -o n.ply --smooth mean", 2, "n.ply");
