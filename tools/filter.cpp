@@ -2,6 +2,7 @@
 
 #include <tufa/contour.h>
 #include <tufa/error.h>
+#include <tufa/io.h>
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -40,7 +41,7 @@ bool needsInside(const FilterArguments& arguments) {
          });
 }
 
-/// Throws Error(InvalidArgument) where there is nothing to do.
+/// Throws Error(InvalidArgument) where there is no filter, or an isovalue that nothing depends on.
 void requireFilters(const FilterArguments& arguments) {
   if (arguments.filters.inOrder.empty()) {
     throw Error(ErrorCode::InvalidArgument,
@@ -53,6 +54,18 @@ void requireFilters(const FilterArguments& arguments) {
   }
 }
 
+/// The value on the surface. Throws Error(InvalidArgument) where a level set's 0 is not it and none
+/// is given: filters do not tell which one they took.
+std::optional<double> isovalueOf(const FilterArguments& arguments, const openvdb::GridBase& grid) {
+  const auto value = readIsovalue(arguments.isovalue, grid, arguments.input);
+  if (arguments.isovalue || describeGrid(grid).gridClass == "level set") return value;
+  throw Error(ErrorCode::InvalidArgument,
+              "grid \"" + nameOf(grid) + "\" in " + shownInput(arguments.input) +
+                  " is no level set: --keep-largest, --min-component and --nan outside need --iso, "
+                  "the value on the surface, or --iso auto for half way between the least and the "
+                  "greatest one");
+}
+
 int runFilter(const FilterArguments& arguments) {
   keepApart(arguments.output);
   requireVolumeOutput(arguments.output);
@@ -61,9 +74,7 @@ int runFilter(const FilterArguments& arguments) {
   std::shared_ptr<openvdb::GridBase> grid = readVolume(arguments.input, arguments.grid);
   requireVoxels(*grid, arguments.input);
   ContourOptions meshing = arguments.meshing;
-  if (needsInside(arguments)) {
-    meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
-  }
+  if (needsInside(arguments)) meshing.isovalue = isovalueOf(arguments, *grid);
   FilterRun run;
   {
     ProgressBar bar(arguments.quiet);

@@ -39,7 +39,7 @@ const PageText& pageText(const std::string& subcommand) {
       {"filter",
        {"Filters a volume, as tufa mesh, tufa lod and tufa chunks do before they mesh, and writes "
         "it.",
-        {{"tufa filter scan.vdb -o clean.vdb --smooth gaussian --keep-largest 1",
+        {{"tufa filter scan.vdb -o clean.vdb --iso 300 --smooth gaussian --keep-largest 1",
           "smoothed, and of its largest component alone"}}}},
       {"mesh",
        {"Meshes the surface of a volume at a value. The mesh is adaptive, closed, 2-manifold and "

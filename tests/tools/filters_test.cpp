@@ -146,7 +146,7 @@ TEST_F(FilterOptions, FilterWritesWhatOtherCommandsMesh) {
   report("mesh f.vdb -o a.ply");
   report("mesh d.vdb -o b.ply" + words);
   EXPECT_EQ(test::readBytes(folder / "a.ply"), test::readBytes(folder / "b.ply"));
-  const Outcome outcome = run("filter d.vdb -o - --grid half --smooth mean", "", "");
+  const Outcome outcome = run("filter d.vdb -o - --grid half --smooth mean");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_NE(outcome.err.find("smooth mean: "), std::string::npos) << outcome.err;
 }
@@ -157,6 +157,13 @@ TEST_F(FilterOptions, FilterSaysWhatIsWrong) {
   expectFailure("filter fog.vdb -o n.vdb --keep-largest 1", 2, "needs --iso");
   EXPECT_EQ(run("filter fog.vdb -o g.vdb --keep-largest 1 --iso 0.5").exitCode, 0);
   EXPECT_EQ(run("filter fog.vdb -o g.vdb --smooth mean --nan outside --iso 0.5").exitCode, 0);
+  auto other = FloatGrid::create(0);
+  other->fill(openvdb::CoordBBox(0, 0, 0, 7, 7, 7), 100);
+  other->setName("other");
+  writeGrids({other}, folder / "o.vdb");
+  expectFailure("filter o.vdb -o n.vdb --keep-largest 1", 2, "is no level set");
+  EXPECT_EQ(run("filter o.vdb -o g.vdb --keep-largest 1 --iso 50").exitCode, 0);
+  EXPECT_EQ(run("filter o.vdb -o g.vdb --keep-largest 1 --iso auto").exitCode, 0);
   expectFailure("filter d.vdb -o n.vdb", 2, "a filter is needed");
   expectFailure("filter d.vdb -o n.vdb --smooth mean --iso 0", 2, "--iso is for");
   expectFailure("filter d.vdb -o n.ply --smooth mean", 2, "n.ply");
