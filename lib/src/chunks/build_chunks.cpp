@@ -165,15 +165,42 @@ class ChunkBuilder {
     // positions; and what is parted later only, costs errors, triangles and time.
     contour.repair = true;
     const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_));
+    ChunkIndex index;
+    Ground ground = prepare(contour, index);
+    if (ground.cut.chunks.empty()) return index;
+    chunks::partRounded(ground.cut, ground.affine, ground.isSingle, job_);
+    chunks::keepApart(ground.cut, ground.affine, ground.isSingle, job_);
+    // The farthest that a vertex moves to the lattice.
+    ground.cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
+    makeLevels(ground, rule, index.tolerances);
+    job_.beginStage("chunks", 1);
+    if (index.step > 0 && !chunks::moveToLattice(levels_, index.step)) {
+      index.step = 0;
+      index.compression = GlbCompression::None;
+    }
+    handOut(ground.cut, index);
+    return index;
+  }
+
+ private:
+  // What LODs are made of.
+  struct Ground {
+    chunks::CutMesh cut;  ///< without chunks if there is no surface
+    grid::Affine affine;
+    bool isSingle;  ///< positions are written in single precision
+  };
+
+  // Cuts the uniform mesh. What is known of its cells is not needed beyond that.
+  Ground prepare(const ContourOptions& contour, ChunkIndex& index) {
     job_.beginStage("blocks", kEnds.blocks);
     const refine::SurfaceModel model(grid::openVolume(grid_, contour, job_), contour, kEnds, job_);
     report_ = model.report();
     const grid::Volume& volume = model.surface().volume;
-    ChunkIndex index = describe(volume, options_);
+    index = describe(volume, options_);
     index.grid = grid::nameOf(grid_);
     const bool isSingle = fitsSinglePrecision(volume.blocks, volume.transform);
     if (!isSingle) index.origin = middleOf(volume.blocks, volume.transform);
-    if (model.mesh().positions.empty()) return index;
+    if (model.mesh().positions.empty()) return {{}, model.affine(), isSingle};
     job_.beginStage("cut", kCutEnd);
     chunks::CutMesh cut =
         chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, isSingle, job_);
@@ -181,25 +208,13 @@ class ChunkBuilder {
       cut.isNew.assign(cut.isNew.size(), 1);  // triangles of the uniform mesh intersect
       cut.isParted = false;
     }
-    chunks::partRounded(cut, model.affine(), isSingle, job_);
-    chunks::keepApart(cut, model.affine(), isSingle, job_);
-    // The farthest that a vertex moves to the lattice.
-    cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
-    makeLevels(cut, model, rule, isSingle, index.tolerances);
-    job_.beginStage("chunks", 1);
-    if (index.step > 0 && !chunks::moveToLattice(levels_, index.step)) {
-      index.step = 0;
-      index.compression = GlbCompression::None;
-    }
-    handOut(cut, index);
-    return index;
+    return {std::move(cut), model.affine(), isSingle};
   }
 
- private:
-  void makeLevels(const chunks::CutMesh& cut, const refine::SurfaceModel& model,
-                  const octree::CutRule& rule, bool isSingle,
+  void makeLevels(const Ground& ground, const octree::CutRule& rule,
                   const std::vector<double>& tolerances) {
-    chunks::ChunkChain chain(cut, model, rule, options_.chunkSize, isSingle, job_);
+    chunks::ChunkChain chain(ground.cut, ground.affine, rule, options_.chunkSize, ground.isSingle,
+                             job_);
     for (std::size_t i = 0; i < tolerances.size(); ++i) {
       const double share = static_cast<double>(i + 1) / static_cast<double>(tolerances.size());
       job_.beginStage("level " + std::to_string(i),

@@ -69,13 +69,6 @@ float shareOf(Index phase) {
   return 0.3f + 0.4f * (turns - std::floor(turns));
 }
 
-Surface surfaceOf(const ReferenceMesh& reference, const Options& options, base::Job& job) {
-  Surface surface = makeSurface(reference.positions(), reference.faces(), job);
-  surface.rounded = options.rounded;
-  locateAll(surface, reference, {}, job);
-  return surface;
-}
-
 // Divides scales by the largest one and returns that; 1 if there are none, or none above 0. So a
 // tolerance in here is the largest anywhere, which phases and clearances go by.
 float takeLargest(std::vector<float>& scales) {
@@ -143,7 +136,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   keepsShape_ = true;
   const float toleranceBefore = tolerance_;
   std::optional<Surface> before;
-  if (!isReference_ || surface_.hasLines()) before = surface_;
+  if (!isReference_ || lines == LineMode::Alone) before = surface_;
   trees_.clear();
   for (attempt_ = 0;; ++attempt_) {
     nextTree_ = 0;
@@ -154,13 +147,19 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     if (held.empty() || attempt_ == options_.attempts) break;
     reference_.hold(held, kHeldTolerances * tolerance + kHeldVoxels, heldShareOf(tolerance));
     tolerance_ = toleranceBefore;
-    if (before) {
-      surface_ = *before;
-    } else {
-      surface_ = surfaceOf(reference_, options_, job_);
-    }
+    surface_ = before ? *before : wholeSurface();
   }
   reference_.releaseAll();
+}
+
+// The surface as it was while the mesh was the reference: made again, as a copy of all its vertices
+// would take as much memory as all else.
+Surface Reduction::wholeSurface() const {
+  Surface surface = makeSurface(reference_.positions(), reference_.faces(), job_);
+  surface.rounded = options_.rounded;
+  locateAll(surface, reference_, {}, job_);
+  if (regions_) reduce::setRegions(surface, regions_(), job_);
+  return surface;
 }
 
 // The faces of the reference below the corners of some triangles.
@@ -173,7 +172,10 @@ void Reduction::addFacesNear(const std::vector<Index>& triangles, std::vector<In
   }
 }
 
-void Reduction::setRegions(const Regions& regions) { reduce::setRegions(surface_, regions, job_); }
+void Reduction::setRegions(std::function<Regions()> regions) {
+  regions_ = std::move(regions);
+  reduce::setRegions(surface_, regions_(), job_);
+}
 
 // Names all vertices, and forgets what went where in the step before.
 void Reduction::beginLines() {

@@ -95,8 +95,9 @@ class Reduction {
   Reduction(const Reduction&) = delete;
   Reduction& operator=(const Reduction&) = delete;
 
-  /// Divides the input into regions, whose lines are kept from then on. To be called first.
-  void setRegions(const Regions& regions);
+  /// Divides the input into regions, whose lines are kept from then on. To be called first. They
+  /// are asked for again where the input is.
+  void setRegions(std::function<Regions()> regions);
 
   /// As few triangles as can be found within `tolerance` voxels of the reference. Below
   /// kLeastTolerance nothing is done.
@@ -150,6 +151,7 @@ class Reduction {
                          base::Job& job);
   [[nodiscard]] State state() const;
   void restore(const State& state);
+  [[nodiscard]] Surface wholeSurface() const;
   void descendTo(float tolerance, Index count);
   float toCountWithin(Index count, float mostTolerance);
   bool findCount(Index count, float mostTolerance);
@@ -165,6 +167,7 @@ class Reduction {
 
   Options options_;
   base::Job& job_;
+  std::function<Regions()> regions_;  ///< empty without regions
   Surface surface_;
   ReferenceMesh reference_;
   Partition partition_;

@@ -50,7 +50,7 @@ struct Reducer {
       : input(std::move(mesh)), reduction(input.input(), input.input(), {}, {}, {}, job) {
     Regions regions = halvesOf(input);
     regions.normals = std::move(normals);
-    reduction.setRegions(regions);
+    reduction.setRegions([regions] { return regions; });
   }
 
   [[nodiscard]] std::set<Index> lineSources() const {
@@ -234,7 +234,7 @@ TEST(Lines, NeverVanishWithTheirRegion) {
   }
   base::Job job(1, {});
   Reduction reduction(ball.input(), ball.input(), {}, {}, {}, job);
-  reduction.setRegions(regions);
+  reduction.setRegions([&] { return regions; });
   for (const float tolerance : {0.5f, 2.0f, 6.0f}) {
     reduction.toTolerance(tolerance, LineMode::Alone);
     reduction.toTolerance(tolerance, LineMode::Held);

@@ -20,11 +20,10 @@ constexpr double kDepth = 2e-3;
 
 }  // namespace
 
-ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
-                       const octree::CutRule& rule, int chunkSize, bool singlePrecision,
-                       base::Job& job)
+ChunkChain::ChunkChain(const CutMesh& cut, const grid::Affine& affine, const octree::CutRule& rule,
+                       int chunkSize, bool singlePrecision, base::Job& job)
     : cut_(cut),
-      model_(model),
+      affine_(affine),
       chunkSize_(chunkSize),
       singlePrecision_(singlePrecision),
       curveVertices_(static_cast<VertexIndex>(cut.mesh.positions.size())) {
@@ -44,9 +43,9 @@ ChunkChain::ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model,
   std::vector<reduce::Index> same(cut.reference.size());
   std::iota(same.begin(), same.end(), 0);
   reduction_.emplace(input, same.empty() ? input : reference, same,
-                     refine::scalesOf(cut.mesh, model.affine(), rule, job),
+                     refine::scalesOf(cut.mesh, affine, rule, job),
                      reduce::optionsForAngle(rule.minAngle), job);
-  reduction_->setRegions(regionsOf());
+  reduction_->setRegions([this] { return regionsOf(); });
   const reduce::Surface& surface = reduction_->surface();
   kinds_.reserve(input.positions.size());
   for (const reduce::LineVertex& line : surface.line) kinds_.push_back(line.kind);
@@ -56,16 +55,15 @@ reduce::Regions ChunkChain::regionsOf() const {
   reduce::Regions regions;
   regions.ofTriangle = cut_.chunkOf;
   regions.planes = cut_.planesOf;
-  const grid::Affine& affine = model_.affine();
   for (const ChunkPlane& plane : cut_.planes) {
     float gradient[3] = {};
     gradient[plane.axis] = 1;
-    regions.normals.emplace_back(Vec3(affine.normal(gradient[0], gradient[1], gradient[2])));
+    regions.normals.emplace_back(Vec3(affine_.normal(gradient[0], gradient[1], gradient[2])));
   }
-  regions.mayHold = [this, &affine](reduce::Index region, reduce::Index plane, Vec3f place, Vec3f a,
-                                    Vec3f b) {
+  regions.mayHold = [this](reduce::Index region, reduce::Index plane, Vec3f place, Vec3f a,
+                           Vec3f b) {
     const Coord& chunk = cut_.chunks[region];
-    const auto latticeOf = [&](Vec3f p) { return affine.latticePoint(positionOf(p), Coord(0)); };
+    const auto latticeOf = [&](Vec3f p) { return affine_.latticePoint(positionOf(p), Coord(0)); };
     const Vec3 at = latticeOf(place);
     bool isDeep = true;
     double depth[6];
@@ -92,11 +90,11 @@ reduce::Regions ChunkChain::regionsOf() const {
 }
 
 Vec3f ChunkChain::localOf(const Position& p) const {
-  return Vec3f((Vec3(p) - middle_) * (1 / model_.affine().voxelSize()));
+  return Vec3f((Vec3(p) - middle_) * (1 / affine_.voxelSize()));
 }
 
 Position ChunkChain::positionOf(const Vec3f& local) const {
-  const Vec3 p = middle_ + Vec3(local) * model_.affine().voxelSize();
+  const Vec3 p = middle_ + Vec3(local) * affine_.voxelSize();
   return {p[0], p[1], p[2]};
 }
 
@@ -176,7 +174,7 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
     p = positionOf(reduced.positions[v]);
     level.normals.push_back(normalOn(cut_.mesh.triangles[reduced.faces[v]], Vec3(p)));
   }
-  p = model_.affine().toWorld(p);
+  p = affine_.toWorld(p);
   level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);
 }
 

@@ -9,9 +9,9 @@
 #include "base/job.h"
 #include "base/vec3f.h"
 #include "chunks/cut/cut_mesh.h"
+#include "grid/affine.h"
 #include "octree/cut_rule.h"
 #include "reduce/reduction.h"
-#include "refine/surface_model.h"
 
 namespace tufa::chunks {
 
@@ -48,7 +48,7 @@ struct ChainLevel {
 class ChunkChain {
  public:
   /// All arguments must outlive this.
-  ChunkChain(const CutMesh& cut, const refine::SurfaceModel& model, const octree::CutRule& rule,
+  ChunkChain(const CutMesh& cut, const grid::Affine& affine, const octree::CutRule& rule,
              int chunkSize, bool singlePrecision, base::Job& job);
 
   /// Makes the next LOD, and completes the one before with what stands for its vertices.
@@ -65,7 +65,7 @@ class ChunkChain {
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 
   const CutMesh& cut_;
-  const refine::SurfaceModel& model_;
+  const grid::Affine& affine_;
   int chunkSize_;
   bool singlePrecision_;
   Vec3 middle_{0.0};
