@@ -33,6 +33,7 @@ class ModelOf {
     model_.buildClusters(rule_, job_);
   }
 
+  [[nodiscard]] refine::SurfaceModel& model() { return model_; }
   [[nodiscard]] const refine::SurfaceModel& model() const { return model_; }
   [[nodiscard]] const Mesh& mesh() const { return model_.mesh(); }
   [[nodiscard]] const octree::CutRule& rule() const { return rule_; }

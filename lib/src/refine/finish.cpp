@@ -30,8 +30,8 @@ void askOrigins(const Ask& ask, const std::vector<std::uint32_t>& origins,
 }
 
 // The source of a mesh in world space. Vertices of larger cells stay where they are.
-Source worldSource(const SurfaceModel& model, const ExtractedMesh& extracted, base::Job& job) {
-  const Source base = sourceOf(model.surface(), job);
+Source worldSource(SurfaceModel& model, const ExtractedMesh& extracted, base::Job& job) {
+  const Source base = sourceOf(model.withCells(job), job);
   const grid::Affine& affine = model.affine();
   const auto toWorld = [&affine](std::vector<Position> points) {
     for (Position& point : points) point = affine.toWorld(point);
@@ -77,8 +77,8 @@ std::vector<intersect::PolygonIndex> candidatesOf(const ExtractedMesh& extracted
 
 }  // namespace
 
-double finishMesh(const SurfaceModel& model, const ContourOptions& options,
-                  ExtractedMesh& extracted, ContourReport& report, base::Job& job) {
+double finishMesh(SurfaceModel& model, const ContourOptions& options, ExtractedMesh& extracted,
+                  ContourReport& report, base::Job& job) {
   const grid::Affine& affine = model.affine();
   Mesh& mesh = extracted.mesh;
   double moved = 0;

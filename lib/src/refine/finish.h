@@ -12,7 +12,7 @@ namespace tufa::refine {
 /// and without the self-intersections that rounding makes or only additional vertices remove.
 /// Replaces the normals if the options ask for others than the gradient's. Adds to the counts of
 /// the repair in `report`. Returns how far the repair has moved a vertex at most, in voxels.
-double finishMesh(const SurfaceModel& model, const ContourOptions& options,
-                  ExtractedMesh& extracted, ContourReport& report, base::Job& job);
+double finishMesh(SurfaceModel& model, const ContourOptions& options, ExtractedMesh& extracted,
+                  ContourReport& report, base::Job& job);
 
 }  // namespace tufa::refine

@@ -1,8 +1,9 @@
 #include "refine/surface_model.h"
-#include "octree/build_forest.h"
 
 #include <utility>
 
+#include "base/shrink.h"
+#include "octree/build_forest.h"
 #include "refine/repair_rounded.h"
 #include "refine/uniform_repair.h"
 
@@ -10,6 +11,8 @@ namespace tufa::refine {
 SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
                            const uniform::StageEnds& ends, base::Job& job)
     : repairs_(options.repair),
+      ambiguity_(options.ambiguity),
+      cap_(options.cap),
       surface_(uniform::makeUniformSurface(std::move(volume), options, ends, job)),
       report_(uniform::reportOf(surface_)) {
   job.beginStage("repair", ends.repair);
@@ -26,6 +29,21 @@ void SurfaceModel::settle(base::Job& job) {
   report_.movedVertices += repaired.movedVertices;
   report_.flippedDiagonals += repaired.flippedDiagonals;
   report_.intersectionsLeft = repaired.left.size();
+}
+
+void SurfaceModel::releaseCells() {
+  hasCells_ = false;
+  surface_.topology = {};
+  base::release(surface_.mesh.quads);
+}
+
+const uniform::UniformSurface& SurfaceModel::withCells(base::Job& job) {
+  if (!std::exchange(hasCells_, true)) {
+    const grid::Volume& volume = surface_.volume;
+    surface_.topology =
+        uniform::buildCellTopology(volume.blocks, volume.scale, ambiguity_, cap_, job);
+  }
+  return surface_;
 }
 
 void SurfaceModel::buildClusters(const octree::CutRule& rule, base::Job& job) {

@@ -23,6 +23,13 @@ class SurfaceModel {
   SurfaceModel(const SurfaceModel&) = delete;
   SurfaceModel& operator=(const SurfaceModel&) = delete;
 
+  /// Frees what is known of cells, and the quads, of which faces have been made: a third of the
+  /// memory while the mesh is reduced. Neither view() nor buildClusters() may be called from then
+  /// on.
+  void releaseCells();
+  /// The surface with what is known of its cells, which is made again if it was released; quads are
+  /// not.
+  [[nodiscard]] const uniform::UniformSurface& withCells(base::Job& job);
   /// Builds the clusters. To be called once, before forest().
   void buildClusters(const octree::CutRule& rule, base::Job& job);
 
@@ -47,6 +54,9 @@ class SurfaceModel {
   void settle(base::Job& job);
 
   bool repairs_;
+  bool hasCells_ = true;
+  Ambiguity ambiguity_;
+  bool cap_;
   uniform::UniformSurface surface_;
   std::vector<intersect::PolygonPair> closePairs_;
   ContourReport report_;

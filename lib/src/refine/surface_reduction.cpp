@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "base/box.h"
+#include "base/connected.h"
 #include "base/polygons.h"
 #include "intersect/surface.h"
 #include "refine/rounding.h"
 #include "refine/tolerance_scales.h"
-#include "topology/misplaced.h"
 
 namespace tufa::refine {
 namespace {
@@ -32,12 +32,6 @@ std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
   return faces;
 }
 
-// One of those, by its number.
-Triangle faceOf(const Mesh& mesh, std::size_t face) {
-  const auto& v = mesh.quads[face / 2].vertices;
-  return face % 2 == 0 ? Triangle{v[0], v[1], v[2]} : Triangle{v[0], v[2], v[3]};
-}
-
 // The normal of the uniform mesh at the point of a face next to p.
 Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
   const Vec3 a(mesh.positions[face.vertices[0]]), b(mesh.positions[face.vertices[1]]),
@@ -56,8 +50,7 @@ Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
 
 }  // namespace
 
-SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutRule& rule,
-                                   base::Job& job)
+SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& rule, base::Job& job)
     : model_(model), rule_(rule), job_(job) {
   const Mesh& mesh = model.mesh();
   base::Box box = base::Box::empty();
@@ -71,7 +64,9 @@ SurfaceReduction::SurfaceReduction(const SurfaceModel& model, const octree::CutR
       positions[i] = Vec3f((Vec3(mesh.positions[i]) - middle_) * perVoxel);
     }
   });
-  const reduce::InputMesh input{std::move(positions), facesOf(mesh, job)};
+  faces_ = facesOf(mesh, job);
+  model.releaseCells();
+  const reduce::InputMesh input{std::move(positions), faces_};
   reduce::Options options = reduce::optionsForAngle(rule.minAngle);
   if (model.repairs()) {
     options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
@@ -168,7 +163,7 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
     mesh.positions[i] = positionOf(reduced, i);
     mesh.normals[i] = source != reduce::kNone
                           ? base.normals[source]
-                          : normalOn(base, faceOf(base, reduced.faces[i]), Vec3(mesh.positions[i]));
+                          : normalOn(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
   }
   mesh.triangles = reduced.triangles;
   extracted.baseQuads.assign(mesh.triangles.size(), octree::kNone);
@@ -184,7 +179,12 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
 void SurfaceReduction::findComponents() {
   if (!components_.empty()) return;
   const Mesh& mesh = model_.mesh();
-  const std::vector<VertexIndex> lowest = topology::connectedComponentsOf(mesh);
+  const std::vector<VertexIndex> lowest =
+      base::connectedItems(mesh.positions.size(), [&](const auto& connect) {
+        for (const Triangle& face : faces_) {
+          for (const VertexIndex other : face.vertices) connect(face.vertices[0], other);
+        }
+      });
   componentOf_.resize(lowest.size());
   std::vector<base::Box> boxes;
   std::vector<std::size_t> counts;
@@ -214,7 +214,7 @@ void SurfaceReduction::findComponents() {
 
 std::uint32_t SurfaceReduction::componentAt(const reduce::ReducedMesh& reduced,
                                             std::size_t vertex) const {
-  return componentOf_[faceOf(model_.mesh(), reduced.faces[vertex]).vertices[0]];
+  return componentOf_[faces_[reduced.faces[vertex]].vertices[0]];
 }
 
 std::vector<std::size_t> SurfaceReduction::trianglesOfComponents(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/shared_array.h"
 #include "base/vec3.h"
 #include "base/vec3f.h"
 #include "octree/cut_rule.h"
@@ -20,8 +21,9 @@ namespace tufa::refine {
 /// kMostRounding at most; so the result is the same wherever in the world the grid lies.
 class SurfaceReduction {
  public:
-  /// The rule's scale holds for all tolerances. All arguments must outlive this.
-  SurfaceReduction(const SurfaceModel& model, const octree::CutRule& rule, base::Job& job);
+  /// The rule's scale holds for all tolerances. All arguments must outlive this. Releases the
+  /// model's cells.
+  SurfaceReduction(SurfaceModel& model, const octree::CutRule& rule, base::Job& job);
 
   /// As few triangles as can be found within a tolerance, voxels. `drop`: leave out components
   /// smaller than the tolerance where they lie, but for the largest one.
@@ -54,8 +56,9 @@ class SurfaceReduction {
   const SurfaceModel& model_;
   const octree::CutRule& rule_;
   base::Job& job_;
-  Vec3 middle_{0.0};  ///< of the mesh, counted like its positions
-  double size_ = 0;   ///< diagonal of the mesh's box, voxels
+  Vec3 middle_{0.0};                   ///< of the mesh, counted like its positions
+  double size_ = 0;                    ///< diagonal of the mesh's box, voxels
+  base::SharedArray<Triangle> faces_;  ///< of the uniform mesh
   std::optional<reduce::Reduction> reduction_;
   bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
   std::vector<std::uint32_t> componentOf_;  ///< of each uniform vertex

@@ -20,7 +20,7 @@ constexpr int kSize = 16;
 struct Chain {
   test::ModelOf model{refine::test_ring::ring()};
   CutMesh cut = cutAtChunks(model.mesh(), model.model().affine(), kSize, true, model.job());
-  ChunkChain chain{cut, model.model(), model.rule(), kSize, true, model.job()};
+  ChunkChain chain{cut, model.model().affine(), model.rule(), kSize, true, model.job()};
   std::vector<ChainLevel> levels;
 
   void make(double tolerance) {

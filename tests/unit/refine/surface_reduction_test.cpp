@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "refine/uniform_repair.h"
 #include "support/mesh_oracle.h"
 #include "support/model.h"
 #include "unit/refine/ring.h"
@@ -25,6 +27,7 @@ openvdb::FloatGrid::Ptr twoBalls() {
 struct Reduced {
   test::ModelOf model;
   octree::CutRule rule = model.rule();
+  std::size_t uniformTriangles = model.mesh().triangleCount();
   SurfaceReduction reduction{model.model(), rule, model.job()};
 
   explicit Reduced(openvdb::FloatGrid::ConstPtr grid) : model(std::move(grid)) {}
@@ -32,7 +35,7 @@ struct Reduced {
 
 TEST(SurfaceReduction, KeepsTheToleranceAndTheTopologyFromLevelToLevel) {
   Reduced made(ring());
-  std::size_t before = made.model.mesh().triangleCount();
+  std::size_t before = made.uniformTriangles;
   for (const double tolerance : {0.05, 0.2, 0.6}) {
     const AdaptiveMesh adaptive = made.reduction.toTolerance(tolerance, false);
     EXPECT_LE(adaptive.largestError, tolerance);
@@ -51,7 +54,20 @@ TEST(SurfaceReduction, IsTheUniformMeshAtAToleranceOfZero) {
   EXPECT_EQ(adaptive.largestError, 0);
   EXPECT_EQ(adaptive.meanError, 0);
   EXPECT_EQ(adaptive.extracted.mesh.positions, made.model.mesh().positions);
-  EXPECT_EQ(adaptive.extracted.mesh.triangles.size(), 2 * made.model.mesh().quads.size());
+  EXPECT_EQ(adaptive.extracted.mesh.triangles.size(), made.uniformTriangles);
+}
+
+// Repair of what is left asks for the points that vertices may fall back to.
+TEST(SurfaceReduction, LeavesAModelThatMakesItsCellsAgain) {
+  test::ModelOf model(ring());
+  const std::vector<VertexIndex> some{3, 50, 700};
+  const std::vector<Position> points =
+      sourceOf(model.model().withCells(model.job()), model.job()).massPoints(some);
+  const octree::CutRule rule = model.rule();
+  const SurfaceReduction reduction(model.model(), rule, model.job());
+  EXPECT_EQ(model.model().surface().topology.vertexCount, 0U);
+  EXPECT_EQ(sourceOf(model.model().withCells(model.job()), model.job()).massPoints(some), points);
+  EXPECT_EQ(model.model().surface().topology.vertexCount, model.mesh().positions.size());
 }
 
 TEST(SurfaceReduction, StopsAtANumberOfTriangles) {
