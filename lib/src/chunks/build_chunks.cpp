@@ -166,55 +166,61 @@ class ChunkBuilder {
     contour.repair = true;
     const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_));
     ChunkIndex index;
-    Ground ground = prepare(contour, index);
-    if (ground.cut.chunks.empty()) return index;
-    chunks::partRounded(ground.cut, ground.affine, ground.isSingle, job_);
-    chunks::keepApart(ground.cut, ground.affine, ground.isSingle, job_);
-    // The farthest that a vertex moves to the lattice.
-    ground.cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
-    makeLevels(ground, rule, index.tolerances);
+    Ground ground = makeGround(contour, index);
+    if (ground.uniform.positions.empty()) return index;
+    const chunks::CutMesh cut =
+        makeLevels(cutUniform(ground, index), ground, rule, index.tolerances);
     job_.beginStage("chunks", 1);
     if (index.step > 0 && !chunks::moveToLattice(levels_, index.step)) {
       index.step = 0;
       index.compression = GlbCompression::None;
     }
-    handOut(ground.cut, index);
+    handOut(cut, index);
     return index;
   }
 
  private:
-  // What LODs are made of.
+  // What LODs are made from.
   struct Ground {
-    chunks::CutMesh cut;  ///< without chunks if there is no surface
+    Mesh uniform;  ///< without self-intersections
     grid::Affine affine;
     bool isSingle;  ///< positions are written in single precision
   };
 
-  // Cuts the uniform mesh. What is known of its cells is not needed beyond that.
-  Ground prepare(const ContourOptions& contour, ChunkIndex& index) {
+  // The model, which takes more memory than its mesh, is gone after that.
+  Ground makeGround(const ContourOptions& contour, ChunkIndex& index) {
     job_.beginStage("blocks", kEnds.blocks);
-    const refine::SurfaceModel model(grid::openVolume(grid_, contour, job_), contour, kEnds, job_);
+    refine::SurfaceModel model(grid::openVolume(grid_, contour, job_), contour, kEnds, job_);
     report_ = model.report();
     const grid::Volume& volume = model.surface().volume;
     index = describe(volume, options_);
     index.grid = grid::nameOf(grid_);
     const bool isSingle = fitsSinglePrecision(volume.blocks, volume.transform);
     if (!isSingle) index.origin = middleOf(volume.blocks, volume.transform);
-    if (model.mesh().positions.empty()) return {{}, model.affine(), isSingle};
+    return {model.takeMesh(), model.affine(), isSingle};
+  }
+
+  // Leaves the ground without its mesh.
+  chunks::CutMesh cutUniform(Ground& ground, const ChunkIndex& index) {
     job_.beginStage("cut", kCutEnd);
-    chunks::CutMesh cut =
-        chunks::cutAtChunks(model.mesh(), model.affine(), options_.chunkSize, isSingle, job_);
+    chunks::CutMesh cut = chunks::cutAtChunks(std::move(ground.uniform), ground.affine,
+                                              options_.chunkSize, ground.isSingle, job_);
     if (std::exchange(report_.intersectionsLeft, 0) > 0) {
       cut.isNew.assign(cut.isNew.size(), 1);  // triangles of the uniform mesh intersect
       cut.isParted = false;
     }
-    return {std::move(cut), model.affine(), isSingle};
+    chunks::partRounded(cut, ground.affine, ground.isSingle, job_);
+    chunks::keepApart(cut, ground.affine, ground.isSingle, job_);
+    // The farthest that a vertex moves to the lattice.
+    cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
+    return cut;
   }
 
-  void makeLevels(const Ground& ground, const octree::CutRule& rule,
-                  const std::vector<double>& tolerances) {
-    chunks::ChunkChain chain(ground.cut, ground.affine, rule, options_.chunkSize, ground.isSingle,
-                             job_);
+  // Returns the cut mesh without its triangles.
+  chunks::CutMesh makeLevels(chunks::CutMesh cut, const Ground& ground, const octree::CutRule& rule,
+                             const std::vector<double>& tolerances) {
+    chunks::ChunkChain chain(std::move(cut), ground.affine, rule, options_.chunkSize,
+                             ground.isSingle, job_);
     for (std::size_t i = 0; i < tolerances.size(); ++i) {
       const double share = static_cast<double>(i + 1) / static_cast<double>(tolerances.size());
       job_.beginStage("level " + std::to_string(i),
@@ -224,6 +230,7 @@ class ChunkBuilder {
           chain.next(tolerances[i], levels_.empty() ? nullptr : &levels_.back());
       levels_.push_back(std::move(level));
     }
+    return chain.takeCut();
   }
 
   void handOut(const chunks::CutMesh& cut, ChunkIndex& index) {

@@ -166,10 +166,10 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
   findFaces(s, reference, standsFor, job);
 }
 
-void setRegions(Surface& s, const Regions& regions, base::Job& job) {
+void setRegions(Surface& s, Regions regions, base::Job& job) {
   const Index count = static_cast<Index>(s.position.size());
-  s.region = regions.ofTriangle;
-  s.mayHold = regions.mayHold, s.planeNormals = regions.normals;
+  s.region = std::move(regions.ofTriangle);
+  s.mayHold = std::move(regions.mayHold), s.planeNormals = std::move(regions.normals);
   s.line.assign(count, {});
   s.into.resize(count);
   for (Index v = 0; v < count; ++v) s.into[v] = s.line[v].name = v;

@@ -96,7 +96,7 @@ void locateAll(Surface& surface, const ReferenceMesh& reference, std::span<const
 
 /// Divides a surface that is as it came in into regions, see Regions. Borders' ends are ends of
 /// lines.
-void setRegions(Surface& surface, const Regions& regions, base::Job& job);
+void setRegions(Surface& surface, Regions regions, base::Job& job);
 
 /// What a phase has done to a surface.
 struct SurfaceChanges {

@@ -20,15 +20,16 @@ constexpr double kDepth = 2e-3;
 
 }  // namespace
 
-ChunkChain::ChunkChain(const CutMesh& cut, const grid::Affine& affine, const octree::CutRule& rule,
+ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::CutRule& rule,
                        int chunkSize, bool singlePrecision, base::Job& job)
-    : cut_(cut),
+    : cut_(std::move(cut)),
+      faces_(std::move(cut_.mesh.triangles)),
       affine_(affine),
       chunkSize_(chunkSize),
       singlePrecision_(singlePrecision),
-      curveVertices_(static_cast<VertexIndex>(cut.mesh.positions.size())) {
+      curveVertices_(static_cast<VertexIndex>(cut_.mesh.positions.size())) {
   base::Box box = base::Box::empty();
-  for (const Position& p : cut.mesh.positions) box.add(Vec3(p));
+  for (const Position& p : cut_.mesh.positions) box.add(Vec3(p));
   middle_ = box.centre();
   const auto localsOf = [&](const std::vector<Position>& from) {
     std::vector<Vec3f> local(from.size());
@@ -37,13 +38,12 @@ ChunkChain::ChunkChain(const CutMesh& cut, const grid::Affine& affine, const oct
     });
     return local;
   };
-  const reduce::InputMesh input{localsOf(cut.mesh.positions),
-                                base::SharedArray<Triangle>(cut.mesh.triangles)};
-  const reduce::InputMesh reference{localsOf(cut.reference), input.triangles};
-  std::vector<reduce::Index> same(cut.reference.size());
+  const reduce::InputMesh input{localsOf(cut_.mesh.positions), faces_};
+  const reduce::InputMesh reference{localsOf(cut_.reference), input.triangles};
+  std::vector<reduce::Index> same(cut_.reference.size());
   std::iota(same.begin(), same.end(), 0);
   reduction_.emplace(input, same.empty() ? input : reference, same,
-                     refine::scalesOf(cut.mesh, affine, rule, job),
+                     refine::scalesOf(cut_.mesh, affine, rule, job),
                      reduce::optionsForAngle(rule.minAngle), job);
   reduction_->setRegions([this] { return regionsOf(); });
   const reduce::Surface& surface = reduction_->surface();
@@ -172,7 +172,7 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
     level.normals.push_back(cut_.mesh.normals[source]);
   } else {
     p = positionOf(reduced.positions[v]);
-    level.normals.push_back(normalOn(cut_.mesh.triangles[reduced.faces[v]], Vec3(p)));
+    level.normals.push_back(normalOn(faces_[reduced.faces[v]], Vec3(p)));
   }
   p = affine_.toWorld(p);
   level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/shared_array.h"
 #include "base/vec3f.h"
 #include "chunks/cut/cut_mesh.h"
 #include "grid/affine.h"
@@ -47,12 +48,16 @@ struct ChainLevel {
 /// in another plane: reduction guards that too.
 class ChunkChain {
  public:
-  /// All arguments must outlive this.
-  ChunkChain(const CutMesh& cut, const grid::Affine& affine, const octree::CutRule& rule,
-             int chunkSize, bool singlePrecision, base::Job& job);
+  /// The other arguments must outlive this.
+  ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::CutRule& rule, int chunkSize,
+             bool singlePrecision, base::Job& job);
 
   /// Makes the next LOD, and completes the one before with what stands for its vertices.
   [[nodiscard]] ChainLevel next(double tolerance, ChainLevel* before);
+  /// The cut mesh, without triangles.
+  [[nodiscard]] const CutMesh& cut() const { return cut_; }
+  /// The same, when all LODs are made.
+  [[nodiscard]] CutMesh takeCut() { return std::move(cut_); }
 
  private:
   [[nodiscard]] reduce::Regions regionsOf() const;
@@ -64,7 +69,8 @@ class ChunkChain {
   void setInto(ChainLevel& level);
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 
-  const CutMesh& cut_;
+  CutMesh cut_;  ///< without triangles
+  base::SharedArray<Triangle> faces_;
   const grid::Affine& affine_;
   int chunkSize_;
   bool singlePrecision_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/collect.h"
+#include "base/shrink.h"
 #include "base/single_precision.h"
 #include "base/vec3.h"
 #include "chunks/cut/flip_caps.h"
@@ -43,13 +44,16 @@ constexpr std::size_t kGrain = 16384;
 
 class Cutter {
  public:
-  Cutter(const Mesh& uniform, const grid::Affine& affine, int size, bool singlePrecision,
-         base::Job& job)
-      : uniform_(uniform),
+  Cutter(Mesh uniform, const grid::Affine& affine, int size, bool singlePrecision, base::Job& job)
+      : uniform_(std::move(uniform.positions)),
+        hasNormals_(!uniform.normals.empty()),
         affine_(affine),
         size_(size),
         singlePrecision_(singlePrecision),
-        job_(job) {}
+        job_(job) {
+    out_.mesh.triangles = triangulate(uniform);
+    out_.mesh.normals = std::move(uniform.normals);
+  }
 
   CutMesh run() {
     load();
@@ -76,7 +80,7 @@ class Cutter {
   [[nodiscard]] Place placeOf(int axis, double x) const {
     const double voxel = x + static_cast<double>(affine_.origin()[axis]);
     const auto n = static_cast<std::int64_t>(std::floor(voxel / static_cast<double>(size_)));
-    return x == coordinateOf(axis, n) ? 2 * n : 2 * n + 1;
+    return static_cast<Place>(x == coordinateOf(axis, n) ? 2 * n : 2 * n + 1);
   }
 
   // Whether all triangles at a vertex stay on their sides of the planes if it goes into another.
@@ -89,7 +93,7 @@ class Cutter {
   }
 
   [[nodiscard]] Position positionOf(VertexIndex v) const {
-    if (v < uniform_.positions.size() && moved_[v] == 0) return uniform_.positions[v];
+    if (v < uniform_.size() && moved_[v] == 0) return uniform_[v];
     return affine_.position(affine_.origin(), at_[v][0], at_[v][1], at_[v][2]);
   }
 
@@ -101,12 +105,15 @@ class Cutter {
   }
 
   void load() {
-    out_.mesh.triangles = triangulate(uniform_);
-    out_.mesh.normals = uniform_.normals;
-    at_.resize(uniform_.positions.size());
+    // For the vertices that cuts make, at chunks that are not small: else all would be moved when
+    // the first one is made.
+    const std::size_t room = uniform_.size() + uniform_.size() / 4;
+    at_.reserve(room), place_.reserve(room), moved_.reserve(room);
+    out_.mesh.normals.reserve(hasNormals_ ? room : 0), out_.isNew.reserve(room);
+    at_.resize(uniform_.size());
     job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        at_[v] = affine_.latticePoint(uniform_.positions[v], affine_.origin());
+        at_[v] = affine_.latticePoint(uniform_[v], affine_.origin());
       }
     });
     moved_.assign(at_.size(), 0);
@@ -360,7 +367,7 @@ class Cutter {
     place_.push_back(place);
     moved_.push_back(std::max(moved_[a], moved_[b]));  // of a point between: no more
     out_.isNew.push_back(1);
-    if (!uniform_.normals.empty()) {
+    if (hasNormals_) {
       const Vec3 m = Vec3(out_.mesh.normals[a]) * (1 - share) + Vec3(out_.mesh.normals[b]) * share;
       const Vec3 n = m.unitOrX();
       out_.mesh.normals.emplace_back(static_cast<float>(n[0]), static_cast<float>(n[1]),
@@ -371,8 +378,11 @@ class Cutter {
 
   void finish() {
     Mesh& mesh = out_.mesh;
-    mesh.positions.resize(at_.size());
-    for (VertexIndex v = 0; v < at_.size(); ++v) mesh.positions[v] = positionOf(v);
+    const auto old = static_cast<VertexIndex>(uniform_.size());
+    uniform_.reserve(at_.size());
+    for (VertexIndex v = 0; v < old; ++v) uniform_[v] = positionOf(v);
+    for (VertexIndex v = old; v < at_.size(); ++v) uniform_.push_back(positionOf(v));
+    mesh.positions = std::move(uniform_);
     std::vector<Coord> chunkOf(mesh.triangles.size());
     job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) chunkOf[t] = chunkAt(mesh.triangles[t]);
@@ -388,6 +398,7 @@ class Cutter {
         out_.chunkOf[t] = static_cast<std::uint32_t>(found - out_.chunks.begin());
       }
     });
+    base::release(chunkOf), base::release(at_);
     namePlanes(place_, out_);
   }
 
@@ -406,7 +417,8 @@ class Cutter {
     return chunk;
   }
 
-  const Mesh& uniform_;
+  std::vector<Position> uniform_;
+  bool hasNormals_;
   const grid::Affine& affine_;
   std::int64_t size_;
   bool singlePrecision_;
@@ -421,9 +433,9 @@ class Cutter {
 
 }  // namespace
 
-CutMesh cutAtChunks(const Mesh& uniform, const grid::Affine& affine, int size, bool singlePrecision,
+CutMesh cutAtChunks(Mesh uniform, const grid::Affine& affine, int size, bool singlePrecision,
                     base::Job& job) {
-  return Cutter(uniform, affine, size, singlePrecision, job).run();
+  return Cutter(std::move(uniform), affine, size, singlePrecision, job).run();
 }
 
 }  // namespace tufa::chunks

@@ -45,7 +45,7 @@ struct CutMesh {
 /// triangle: flat faces of parts often lie in such planes but for rounding, and would be shredded.
 /// Short edges that are cut where single precision, if positions are to be written in it, does not
 /// tell their vertices apart are collapsed. Cost: linear, some 100 ns a triangle.
-[[nodiscard]] CutMesh cutAtChunks(const Mesh& uniform, const grid::Affine& affine, int size,
+[[nodiscard]] CutMesh cutAtChunks(Mesh uniform, const grid::Affine& affine, int size,
                                   bool singlePrecision, base::Job& job);
 
 }  // namespace tufa::chunks
