@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "base/job.h"
 
 namespace tufa::base {
@@ -51,7 +52,7 @@ Groups groupBy(std::size_t count, std::size_t groups, const KeyOf& keyOf, const 
     }
     all.first[g + 1] = at;
   }
-  all.members.resize(all.first[groups]);
+  resizeLarge(all.members, all.first[groups], job);
   forNumbers([&](std::uint32_t number, std::uint32_t key, std::uint32_t at) {
     all.members[at] = number;
     place(number, at - all.first[key]);

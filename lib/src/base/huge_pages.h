@@ -13,6 +13,10 @@ namespace tufa::base {
 /// request.
 void adviseHugePages(void* begin, std::size_t bytes);
 
+/// Has the system back memory with pages now, which else happens at the first touch of each, one
+/// after another. Does nothing where the system knows no such request, or has no memory left.
+void populate(void* begin, std::size_t bytes);
+
 /// Reserves room for so many elements, which will be written for the first time one after another.
 template <class T>
 void reserveLarge(std::vector<T>& vector, std::size_t count) {
@@ -20,14 +24,26 @@ void reserveLarge(std::vector<T>& vector, std::size_t count) {
   adviseHugePages(vector.data(), count * sizeof(T));
 }
 
-/// Sizes a vector whose elements a parallel loop will write for the first time. Clearing much
-/// memory takes long, so it is done in steps with checks for cancellation between them.
+/// Reserves room for so many elements, which will all be written, in pages that all threads get.
 template <class T>
-void resizeLarge(std::vector<T>& vector, std::size_t count, Job& job) {
+void reservePopulated(std::vector<T>& vector, std::size_t count, Job& job) {
+  if (vector.capacity() >= count) return;
   constexpr std::size_t kAtOnce = (std::size_t{4} << 20) / sizeof(T) + 1;
   reserveLarge(vector, count);
+  job.forRanges(count / kAtOnce, 1, [&](std::size_t begin, std::size_t end) {
+    populate(vector.data() + begin * kAtOnce, (end - begin) * kAtOnce * sizeof(T));
+  });
+}
+
+/// Sizes a vector whose elements a parallel loop will write for the first time. `values`: those of
+/// new ones, or none. Clearing much memory takes long, so it is done in steps with checks for
+/// cancellation between them.
+template <class T, class... Values>
+void resizeLarge(std::vector<T>& vector, std::size_t count, Job& job, const Values&... values) {
+  constexpr std::size_t kAtOnce = (std::size_t{4} << 20) / sizeof(T) + 1;
+  reservePopulated(vector, count, job);
   while (vector.size() < count) {
-    vector.resize(std::min(count, vector.size() + kAtOnce));
+    vector.resize(std::min(count, vector.size() + kAtOnce), values...);
     job.checkCancelled(0, 1);
   }
 }

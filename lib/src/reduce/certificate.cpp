@@ -101,7 +101,7 @@ class Measure {
         expected_(expected),
         regions_(regions),
         owner_(s.owner),
-        corners_(s.position.size(), s.triangles),
+        corners_(s.position.size(), s.triangles, job),
         opposite_(oppositeCorners(s.triangles, corners_, job)),
         overlay_{s, opposite_} {}
 

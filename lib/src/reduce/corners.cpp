@@ -12,8 +12,10 @@ std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
   return opposite;
 }
 
-CornersOfVertices::CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles)
-    : first(vertexCount + 2, 0), corners(triangles.size() * 3) {
+CornersOfVertices::CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles,
+                                     base::Job& job) {
+  base::resizeLarge(first, vertexCount + 2, job);
+  base::resizeLarge(corners, 3 * triangles.size(), job);
   for (const Triangle& t : triangles) {
     for (const Index v : t.vertices) ++first[v + 2];
   }

@@ -21,7 +21,7 @@ inline constexpr Index kNone = ~Index{0};
 
 /// For each vertex the corners at it, in rising order.
 struct CornersOfVertices {
-  CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles);
+  CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles, base::Job& job);
   [[nodiscard]] std::size_t vertexCount() const { return first.size() - 2; }
   [[nodiscard]] std::span<const Index> of(Index vertex) const {
     return {corners.data() + first[vertex], corners.data() + first[vertex + 1]};

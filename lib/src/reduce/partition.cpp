@@ -50,7 +50,7 @@ void Partition::build(const Surface& surface, const std::vector<Node>& tree, bas
 }
 
 void Partition::begin(const Surface& surface, base::Job& job) {
-  items_.resize(surface.position.size());
+  base::resizeLarge(items_, surface.position.size(), job);
   job.forRanges(items_.size(), kGrain, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       items_[i] = {surface.position[i], static_cast<Index>(i)};
@@ -142,9 +142,9 @@ void Partition::splitAlong(Index node, Index begin, Index end, const Box3f& box)
 
 void Partition::numberVertices(base::Job& job) {
   const std::size_t count = items_.size();
-  base::shrinkTo(vertices_, count);
-  base::shrinkTo(partOf_, count);
-  base::shrinkTo(localVertex_, count);
+  base::shrinkTo(vertices_, count, job);
+  base::shrinkTo(partOf_, count, job);
+  base::shrinkTo(localVertex_, count, job);
   job.forRanges(size(), 1, [&](std::size_t firstPart, std::size_t endPart) {
     for (std::size_t p = firstPart; p < endPart; ++p) {
       const Index begin = ranges_[p], end = ranges_[p + 1];
@@ -160,12 +160,12 @@ void Partition::numberVertices(base::Job& job) {
 
 void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   const std::size_t parts = size(), count = surface.triangles.size();
-  base::shrinkTo(inner_, surface.position.size());
+  base::shrinkTo(inner_, surface.position.size(), job);
   job.forRanges(inner_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
   });
-  partOfTriangle_.resize(count);
-  base::shrinkTo(localTriangle_, surface.isWhole ? 0 : count);
+  base::resizeLarge(partOfTriangle_, count, job);
+  base::shrinkTo(localTriangle_, surface.isWhole ? 0 : count, job);
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const auto& v = surface.triangles[t].vertices;
@@ -199,7 +199,7 @@ void Partition::shareTriangles(const Surface& surface, base::Job& job) {
 }
 
 void Partition::shareSamples(const Surface& surface, base::Job& job) {
-  localSample_.resize(surface.owner.size());
+  base::resizeLarge(localSample_, surface.owner.size(), job);
   samples_ = base::groupBy(
       surface.owner.size(), size(),
       [&](Index r) {

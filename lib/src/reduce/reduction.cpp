@@ -1,10 +1,13 @@
 #include "reduce/reduction.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "base/huge_pages.h"
 #include "reduce/clearance.h"
 #include "reduce/part.h"
 
@@ -96,7 +99,7 @@ Reduction::Meshes Reduction::meshesOf(const InputMesh& input, const InputMesh& r
                                       std::span<const Index> standsFor, std::vector<float> scales,
                                       base::Job& job) {
   const float largestScale = takeLargest(scales);
-  const CornersOfVertices corners(input.positions.size(), input.triangles);
+  const CornersOfVertices corners(input.positions.size(), input.triangles, job);
   Surface surface = makeSurface(input.positions, input.triangles, corners, job);
   if (standsFor.empty()) {
     ReferenceMesh own(surface, corners, std::move(scales), job);
@@ -373,6 +376,19 @@ std::vector<Index> Reduction::quotas(Index count) const {
   return quota;
 }
 
+// The parts, those of much work first, so that threads end at about the same time.
+std::vector<Index> Reduction::largestFirst() const {
+  std::vector<Index> order(partition_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::vector<std::size_t> work(order.size());
+  for (const Index p : order) {
+    work[p] = partition_.vertices(p).size();
+    if (!surface_.isWhole) work[p] += partition_.samples(p).size();
+  }
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return work[a] > work[b]; });
+  return order;
+}
+
 std::unique_ptr<Part> Reduction::takePart() {
   const std::lock_guard<std::mutex> lock(partsMutex_);
   if (parts_.empty()) return std::make_unique<Part>();
@@ -396,15 +412,19 @@ void Reduction::returnPart(std::unique_ptr<Part> part) {
 
 // Parts read what no other part writes, so that their order does not show.
 void Reduction::runPhase(const PhaseLimits& limits, Index count) {
-  std::vector<std::uint8_t> dead(surface_.triangles.size(), 0);
+  std::vector<std::uint8_t> dead;
+  base::resizeLarge(dead, surface_.triangles.size(), job_);
   const std::vector<Index> quota = quotas(count);
   lastCounts_ = {};
-  job_.forRanges(partition_.size(), 1, [&](std::size_t begin, std::size_t end) {
+  const std::vector<Index> order = largestFirst();
+  std::atomic<std::size_t> next{0};
+  job_.forRanges(order.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::unique_ptr<Part> part = takePart();
-    for (std::size_t p = begin; p < end; ++p) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Index p = order[next++];
       PhaseLimits own = limits;
       own.quota = quota[p];
-      part->load(surface_, reference_, partition_, static_cast<Index>(p), own);
+      part->load(surface_, reference_, partition_, p, own);
       if (own.clusters) part->contractClusters();
       part->collapseAll();
       if (limits.flips) part->flipAll();
@@ -418,7 +438,7 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
   surface_.oldForms.insert(surface_.oldForms.end(), lastForms_.begin(), lastForms_.end());
   lastForms_.clear();
   isReference_ = false;
-  apply(surface_, reference_, lastStored_, dead);
+  apply(surface_, reference_, lastStored_, dead, job_);
   lastStored_.clear();
   ++phaseNumber_;
 }

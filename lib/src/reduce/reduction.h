@@ -162,6 +162,7 @@ class Reduction {
   void reduce(float tolerance, Index count, int phases);
   void runPhase(const PhaseLimits& limits, Index count);
   [[nodiscard]] std::vector<Index> quotas(Index count) const;
+  [[nodiscard]] std::vector<Index> largestFirst() const;
   std::unique_ptr<Part> takePart();
   void returnPart(std::unique_ptr<Part> part);
 

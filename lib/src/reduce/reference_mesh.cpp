@@ -2,13 +2,15 @@
 
 #include <utility>
 
+#include "base/huge_pages.h"
+
 namespace tufa::reduce {
 namespace {
 constexpr std::size_t kGrain = 16384;
 }
 
 ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job)
-    : ReferenceMesh(input, CornersOfVertices(input.position.size(), input.triangles),
+    : ReferenceMesh(input, CornersOfVertices(input.position.size(), input.triangles, job),
                     std::move(scales), job) {}
 
 ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corners,
@@ -16,9 +18,9 @@ ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corn
     : positions_(input.position),
       faces_(input.triangles),
       opposite_(oppositeCorners(input.triangles, corners, job)),
-      cornerOf_(input.position.size(), kNone),
-      rough_(input.position.size(), 0),
       scales_(std::move(scales)) {
+  base::resizeLarge(cornerOf_, input.position.size(), job, kNone);
+  base::resizeLarge(rough_, input.position.size(), job);
   job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) {
       if (!corners.of(v).empty()) cornerOf_[v] = corners.of(v).back();

@@ -115,7 +115,7 @@ int linesAt(const Surface& s, std::span<const Index> around) {
 
 Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triangle> triangles,
                     base::Job& job) {
-  const CornersOfVertices corners(positions.size(), triangles);
+  const CornersOfVertices corners(positions.size(), triangles, job);
   return makeSurface(std::move(positions), std::move(triangles), corners, job);
 }
 
@@ -126,7 +126,7 @@ Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triang
   s.position = std::move(positions);
   s.triangles = std::move(triangles);
   base::resizeLarge(s.axis, count, job);
-  s.flags.assign(count, 0);
+  base::resizeLarge(s.flags, count, job);
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) makeVertex(s, corners, v);
   });
@@ -142,7 +142,7 @@ Index faceOf(const Surface& s, const ReferenceMesh& reference, Index vertex) {
 void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index> standsFor,
                base::Job& job) {
   s.isWhole = standsFor.empty();
-  s.owner.assign(reference.positions().size(), kNone);
+  base::resizeLarge(s.owner, reference.positions().size(), job, kNone);
   if (s.isWhole) {
     job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (Index v = static_cast<Index>(begin); v < end; ++v) s.owner[v] = faceOf(s, reference, v);
@@ -152,7 +152,7 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
   s.face.assign(s.position.size(), kNone);
   s.source.resize(s.position.size());
   std::iota(s.source.begin(), s.source.end(), 0);
-  const CornersOfVertices corners(s.position.size(), s.triangles);
+  const CornersOfVertices corners(s.position.size(), s.triangles, job);
   job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index r = static_cast<Index>(begin); r < end; ++r) {
       float nearest = kFar;
@@ -174,7 +174,7 @@ void setRegions(Surface& s, Regions regions, base::Job& job) {
   s.into.resize(count);
   for (Index v = 0; v < count; ++v) s.into[v] = s.line[v].name = v;
   s.intoPlane.assign(count, kNone);
-  const CornersOfVertices corners(count, s.triangles);
+  const CornersOfVertices corners(count, s.triangles, job);
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) {
       const int lines = linesAt(s, corners.of(v));
@@ -189,7 +189,7 @@ void setRegions(Surface& s, Regions regions, base::Job& job) {
 }
 
 void apply(Surface& s, const ReferenceMesh& reference, const std::vector<SurfaceChanges>& changes,
-           const std::vector<std::uint8_t>& dead) {
+           const std::vector<std::uint8_t>& dead, base::Job& job) {
   base::RankedBits leftTriangles(s.triangles.size()), leftVertices(s.position.size());
   for (std::size_t t = 0; t < dead.size(); ++t) {
     if (dead[t] == 0) leftTriangles.add(t);
@@ -232,9 +232,11 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
   for (Triangle& t : triangles) {
     for (Index& v : t.vertices) v = leftVertices.rank(v);
   }
-  for (Index& t : s.owner) {
-    if (t != kNone) t = leftTriangles.rank(t);
-  }
+  job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      if (s.owner[r] != kNone) s.owner[r] = leftTriangles.rank(s.owner[r]);
+    }
+  });
   base::shrinkTo(s.axis, count), base::shrinkTo(s.flags, count);
   if (s.hasLines()) base::shrinkTo(s.region, triangles.size()), base::shrinkTo(s.line, count);
   if (!s.changeOf.empty()) base::shrinkTo(s.changeOf, triangles.size());

@@ -116,6 +116,7 @@ struct SurfaceChanges {
 /// Makes changes, removes the triangles marked in `dead` and the vertices without triangles; the
 /// others keep their order.
 void apply(Surface& surface, const ReferenceMesh& reference,
-           const std::vector<SurfaceChanges>& changes, const std::vector<std::uint8_t>& dead);
+           const std::vector<SurfaceChanges>& changes, const std::vector<std::uint8_t>& dead,
+           base::Job& job);
 
 }  // namespace tufa::reduce

@@ -90,7 +90,7 @@ void CutOverlay::collectTriangles(const std::vector<std::uint8_t>& isCorner) {
   triangles_.positions.resize(mesh_.positions.size());
   forEach(owners_.job, mesh_.positions.size(),
           [&](std::size_t i) { triangles_.positions[i] = owners_.toVoxels(mesh_.positions[i]); });
-  corners_.emplace(mesh_.positions.size(), triangles_.corners);
+  corners_.emplace(mesh_.positions.size(), triangles_.corners, owners_.job);
   triangles_.opposite = reduce::oppositeCorners(triangles_.corners, *corners_, owners_.job);
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/box.h"
 #include "base/connected.h"
+#include "base/huge_pages.h"
 #include "base/polygons.h"
 #include "intersect/surface.h"
 #include "refine/rounding.h"
@@ -21,7 +22,8 @@ constexpr std::size_t kGrain = 16384;
 
 // The triangles of quads, two for each.
 std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
-  std::vector<Triangle> faces(2 * mesh.quads.size());
+  std::vector<Triangle> faces;
+  base::resizeLarge(faces, 2 * mesh.quads.size(), job);
   job.forRanges(mesh.quads.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& v = mesh.quads[i].vertices;
@@ -57,7 +59,8 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
   for (const Position& p : mesh.positions) box.add(Vec3(p));
   middle_ = box.centre();
   size_ = box.size().length() / model.affine().voxelSize();
-  std::vector<Vec3f> positions(mesh.positions.size());
+  std::vector<Vec3f> positions;
+  base::resizeLarge(positions, mesh.positions.size(), job);
   const double perVoxel = 1 / model.affine().voxelSize();
   job.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

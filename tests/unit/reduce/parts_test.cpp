@@ -264,7 +264,7 @@ TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   const ReferenceMesh reference(surfaceOf(mesh, job), {}, job);
   Surface surface = surfaceOf(mesh, job);
   locateAll(surface, reference, {}, job);
-  apply(surface, reference, {}, std::vector<std::uint8_t>(mesh.triangles.size(), 0));
+  apply(surface, reference, {}, std::vector<std::uint8_t>(mesh.triangles.size(), 0), job);
   Partition partition;
   partition.build(surface, 500, 0.5f, job);
   ASSERT_GT(partition.size(), 8U);
@@ -316,7 +316,7 @@ TEST(Surface, AppliesChanges) {
     }
   }
   ASSERT_EQ(std::count(dead.begin(), dead.end(), 1), 2);
-  apply(surface, reference, {changes}, dead);
+  apply(surface, reference, {changes}, dead, job);
   EXPECT_FALSE(surface.isWhole);
   ASSERT_EQ(surface.position.size(), mesh.positions.size() - 1);
   ASSERT_EQ(surface.triangles.size(), mesh.triangles.size() - 2);
