@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/printable.h"
 #include "commands.h"
 #include "console.h"
 #include "file_list.h"
@@ -42,7 +43,16 @@ Json toJson(const GridInfo& info) {
   json["non_finite_values"] = info.nonFiniteValues;
   json["meshable"] = info.meshable;
   json["why_not"] = info.meshable ? Json(nullptr) : Json(info.whyNot);
+  json["metadata"] = Json::object();
+  for (const auto& [name, value] : info.metadata) json["metadata"][name] = value;
   return json;
+}
+
+// Values may be as long as their makers like.
+std::string shownValue(const std::string& value) {
+  constexpr std::size_t kMost = 60;
+  if (value.size() <= kMost) return base::printable(value);
+  return base::printable(value.substr(0, kMost)) + "... (" + formatCount(value.size()) + " bytes)";
 }
 
 std::string describe(const GridInfo& info) {
@@ -73,6 +83,9 @@ std::string describe(const GridInfo& info) {
                             : holdsLabels(info) && info.activeVoxels > 0
                                 ? "by tufa mesh --labels, label by label: " + info.whyNot
                                 : "no: " + info.whyNot);
+  for (const auto& [name, value] : info.metadata) {
+    line("metadata         ", base::printable(name) + " = " + shownValue(value));
+  }
   return text;
 }
 

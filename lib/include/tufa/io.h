@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tufa {
@@ -140,6 +141,9 @@ struct GridInfo {
   std::size_t nonFiniteValues = 0;  ///< NaN or infinite active values
   bool meshable = false;            ///< contour() takes it
   std::string whyNot;               ///< if not, the reason
+  /// What else its maker has noted, as names and values, sorted by name. Without what is told above
+  /// and what OpenVDB counts when it writes a file.
+  std::vector<std::pair<std::string, std::string>> metadata;
 };
 
 /// Describes a grid.

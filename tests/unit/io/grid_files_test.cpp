@@ -77,6 +77,18 @@ TEST(GridFiles, TellGridsOfOneNameApart) {
   EXPECT_EQ(readGrid(folder / "m.vdb", "ball[1]")->activeVoxelCount(), infos[1].activeVoxels);
 }
 
+TEST(GridFiles, TellWhatMakersNote) {
+  const ScratchFolder folder;
+  const auto grid = makeBall("ball");
+  grid->setCreator("a test");
+  grid->insertMeta("frame", openvdb::Int32Metadata(12));
+  writeGrids({grid}, folder / "m.vdb");
+  using Metadata = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(describeGrids(folder / "m.vdb").at(0).metadata,
+            (Metadata{{"creator", "a test"}, {"frame", "12"}}));
+  EXPECT_EQ(describeGrid(*grid).metadata, describeGrids(folder / "m.vdb").at(0).metadata);
+}
+
 TEST(GridFiles, ShareTrees) {
   const ScratchFolder folder;
   const auto grid = makeBall("ball");

@@ -41,6 +41,11 @@ std::string describeClass(openvdb::GridClass gridClass) {
   }
 }
 
+bool isToldElsewhere(const std::string& name) {
+  return name == openvdb::GridBase::META_GRID_NAME || name == openvdb::GridBase::META_GRID_CLASS ||
+         name.starts_with("file_");
+}
+
 /// Adds `count` voxels of one value.
 void addValue(GridInfo& info, double value, std::size_t count) {
   if (!std::isfinite(value)) {
@@ -103,6 +108,11 @@ GridInfo describe(const openvdb::GridBase& grid) {
   info.whyNot = io::whyNotMeshable(grid);
   if (info.whyNot.empty() && info.activeVoxels == 0) info.whyNot = "it has no active voxels";
   info.meshable = info.whyNot.empty();
+  for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta) {
+    if (meta->second && !isToldElsewhere(meta->first)) {
+      info.metadata.emplace_back(meta->first, meta->second->str());
+    }
+  }
   return info;
 }
 
