@@ -109,10 +109,11 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
     return std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},
                                  {6, 2, 1}, {6, 3, 2}, {6, 4, 3}, {6, 5, 4}, {6, 1, 5}};
   };
+  base::Job job(1, {});
   std::vector<Triangle> joined = octahedron();
   std::vector<VertexIndex> changed;
   const auto always = [](VertexIndex, VertexIndex) { return true; };
-  EXPECT_NEAR(joinNearVertices(points, 1e-3, always, joined, changed), 1e-5, 1e-12);
+  EXPECT_NEAR(joinNearVertices(points, 1e-3, always, joined, changed, job), 1e-5, 1e-12);
   EXPECT_EQ(joined.size(), 8U);
   EXPECT_EQ(changed, std::vector<VertexIndex>{4});
   Mesh mesh;
@@ -122,27 +123,28 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
   EXPECT_EQ(test::inspect(mesh).nonManifoldEdges, 0U);
   std::vector<Triangle> kept = octahedron();
   const auto never = [](VertexIndex, VertexIndex) { return false; };
-  EXPECT_EQ(joinNearVertices(points, 1e-3, never, kept, changed), 0);
+  EXPECT_EQ(joinNearVertices(points, 1e-3, never, kept, changed, job), 0);
   EXPECT_EQ(kept, octahedron());
   // An edge of a tetrahedron cannot go, however short.
   const std::vector<Vec3> few = {{0, 0, 0}, {1e-5, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  EXPECT_EQ(joinNearVertices(few, 1e-3, always, tetrahedron, changed), 0);
+  EXPECT_EQ(joinNearVertices(few, 1e-3, always, tetrahedron, changed, job), 0);
   EXPECT_EQ(tetrahedron.size(), 4U);
 }
 
 // The vertex in the middle of an edge of a square's two triangles.
 TEST(FlipCaps, TurnsTheEdgeThatAVertexLiesOn) {
   const std::vector<Vec3> points = {{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, 1e-6, 0}};
+  base::Job job(1, {});
   std::vector<Triangle> triangles = {{0, 1, 2}, {1, 0, 3}};
   std::vector<VertexIndex> changed;
   const std::vector<Triangle> before = triangles;
   flipCaps(
-      points, 1e-4, [](VertexIndex v) { return v == 2; }, triangles, changed);
+      points, 1e-4, [](VertexIndex v) { return v == 2; }, triangles, changed, job);
   EXPECT_EQ(triangles, before);
   EXPECT_TRUE(changed.empty());
   flipCaps(
-      points, 1e-4, [](VertexIndex) { return false; }, triangles, changed);
+      points, 1e-4, [](VertexIndex) { return false; }, triangles, changed, job);
   EXPECT_EQ(changed.size(), 4U);
   ASSERT_EQ(triangles.size(), 2U);
   for (const Triangle& t : triangles) {

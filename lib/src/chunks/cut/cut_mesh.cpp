@@ -186,7 +186,7 @@ class Cutter {
 
   void flipAllCaps() {
     unlessIntersecting([this](const Stays& stays, std::vector<VertexIndex>& changed) {
-      flipCaps(at_, kLeastHeight, stays, out_.mesh.triangles, changed);
+      flipCaps(at_, kLeastHeight, stays, out_.mesh.triangles, changed, job_);
     });
   }
 
@@ -198,7 +198,7 @@ class Cutter {
       const auto mayGo = [&](VertexIndex v, VertexIndex into) {
         return isWanted(v) && isWanted(into) && !stays(v) && !stays(into) && mayGoInto(v, into);
       };
-      longest = joinNearVertices(at_, least, mayGo, out_.mesh.triangles, changed);
+      longest = joinNearVertices(at_, least, mayGo, out_.mesh.triangles, changed, job_);
     });
     joined_ += longest * voxelsOfStep();
   }
@@ -291,12 +291,21 @@ class Cutter {
   // All triangles at the lowest plane that they pass, and what is made of them again.
   void cut(int axis) {
     std::vector<Triangle> rest = std::move(out_.mesh.triangles), done;
-    done.reserve(rest.size() + rest.size() / 8);
+    const std::vector<std::uint32_t> passing =
+        base::collectIf(job_, rest.size(), kGrain, [&](std::uint32_t t) {
+          const auto [low, high] = rangeOf(rest[t], axis);
+          return low + 2 - (low & 1) < high;
+        });
+    done.reserve(rest.size() + 3 * passing.size());
     cuts_.clear();
     std::vector<Triangle> open;
-    for (std::size_t i = 0; i < rest.size(); ++i) {
+    auto next = rest.begin();
+    for (std::size_t i = 0; i < passing.size(); ++i) {
       job_.pollCancelled(i);
-      open.assign(1, rest[i]);
+      const auto at = rest.begin() + passing[i];
+      done.insert(done.end(), next, at);
+      next = at + 1;
+      open.assign(1, *at);
       while (!open.empty()) {
         const Triangle t = open.back();
         open.pop_back();
@@ -309,6 +318,7 @@ class Cutter {
         }
       }
     }
+    done.insert(done.end(), next, rest.end());
     out_.mesh.triangles = std::move(done);
   }
 
@@ -380,7 +390,9 @@ class Cutter {
     Mesh& mesh = out_.mesh;
     const auto old = static_cast<VertexIndex>(uniform_.size());
     uniform_.reserve(at_.size());
-    for (VertexIndex v = 0; v < old; ++v) uniform_[v] = positionOf(v);
+    job_.forRanges(old, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (auto v = static_cast<VertexIndex>(begin); v < end; ++v) uniform_[v] = positionOf(v);
+    });
     for (VertexIndex v = old; v < at_.size(); ++v) uniform_.push_back(positionOf(v));
     mesh.positions = std::move(uniform_);
     std::vector<Coord> chunkOf(mesh.triangles.size());

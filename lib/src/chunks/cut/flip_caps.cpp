@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "base/collect.h"
+
 namespace tufa::chunks {
 namespace {
 
@@ -13,6 +15,7 @@ constexpr int kMostPasses = 4;
 constexpr double kHigher = 8;
 // The square of a height over that of a cap's, above all rounding.
 constexpr double kClearlyHigh = 1.001;
+constexpr std::size_t kGrain = 16384;
 
 std::uint64_t keyOf(VertexIndex from, VertexIndex to) { return std::uint64_t{from} << 32 | to; }
 
@@ -20,25 +23,31 @@ class CapFlipper {
  public:
   CapFlipper(const std::vector<Vec3>& points, double height,
              const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
-             std::vector<VertexIndex>& changed)
-      : points_(points), height_(height), stays_(stays), triangles_(triangles), changed_(changed) {}
+             std::vector<VertexIndex>& changed, base::Job& job)
+      : points_(points),
+        height_(height),
+        stays_(stays),
+        triangles_(triangles),
+        changed_(changed),
+        job_(job) {}
 
   // Whether there were any.
   bool pass() {
-    std::vector<std::uint32_t> caps;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      if (apexOf(triangles_[t]) != kNone) caps.push_back(t);
-    }
+    const std::vector<std::uint32_t> caps =
+        base::collectIf(job_, triangles_.size(), kGrain,
+                        [&](std::uint32_t t) { return apexOf(triangles_[t]) != kNone; });
     if (caps.empty()) return false;
     std::vector<std::uint8_t> isNear(points_.size(), 0);
     for (const std::uint32_t t : caps) {
       for (const VertexIndex v : triangles_[t].vertices) isNear[v] = 1;
     }
     behind_.clear();
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      const auto& v = triangles_[t].vertices;
-      if ((isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0) note(t);
-    }
+    const std::vector<std::uint32_t> near =
+        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+          const auto& v = triangles_[t].vertices;
+          return (isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0;
+        });
+    for (const std::uint32_t t : near) note(t);
     bool isAny = false;
     for (const std::uint32_t t : caps) isAny |= flip(t);
     return isAny;
@@ -112,6 +121,7 @@ class CapFlipper {
   const std::function<bool(VertexIndex)>& stays_;
   std::vector<Triangle>& triangles_;
   std::vector<VertexIndex>& changed_;
+  base::Job& job_;
   std::unordered_map<std::uint64_t, std::uint32_t> behind_;  ///< the triangle left of an edge
 };
 
@@ -119,8 +129,8 @@ class CapFlipper {
 
 void flipCaps(const std::vector<Vec3>& points, double height,
               const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
-              std::vector<VertexIndex>& changed) {
-  CapFlipper flipper(points, height, stays, triangles, changed);
+              std::vector<VertexIndex>& changed, base::Job& job) {
+  CapFlipper flipper(points, height, stays, triangles, changed, job);
   for (int i = 0; i < kMostPasses && flipper.pass(); ++i) {
   }
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/job.h"
 #include "base/vec3.h"
 
 namespace tufa::chunks {
@@ -15,6 +16,6 @@ namespace tufa::chunks {
 /// `changed`.
 void flipCaps(const std::vector<Vec3>& points, double height,
               const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
-              std::vector<VertexIndex>& changed);
+              std::vector<VertexIndex>& changed, base::Job& job);
 
 }  // namespace tufa::chunks

@@ -5,10 +5,14 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/collect.h"
+
 namespace tufa::chunks {
 namespace {
 
 using Edge = std::pair<VertexIndex, VertexIndex>;
+
+constexpr std::size_t kGrain = 16384;
 
 bool has(const Triangle& t, VertexIndex v) {
   return t.vertices[0] == v || t.vertices[1] == v || t.vertices[2] == v;
@@ -18,23 +22,18 @@ class Joiner {
  public:
   Joiner(const std::vector<Vec3>& points, double least,
          const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
-         std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed)
+         std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed, base::Job& job)
       : points_(points),
         least_(least),
         mayGoInto_(mayGoInto),
         triangles_(triangles),
-        changed_(changed) {}
+        changed_(changed),
+        job_(job) {}
 
   double run() {
-    std::vector<Edge> edges;
-    std::unordered_map<VertexIndex, VertexIndex> into;
-    for (const Triangle& t : triangles_) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const VertexIndex a = t.vertices[i], b = t.vertices[(i + 1) % 3];
-        if (a < b && isShort(a, b)) edges.emplace_back(a, b);
-      }
-    }
+    const std::vector<Edge> edges = findEdges();
     if (edges.empty()) return 0;
+    std::unordered_map<VertexIndex, VertexIndex> into;
     findTriangles(edges);
     double longest = 0;
     for (auto [a, b] : edges) {
@@ -58,6 +57,28 @@ class Joiner {
     return (points_[a] - points_[b]).squaredLength() < least_ * least_;
   }
 
+  // Those that are short, of both ends the lower one first.
+  [[nodiscard]] std::vector<Edge> findEdges() const {
+    const auto forShort = [&](std::uint32_t t, const auto& visit) {
+      const auto& v = triangles_[t].vertices;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const VertexIndex a = v[i], b = v[(i + 1) % 3];
+        if (a < b && isShort(a, b)) visit(a, b);
+      }
+    };
+    const std::vector<std::uint32_t> some =
+        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+          bool isAny = false;
+          forShort(t, [&](VertexIndex, VertexIndex) { isAny = true; });
+          return isAny;
+        });
+    std::vector<Edge> edges;
+    for (const std::uint32_t t : some) {
+      forShort(t, [&](VertexIndex a, VertexIndex b) { edges.emplace_back(a, b); });
+    }
+    return edges;
+  }
+
   // Around the ends of short edges.
   void findTriangles(const std::vector<Edge>& edges) {
     std::vector<std::uint8_t> isEnd(points_.size(), 0);
@@ -65,7 +86,12 @@ class Joiner {
       around_[a], around_[b];
       isEnd[a] = isEnd[b] = 1;
     }
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const std::vector<std::uint32_t> near =
+        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+          const auto& v = triangles_[t].vertices;
+          return (isEnd[v[0]] | isEnd[v[1]] | isEnd[v[2]]) != 0;
+        });
+    for (const std::uint32_t t : near) {
       for (const VertexIndex v : triangles_[t].vertices) {
         if (isEnd[v] != 0) around_.at(v).push_back(t);
       }
@@ -118,6 +144,7 @@ class Joiner {
   const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto_;
   std::vector<Triangle>& triangles_;
   std::vector<VertexIndex>& changed_;
+  base::Job& job_;
   std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around_;
 };
 
@@ -125,8 +152,9 @@ class Joiner {
 
 double joinNearVertices(const std::vector<Vec3>& points, double least,
                         const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
-                        std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed) {
-  return Joiner(points, least, mayGoInto, triangles, changed).run();
+                        std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed,
+                        base::Job& job) {
+  return Joiner(points, least, mayGoInto, triangles, changed, job).run();
 }
 
 }  // namespace tufa::chunks

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/job.h"
 #include "base/vec3.h"
 
 namespace tufa::chunks {
@@ -14,6 +15,7 @@ namespace tufa::chunks {
 /// `changed`.
 double joinNearVertices(const std::vector<Vec3>& points, double least,
                         const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
-                        std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed);
+                        std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed,
+                        base::Job& job);
 
 }  // namespace tufa::chunks
