@@ -23,9 +23,8 @@ class SurfaceModel {
   SurfaceModel(const SurfaceModel&) = delete;
   SurfaceModel& operator=(const SurfaceModel&) = delete;
 
-  /// Frees what is known of cells, and the quads, of which faces have been made: a third of the
-  /// memory while the mesh is reduced. Neither view() nor buildClusters() may be called from then
-  /// on.
+  /// Frees what is known of cells, and the quads once faces have been made of them: some thirty
+  /// bytes a cell. Neither view() nor buildClusters() may be called from then on.
   void releaseCells();
   /// The surface with what is known of its cells, which is made again if it was released; quads are
   /// not.
