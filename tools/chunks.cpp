@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "checker.h"
+#include "chunk_writer.h"
 #include "chunks_run.h"
 #include "commands.h"
 #include "console.h"
@@ -161,7 +162,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   requireLeft(*grid, arguments.input, run.filters);
   const ChunkOptions options = chunkOptions(arguments, meshing, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
-  std::map<tufa::Coord, std::vector<ChunkFile>> files;
+  ChunkWriter writer(format, resolveThreads(options.contour.threads));
   std::optional<StagedFolder> staged;
   const AttributeGrids attributes(arguments.input, arguments.attributes);
   const ChunkSink sink = [&](const ChunkIndex& index, Chunk&& chunk) {
@@ -173,11 +174,12 @@ ChunksRun build(const ChunksArguments& arguments) {
     if (run.attributes.empty()) run.attributes = withoutValues(chunk.levels.front().attributes);
     run.writeSeconds += timed([&] {
       if (!staged) staged.emplace(arguments.output);
-      files[chunk.index] = writeChunk(index, chunk, staged->path(), format);
+      writer.add(index, std::move(chunk), staged->path());
     });
   };
   run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
   run.buildSeconds -= run.writeSeconds + run.attributeSeconds;
+  run.writeSeconds += timed([&] { writer.finish(); });
   run.contour.nonFiniteValues += run.filters.nonFiniteValues();
   run.index.attributes = run.attributes;
   if (!arguments.quiet) {
@@ -187,7 +189,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   noteMissing(run.index, options.only);
   if (options.compression != run.index.compression) noteFloats("every level");
   for (ChunkEntry& chunk : run.index.chunks) {
-    const std::vector<ChunkFile>& made = files.at(chunk.index);
+    const std::vector<ChunkFile>& made = writer.files(chunk.index);
     for (std::size_t i = 0; i < made.size(); ++i) {
       chunk.levels[i].file = made[i].name;
       chunk.levels[i].checksum = made[i].checksum;
