@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -40,7 +39,7 @@ void ChunkWriter::finish() {
   others.reserve(most);
   try {
     while (others.size() + 1 < most) others.emplace_back(work);
-  } catch (const std::system_error&) {  // the system has no more threads to give
+  } catch (const std::exception&) {  // no more threads, or no memory for them: fewer do it
   }
   work();
   for (std::thread& other : others) other.join();

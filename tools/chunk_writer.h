@@ -18,7 +18,7 @@ class ChunkWriter {
   /// Takes a chunk to write, and writes those at hand once they are many. Throws Error as
   /// writeChunk() does.
   void add(const ChunkIndex& index, Chunk&& chunk, const std::string& folder);
-  /// Writes what is left.
+  /// Writes what is left. Throws as add() does.
   void finish();
   /// The files of each chunk that is written.
   [[nodiscard]] const std::vector<ChunkFile>& files(const Coord& chunk) const {
