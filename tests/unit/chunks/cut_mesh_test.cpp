@@ -113,7 +113,7 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
   std::vector<Triangle> joined = octahedron();
   std::vector<VertexIndex> changed;
   const auto always = [](VertexIndex, VertexIndex) { return true; };
-  EXPECT_NEAR(joinNearVertices(points, 1e-3, always, joined, changed, job), 1e-5, 1e-12);
+  EXPECT_NEAR(joinNearVertices(points, 1e-3, {}, always, joined, changed, job), 1e-5, 1e-12);
   EXPECT_EQ(joined.size(), 8U);
   EXPECT_EQ(changed, std::vector<VertexIndex>{4});
   Mesh mesh;
@@ -123,12 +123,12 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
   EXPECT_EQ(test::inspect(mesh).nonManifoldEdges, 0U);
   std::vector<Triangle> kept = octahedron();
   const auto never = [](VertexIndex, VertexIndex) { return false; };
-  EXPECT_EQ(joinNearVertices(points, 1e-3, never, kept, changed, job), 0);
+  EXPECT_EQ(joinNearVertices(points, 1e-3, {}, never, kept, changed, job), 0);
   EXPECT_EQ(kept, octahedron());
   // An edge of a tetrahedron cannot go, however short.
   const std::vector<Vec3> few = {{0, 0, 0}, {1e-5, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  EXPECT_EQ(joinNearVertices(few, 1e-3, always, tetrahedron, changed, job), 0);
+  EXPECT_EQ(joinNearVertices(few, 1e-3, {}, always, tetrahedron, changed, job), 0);
   EXPECT_EQ(tetrahedron.size(), 4U);
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -12,25 +12,16 @@
 #include "base/shrink.h"
 #include "base/single_precision.h"
 #include "base/vec3.h"
+#include "chunks/cut/chunk_planes.h"
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
+#include "chunks/cut/move_to_planes.h"
 #include "chunks/cut/name_planes.h"
 #include "chunks/cut/pairs_at.h"
 #include "intersect/surface.h"
 
 namespace tufa::chunks {
 namespace {
-
-// Which vertices are moved to planes.
-struct Move {
-  double distance;    ///< along an axis within which they are, voxels
-  double turnCosine;  ///< unless a triangle turns by more than the angle of this cosine,
-  double leastShare;  ///< or shrinks to less than this share
-};
-
-// Those that are very near also where slivers turn: otherwise edges around them would be cut in
-// places that single precision does not tell apart.
-constexpr Move kMoves[] = {{5e-3, 0.9, 0.25}, {5e-4, 0.05, 0.02}, {2e-5, -2, 0}};
 
 // Voxels; shorter edges are collapsed once they are cut. Slivers are cut in places that single
 // precision does not tell apart.
@@ -48,7 +39,7 @@ class Cutter {
       : uniform_(std::move(uniform.positions)),
         hasNormals_(!uniform.normals.empty()),
         affine_(affine),
-        size_(size),
+        planes_(affine.origin(), size),
         singlePrecision_(singlePrecision),
         job_(job) {
     out_.mesh.triangles = triangulate(uniform);
@@ -57,13 +48,14 @@ class Cutter {
 
   CutMesh run() {
     load();
-    flipAllCaps();
+    flipAllCaps({});
     for (int axis = 0; axis < 3; ++axis) {
+      moveAll(axis);
       setPlaces(axis);
-      for (const Move& move : kMoves) moveToPlanes(axis, move);
       cut(axis);
-      joinAll(kLeastEdge, [](VertexIndex) { return true; });
-      flipAllCaps();
+      // Short edges of the uniform mesh the first time, from then on those of what is new.
+      joinAll(kLeastEdge, axis == 0 ? Marks() : out_.isNew, [](VertexIndex) { return true; });
+      flipAllCaps(out_.isNew);
     }
     out_.isParted = joinWhereRounded();
     out_.moved += joined_ + kLeastHeight * voxelsOfStep();
@@ -72,16 +64,7 @@ class Cutter {
   }
 
  private:
-  // The plane's coordinate, counted from the origin of positions.
-  [[nodiscard]] double coordinateOf(int axis, std::int64_t plane) const {
-    return static_cast<double>(plane * size_ - affine_.origin()[axis]);
-  }
-
-  [[nodiscard]] Place placeOf(int axis, double x) const {
-    const double voxel = x + static_cast<double>(affine_.origin()[axis]);
-    const auto n = static_cast<std::int64_t>(std::floor(voxel / static_cast<double>(size_)));
-    return static_cast<Place>(x == coordinateOf(axis, n) ? 2 * n : 2 * n + 1);
-  }
+  using Marks = std::span<const std::uint8_t>;  // of vertices
 
   // Whether all triangles at a vertex stay on their sides of the planes if it goes into another.
   [[nodiscard]] bool mayGoInto(VertexIndex v, VertexIndex into) const {
@@ -125,80 +108,35 @@ class Cutter {
   void setPlaces(int axis) {
     const auto a = static_cast<std::size_t>(axis);
     job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) place_[v][a] = placeOf(axis, at_[v][axis]);
+      for (std::size_t v = begin; v < end; ++v) place_[v][a] = planes_.placeOf(axis, at_[v][axis]);
     });
   }
 
-  void moveToPlanes(int axis, const Move& move) {
-    constexpr double kStays = std::numeric_limits<double>::infinity();
-    std::vector<double> target(at_.size(), kStays);
-    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const double voxel = at_[v][axis] + static_cast<double>(affine_.origin()[axis]);
-        const double plane = coordinateOf(axis, std::llround(voxel / static_cast<double>(size_)));
-        if (plane != at_[v][axis] && std::abs(plane - at_[v][axis]) < move.distance)
-          target[v] = plane;
-      }
-    });
-    const std::vector<std::uint32_t> touched =
-        base::collectIf(job_, out_.mesh.triangles.size(), kGrain, [&](std::uint32_t t) {
-          const auto& v = out_.mesh.triangles[t].vertices;
-          return std::any_of(v.begin(), v.end(),
-                             [&](VertexIndex i) { return target[i] != kStays; });
-        });
-    const auto turns = [&](std::uint32_t t) {
-      Vec3 before[3], after[3];
-      bool isTouched = false;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const VertexIndex v = out_.mesh.triangles[t].vertices[i];
-        before[i] = after[i] = at_[v];
-        if (target[v] != kStays) after[i][axis] = target[v], isTouched = true;
-      }
-      if (!isTouched) return false;
-      const Vec3 m = (before[1] - before[0]).cross(before[2] - before[0]);
-      const Vec3 n = (after[1] - after[0]).cross(after[2] - after[0]);
-      return !(n.dot(m) >= move.turnCosine * n.length() * m.length() &&
-               n.length() >= move.leastShare * m.length());
-    };
-    for (bool isAny = true; isAny;) {
-      isAny = false;
-      for (const std::uint32_t t : touched) {
-        if (!turns(t)) continue;
-        for (const VertexIndex v : out_.mesh.triangles[t].vertices) target[v] = kStays;
-        isAny = true;
-      }
-    }
+  void moveAll(int axis) {
     const double perVoxel = affine_.axis(axis).length() / affine_.voxelSize();
-    std::vector<double> before(at_.size(), kStays);
-    for (std::size_t v = 0; v < at_.size(); ++v) {
-      if (target[v] == kStays) continue;
-      before[v] = std::exchange(at_[v][axis], target[v]);
-    }
-    returnIntersecting(axis, before);
-    for (std::size_t v = 0; v < at_.size(); ++v) {
-      if (before[v] == kStays) continue;
-      moved_[v] += std::abs(at_[v][axis] - before[v]) * perVoxel;
-      if (moved_[v] > 0) out_.isNew[v] = 1;
+    for (const auto& [v, by] : moveToPlanes(planes_, axis, out_.mesh.triangles, at_, job_)) {
+      moved_[v] += by * perVoxel;
+      out_.isNew[v] = 1;
       out_.moved = std::max(out_.moved, moved_[v]);
-      place_[v][static_cast<std::size_t>(axis)] = placeOf(axis, at_[v][axis]);
     }
   }
 
-  void flipAllCaps() {
-    unlessIntersecting([this](const Stays& stays, std::vector<VertexIndex>& changed) {
-      flipCaps(at_, kLeastHeight, stays, out_.mesh.triangles, changed, job_);
+  // Those with a marked vertex, or all without marks.
+  void flipAllCaps(Marks marks) {
+    unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
+      flipCaps(at_, kLeastHeight, marks, stays, out_.mesh.triangles, changed, job_);
     });
   }
 
-  // Collapses short edges, those of which both ends `isWanted`.
+  // Collapses short edges of triangles as above, those of which both ends `isWanted`.
   template <class IsWanted>
-  void joinAll(double least, const IsWanted& isWanted) {
+  void joinAll(double least, Marks marks, const IsWanted& isWanted) {
     double longest = 0;
     unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
       const auto mayGo = [&](VertexIndex v, VertexIndex into) {
         return isWanted(v) && isWanted(into) && !stays(v) && !stays(into) && mayGoInto(v, into);
       };
-      longest = joinNearVertices(at_, least, mayGo, out_.mesh.triangles, changed, job_);
+      longest = joinNearVertices(at_, least, marks, mayGo, out_.mesh.triangles, changed, job_);
     });
     joined_ += longest * voxelsOfStep();
   }
@@ -251,7 +189,7 @@ class Cutter {
           for (const VertexIndex v : out_.mesh.triangles[t].vertices) marks[v] = 1;
         }
       }
-      joinAll(least, [&](VertexIndex v) { return marks[v] != 0; });
+      joinAll(least, marks, [&](VertexIndex v) { return marks[v] != 0; });
     }
     return false;
   }
@@ -260,28 +198,6 @@ class Cutter {
   [[nodiscard]] std::vector<intersect::PolygonPair> pairsAt(
       const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marks) const {
     return findPairsAt(out_.mesh.triangles, at_, points, marks, job_);
-  }
-
-  // Puts vertices back whose move makes some of the triangles intersect others: where sheets nearly
-  // touch, moves as small as these do. `before`: their coordinates, infinite for those not moved.
-  void returnIntersecting(int axis, const std::vector<double>& before) {
-    std::vector<std::uint8_t> marks(at_.size(), 0);
-    for (std::size_t v = 0; v < at_.size(); ++v) marks[v] = std::isinf(before[v]) ? 0 : 1;
-    for (bool isAny = true; isAny;) {
-      isAny = false;
-      const std::vector<intersect::PolygonPair> pairs = pairsAt(at_, marks);
-      std::fill(marks.begin(), marks.end(), std::uint8_t{0});  // now of those that are put back
-      for (const intersect::PolygonPair& pair : pairs) {
-        for (const std::uint32_t t : {pair.a, pair.b}) {
-          for (const VertexIndex v : out_.mesh.triangles[t].vertices) {
-            if (std::isinf(before[v]) || at_[v][axis] == before[v]) continue;
-            at_[v][axis] = before[v];
-            marks[v] = 1;
-            isAny = true;
-          }
-        }
-      }
-    }
   }
 
   [[nodiscard]] Place placeAt(VertexIndex v, int axis) const {
@@ -364,14 +280,14 @@ class Cutter {
     const std::uint64_t key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
     const auto [found, isNew] = cuts_.emplace(key, static_cast<VertexIndex>(at_.size()));
     if (!isNew) return found->second;
-    const double x = coordinateOf(axis, plane / 2);
+    const double x = planes_.at(axis, plane / 2);
     const double share = (x - at_[a][axis]) / (at_[b][axis] - at_[a][axis]);
     Vec3 p = at_[a] + (at_[b] - at_[a]) * share;
     PlacesAmongPlanes place{};
     for (int i = 0; i < 3; ++i) {
       p[i] = std::clamp(p[i], std::min(at_[a][i], at_[b][i]), std::max(at_[a][i], at_[b][i]));
       if (i == axis) p[i] = x;
-      place[static_cast<std::size_t>(i)] = placeOf(i, p[i]);
+      place[static_cast<std::size_t>(i)] = planes_.placeOf(i, p[i]);
     }
     at_.push_back(p);
     place_.push_back(place);
@@ -432,7 +348,7 @@ class Cutter {
   std::vector<Position> uniform_;
   bool hasNormals_;
   const grid::Affine& affine_;
-  std::int64_t size_;
+  ChunkPlanes planes_;
   bool singlePrecision_;
   base::Job& job_;
   CutMesh out_;

@@ -31,12 +31,27 @@ class CapFlipper {
         changed_(changed),
         job_(job) {}
 
-  // Whether there were any.
-  bool pass() {
-    const std::vector<std::uint32_t> caps =
-        base::collectIf(job_, triangles_.size(), kGrain,
-                        [&](std::uint32_t t) { return apexOf(triangles_[t]) != kNone; });
-    if (caps.empty()) return false;
+  void run(std::span<const std::uint8_t> marks) {
+    std::vector<std::uint32_t> caps =
+        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+          const auto& v = triangles_[t].vertices;
+          return (marks.empty() || (marks[v[0]] | marks[v[1]] | marks[v[2]]) != 0) && isCap(t);
+        });
+    for (int i = 0; i < kMostPasses && !caps.empty(); ++i) {
+      flipped_.clear();
+      pass(caps);
+      if (flipped_.empty()) return;
+      caps.insert(caps.end(), flipped_.begin(), flipped_.end());
+      std::sort(caps.begin(), caps.end());
+      caps.erase(std::unique(caps.begin(), caps.end()), caps.end());
+      std::erase_if(caps, [&](std::uint32_t t) { return !isCap(t); });
+    }
+  }
+
+ private:
+  static constexpr std::size_t kNone = 3;
+
+  void pass(const std::vector<std::uint32_t>& caps) {
     std::vector<std::uint8_t> isNear(points_.size(), 0);
     for (const std::uint32_t t : caps) {
       for (const VertexIndex v : triangles_[t].vertices) isNear[v] = 1;
@@ -48,13 +63,8 @@ class CapFlipper {
           return (isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0;
         });
     for (const std::uint32_t t : near) note(t);
-    bool isAny = false;
-    for (const std::uint32_t t : caps) isAny |= flip(t);
-    return isAny;
+    for (const std::uint32_t t : caps) flip(t);
   }
-
- private:
-  static constexpr std::size_t kNone = 3;
 
   void note(std::uint32_t t) {
     const auto& v = triangles_[t].vertices;
@@ -88,23 +98,25 @@ class CapFlipper {
     return kNone;
   }
 
+  [[nodiscard]] bool isCap(std::uint32_t t) const { return apexOf(triangles_[t]) != kNone; }
+
   // (r, p, q) and (s, q, p) become (r, p, s) and (r, s, q).
-  bool flip(std::uint32_t t) {
+  void flip(std::uint32_t t) {
     const std::size_t i = apexOf(triangles_[t]);
-    if (i == kNone) return false;
+    if (i == kNone) return;
     const VertexIndex r = triangles_[t].vertices[i], p = triangles_[t].vertices[(i + 1) % 3],
                       q = triangles_[t].vertices[(i + 2) % 3];
     const auto across = behind_.find(keyOf(q, p));
-    if (across == behind_.end()) return false;
+    if (across == behind_.end()) return;
     const std::uint32_t other = across->second;
     VertexIndex s = r;
     for (const VertexIndex v : triangles_[other].vertices) {
       if (v != p && v != q) s = v;
     }
-    if (stays_(p) || stays_(q) || stays_(r) || stays_(s)) return false;
+    if (stays_(p) || stays_(q) || stays_(r) || stays_(s)) return;
     if (s == r || heightOver(p, q, s) < kHigher * height_ || behind_.contains(keyOf(r, s)) ||
         behind_.contains(keyOf(s, r))) {
-      return false;
+      return;
     }
     behind_.erase(keyOf(p, q));
     behind_.erase(keyOf(q, p));
@@ -112,8 +124,8 @@ class CapFlipper {
     triangles_[other] = {r, s, q};
     note(t);
     note(other);
+    flipped_.insert(flipped_.end(), {t, other});
     changed_.insert(changed_.end(), {p, q, r, s});
-    return true;
   }
 
   const std::vector<Vec3>& points_;
@@ -123,16 +135,15 @@ class CapFlipper {
   std::vector<VertexIndex>& changed_;
   base::Job& job_;
   std::unordered_map<std::uint64_t, std::uint32_t> behind_;  ///< the triangle left of an edge
+  std::vector<std::uint32_t> flipped_;                       ///< triangles, in the pass at hand
 };
 
 }  // namespace
 
-void flipCaps(const std::vector<Vec3>& points, double height,
+void flipCaps(const std::vector<Vec3>& points, double height, std::span<const std::uint8_t> marks,
               const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
               std::vector<VertexIndex>& changed, base::Job& job) {
-  CapFlipper flipper(points, height, stays, triangles, changed, job);
-  for (int i = 0; i < kMostPasses && flipper.pass(); ++i) {
-  }
+  CapFlipper(points, height, stays, triangles, changed, job).run(marks);
 }
 
 }  // namespace tufa::chunks

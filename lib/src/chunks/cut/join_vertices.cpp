@@ -30,8 +30,8 @@ class Joiner {
         changed_(changed),
         job_(job) {}
 
-  double run() {
-    const std::vector<Edge> edges = findEdges();
+  double run(std::span<const std::uint8_t> marks) {
+    const std::vector<Edge> edges = findEdges(marks);
     if (edges.empty()) return 0;
     std::unordered_map<VertexIndex, VertexIndex> into;
     findTriangles(edges);
@@ -57,8 +57,8 @@ class Joiner {
     return (points_[a] - points_[b]).squaredLength() < least_ * least_;
   }
 
-  // Those that are short, of both ends the lower one first.
-  [[nodiscard]] std::vector<Edge> findEdges() const {
+  // Those that are short, of triangles with a marked vertex, of both ends the lower one first.
+  [[nodiscard]] std::vector<Edge> findEdges(std::span<const std::uint8_t> marks) const {
     const auto forShort = [&](std::uint32_t t, const auto& visit) {
       const auto& v = triangles_[t].vertices;
       for (std::size_t i = 0; i < 3; ++i) {
@@ -68,7 +68,9 @@ class Joiner {
     };
     const std::vector<std::uint32_t> some =
         base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+          const auto& v = triangles_[t].vertices;
           bool isAny = false;
+          if (!marks.empty() && (marks[v[0]] | marks[v[1]] | marks[v[2]]) == 0) return false;
           forShort(t, [&](VertexIndex, VertexIndex) { isAny = true; });
           return isAny;
         });
@@ -151,10 +153,11 @@ class Joiner {
 }  // namespace
 
 double joinNearVertices(const std::vector<Vec3>& points, double least,
+                        std::span<const std::uint8_t> marks,
                         const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
                         std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed,
                         base::Job& job) {
-  return Joiner(points, least, mayGoInto, triangles, changed, job).run();
+  return Joiner(points, least, mayGoInto, triangles, changed, job).run(marks);
 }
 
 }  // namespace tufa::chunks

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "base/job.h"
@@ -10,10 +12,11 @@
 namespace tufa::chunks {
 
 /// Collapses edges of a mesh that are shorter than `least`, into one of their ends, where the
-/// topology and `mayGoInto` allow it. Vertices that nothing uses any more stay in `points`. Returns
-/// the length of the longest edge collapsed, and adds the vertices that are left of all of them to
-/// `changed`.
+/// topology and `mayGoInto` allow it: those of triangles that have a vertex marked in `marks`, or
+/// all if that is empty. Vertices that nothing uses any more stay in `points`. Returns the length of
+/// the longest edge collapsed, and adds the vertices that are left of all of them to `changed`.
 double joinNearVertices(const std::vector<Vec3>& points, double least,
+                        std::span<const std::uint8_t> marks,
                         const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
                         std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed,
                         base::Job& job);

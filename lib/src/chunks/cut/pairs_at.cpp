@@ -12,6 +12,12 @@ namespace {
 
 constexpr std::size_t kGrain = 8192;
 
+// std::floor() is a call where the processor is not known to have an instruction for it.
+std::int64_t floorOf(double x) {
+  const auto towardsZero = static_cast<std::int64_t>(x);
+  return towardsZero - (static_cast<double>(towardsZero) > x ? 1 : 0);
+}
+
 // Calls visit(place in a table of that size, a power of two) for the cubes of the lattice that a
 // triangle is in, by a hash, until it returns true. Whether it did.
 template <class Visit>
@@ -22,8 +28,8 @@ bool visitCubes(const Triangle& triangle, const std::vector<Vec3>& at, std::size
   std::int64_t low[3], high[3];
   for (int i = 0; i < 3; ++i) {
     const auto [least, most] = std::minmax({at[v[0]][i], at[v[1]][i], at[v[2]][i]});
-    low[i] = static_cast<std::int64_t>(std::floor((least - kMargin) / kCube));
-    high[i] = static_cast<std::int64_t>(std::floor((most + kMargin) / kCube));
+    low[i] = floorOf((least - kMargin) / kCube);
+    high[i] = floorOf((most + kMargin) / kCube);
   }
   for (std::int64_t x = low[0]; x <= high[0]; ++x) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {

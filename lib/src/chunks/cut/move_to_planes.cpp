@@ -1,0 +1,146 @@
+#include "chunks/cut/move_to_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "base/collect.h"
+#include "chunks/cut/pairs_at.h"
+
+namespace tufa::chunks {
+namespace {
+
+// Which vertices are moved to planes.
+struct Move {
+  double distance;    ///< along the axis within which they are, steps of the lattice
+  double turnCosine;  ///< unless a triangle turns by more than the angle of this cosine,
+  double leastShare;  ///< or shrinks to less than this share
+};
+
+// Those that are very near also where slivers turn: otherwise edges around them would be cut in
+// places that single precision does not tell apart. Each distance is below the one before.
+constexpr Move kMoves[] = {{5e-3, 0.9, 0.25}, {5e-4, 0.05, 0.02}, {2e-5, -2, 0}};
+
+constexpr double kStays = std::numeric_limits<double>::infinity();
+constexpr std::size_t kGrain = 16384;
+
+class PlaneMover {
+ public:
+  PlaneMover(const ChunkPlanes& planes, int axis, const std::vector<Triangle>& triangles,
+             std::vector<Vec3>& points, base::Job& job)
+      : planes_(planes), axis_(axis), triangles_(triangles), points_(points), job_(job) {}
+
+  std::vector<MovedVertex> run() {
+    near_ = base::collectIf(job_, points_.size(), kGrain, [&](std::uint32_t v) {
+      const double x = points_[v][axis_], off = std::abs(planes_.nearest(axis_, x) - x);
+      return off > 0 && off < kMoves[0].distance;
+    });
+    if (near_.empty()) return {};
+    std::vector<double> first;
+    for (const VertexIndex v : near_) first.push_back(points_[v][axis_]);
+    findTouched();
+    target_.assign(points_.size(), kStays);
+    before_.assign(points_.size(), kStays);
+    for (const Move& move : kMoves) make(move);
+    std::vector<MovedVertex> moved;
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      const double by = std::abs(points_[near_[i]][axis_] - first[i]);
+      if (by > 0) moved.push_back({near_[i], by});
+    }
+    return moved;
+  }
+
+ private:
+  // The triangles with vertices that may be moved.
+  void findTouched() {
+    std::vector<std::uint8_t> isNear(points_.size(), 0);
+    for (const VertexIndex v : near_) isNear[v] = 1;
+    touched_ = base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+      const auto& v = triangles_[t].vertices;
+      return (isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0;
+    });
+  }
+
+  void make(const Move& move) {
+    for (const VertexIndex v : near_) {
+      const double x = points_[v][axis_], plane = planes_.nearest(axis_, x);
+      target_[v] = plane != x && std::abs(plane - x) < move.distance ? plane : kStays;
+    }
+    for (bool isAny = true; isAny;) {
+      isAny = false;
+      for (const std::uint32_t t : touched_) {
+        if (!turns(t, move)) continue;
+        for (const VertexIndex v : triangles_[t].vertices) target_[v] = kStays;
+        isAny = true;
+      }
+    }
+    bool isAny = false;
+    for (const VertexIndex v : near_) {
+      before_[v] = kStays;
+      if (target_[v] == kStays) continue;
+      before_[v] = points_[v][axis_];
+      points_[v][axis_] = target_[v];
+      isAny = true;
+    }
+    if (isAny) returnIntersecting();
+  }
+
+  // Whether a triangle would turn or shrink too much.
+  [[nodiscard]] bool turns(std::uint32_t t, const Move& move) const {
+    Vec3 before[3], after[3];
+    bool isTouched = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const VertexIndex v = triangles_[t].vertices[i];
+      before[i] = after[i] = points_[v];
+      if (target_[v] != kStays) after[i][axis_] = target_[v], isTouched = true;
+    }
+    if (!isTouched) return false;
+    const Vec3 m = (before[1] - before[0]).cross(before[2] - before[0]);
+    const Vec3 n = (after[1] - after[0]).cross(after[2] - after[0]);
+    return !(n.dot(m) >= move.turnCosine * n.length() * m.length() &&
+             n.length() >= move.leastShare * m.length());
+  }
+
+  // Puts vertices back whose move makes some of the triangles intersect others: where sheets nearly
+  // touch, moves as small as these do.
+  void returnIntersecting() {
+    std::vector<std::uint8_t> marks(points_.size(), 0);
+    for (const VertexIndex v : near_) marks[v] = before_[v] == kStays ? 0 : 1;
+    for (bool isAny = true; isAny;) {
+      isAny = false;
+      const std::vector<intersect::PolygonPair> pairs =
+          findPairsAt(triangles_, points_, points_, marks, job_);
+      std::fill(marks.begin(), marks.end(), std::uint8_t{0});  // now of those that are put back
+      for (const intersect::PolygonPair& pair : pairs) {
+        for (const std::uint32_t t : {pair.a, pair.b}) {
+          for (const VertexIndex v : triangles_[t].vertices) {
+            if (before_[v] == kStays || points_[v][axis_] == before_[v]) continue;
+            points_[v][axis_] = before_[v];
+            marks[v] = 1;
+            isAny = true;
+          }
+        }
+      }
+    }
+  }
+
+  const ChunkPlanes& planes_;
+  int axis_;
+  const std::vector<Triangle>& triangles_;
+  std::vector<Vec3>& points_;
+  base::Job& job_;
+  std::vector<VertexIndex> near_;  ///< that may be moved, rising
+  std::vector<std::uint32_t> touched_;
+  std::vector<double> target_, before_;  ///< of each vertex, for the move at hand, or kStays
+};
+
+}  // namespace
+
+std::vector<MovedVertex> moveToPlanes(const ChunkPlanes& planes, int axis,
+                                      const std::vector<Triangle>& triangles,
+                                      std::vector<Vec3>& points, base::Job& job) {
+  return PlaneMover(planes, axis, triangles, points, job).run();
+}
+
+}  // namespace tufa::chunks

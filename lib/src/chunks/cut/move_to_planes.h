@@ -1,0 +1,25 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <vector>
+
+#include "base/job.h"
+#include "base/vec3.h"
+#include "chunks/cut/chunk_planes.h"
+
+namespace tufa::chunks {
+
+/// A vertex that was moved along an axis of the lattice.
+struct MovedVertex {
+  VertexIndex vertex;
+  double by;  ///< steps of the lattice, above 0
+};
+
+/// Moves vertices that lie within half a hundredth of a step of a plane across `axis` to it, unless
+/// that turns a triangle or makes some intersect others. Returns them in rising order. Cost: a pass
+/// over the vertices, and one over the triangles if there are any.
+[[nodiscard]] std::vector<MovedVertex> moveToPlanes(const ChunkPlanes& planes, int axis,
+                                                    const std::vector<Triangle>& triangles,
+                                                    std::vector<Vec3>& points, base::Job& job);
+
+}  // namespace tufa::chunks
