@@ -13,6 +13,7 @@
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "base/number_text.h"
+#include "base/parallel.h"
 #include "filter/steps.h"
 #include "grid/non_finite.h"
 #include "grid/volume.h"
@@ -106,7 +107,8 @@ openvdb::GridBase::Ptr applyAll(const GridT& source, const std::vector<Filter>& 
     };
     ProgressInterrupter interrupter(options.progress, report.filter, share(i), share(i + 1));
     Step<GridT> step(std::move(grid), options, interrupter);
-    if (!interrupter.wasInterrupted(0)) std::visit(step, filters[i]);
+    // An interrupted tracking of level sets cancels the tasks around it, and with them the error.
+    if (!interrupter.wasInterrupted(0)) base::runIsolated([&] { std::visit(step, filters[i]); });
     if (interrupter.cancelled() || interrupter.wasInterrupted(100)) {
       throw Error(ErrorCode::Cancelled, "cancelled while filtering");
     }

@@ -327,6 +327,14 @@ TEST(Filters, CanBeCancelled) {
   expectError(ErrorCode::Cancelled, "cancelled", [&] {
     static_cast<void>(applyFilters(*grid, {Smooth{}, Open{0.3}, Smooth{}}, options));
   });
+  // In the middle of what OpenVDB tracks.
+  int calls = 0;
+  options.progress = [&](std::string_view, double) { return ++calls < 4; };
+  for (const Filter& filter : {Filter(Offset{2}), Filter(Open{2}), Filter(Close{2})}) {
+    calls = 0;
+    expectError(ErrorCode::Cancelled, "cancelled",
+                [&] { static_cast<void>(applyFilters(*grid, {filter}, options)); });
+  }
 }
 
 }  // namespace

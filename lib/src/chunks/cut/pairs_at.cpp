@@ -11,6 +11,8 @@ namespace tufa::chunks {
 namespace {
 
 constexpr std::size_t kGrain = 8192;
+// Where there are more vertices than so many a triangle, only those in use are copied.
+constexpr std::size_t kFew = 16;
 
 // std::floor() is a call where the processor is not known to have an instruction for it.
 std::int64_t floorOf(double x) {
@@ -60,6 +62,31 @@ std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
   });
 }
 
+// Some triangles, with all vertices or only those that they use.
+Mesh meshOf(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& some,
+            const std::vector<Vec3>& places) {
+  Mesh mesh;
+  mesh.triangles.reserve(some.size());
+  for (const std::uint32_t t : some) mesh.triangles.push_back(triangles[t]);
+  if (kFew * some.size() > places.size()) {
+    mesh.positions.assign(places.begin(), places.end());
+    return mesh;
+  }
+  std::vector<VertexIndex> used;
+  for (const Triangle& t : mesh.triangles) {
+    used.insert(used.end(), t.vertices.begin(), t.vertices.end());
+  }
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  for (const VertexIndex v : used) mesh.positions.emplace_back(places[v]);
+  for (Triangle& t : mesh.triangles) {
+    for (VertexIndex& v : t.vertices) {
+      v = static_cast<VertexIndex>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
+    }
+  }
+  return mesh;
+}
+
 }  // namespace
 
 std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& triangles,
@@ -74,13 +101,10 @@ std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& tri
       });
   if (touched.empty()) return {};
   const std::vector<std::uint32_t> near = trianglesNear(triangles, at, touched, job);
-  Mesh mesh;
-  mesh.positions.assign(places.begin(), places.end());
-  mesh.triangles.reserve(near.size());
+  Mesh mesh = meshOf(triangles, near, places);
   std::vector<intersect::PolygonIndex> candidates;
   candidates.reserve(touched.size());
   for (std::size_t i = 0, next = 0; i < near.size(); ++i) {
-    mesh.triangles.push_back(triangles[near[i]]);
     if (next == touched.size() || touched[next] != near[i]) continue;
     candidates.push_back(static_cast<std::uint32_t>(i));
     ++next;
