@@ -139,12 +139,14 @@ TEST(FlipCaps, TurnsTheEdgeThatAVertexLiesOn) {
   std::vector<Triangle> triangles = {{0, 1, 2}, {1, 0, 3}};
   std::vector<VertexIndex> changed;
   const std::vector<Triangle> before = triangles;
-  flipCaps(
-      points, 1e-4, [](VertexIndex v) { return v == 2; }, triangles, changed, job);
+  const auto never = [](const std::array<VertexIndex, 4>&) { return false; };
+  EXPECT_EQ(flipCaps(points, 1e-4, {}, never, triangles, changed, job), 0);
   EXPECT_EQ(triangles, before);
   EXPECT_TRUE(changed.empty());
-  flipCaps(
-      points, 1e-4, [](VertexIndex) { return false; }, triangles, changed, job);
+  const std::vector<std::uint8_t> marks = {0, 0, 1, 0};  // on the square's far corner
+  const auto always = [](const std::array<VertexIndex, 4>&) { return true; };
+  EXPECT_EQ(flipCaps(points, 1e-4, marks, always, triangles, changed, job), 0);
+  EXPECT_NEAR(flipCaps(points, 1e-4, {}, always, triangles, changed, job), 1e-6, 1e-12);
   EXPECT_EQ(changed.size(), 4U);
   ASSERT_EQ(triangles.size(), 2U);
   for (const Triangle& t : triangles) {
@@ -163,6 +165,7 @@ TEST(CutMesh, KeepsVerticesApartThatAreRoundedToOnePlace) {
   for (const bool singlePrecision : {false, true}) {
     CutMesh cut;
     cut.mesh.positions = {{1, 0, 0}, {1 + 1e-13, 0, 0}, {1 + 2e-13, 0, 0}, {2, 0, 0}};
+    cut.mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
     keepApart(cut, affine, singlePrecision, job);
     std::set<double> places;
     for (const Position& p : cut.mesh.positions) {
@@ -185,11 +188,13 @@ TEST(CutMesh, KeepsVerticesApartThatAreRoundedToTheOrigin) {
   const grid::Affine affine{grid::Transform(*moved)};
   for (const bool singlePrecision : {false, true}) {
     CutMesh cut;
-    cut.mesh.positions = {{2.5, 1, 0}, {2.5, 1, 0}, {2.5, 1, 0}};
+    cut.mesh.positions = {{2.5, 1, 0}, {2.5, 1, 0}, {2.5, 1, 0}, {2.5, 1, 0}};
+    cut.mesh.triangles = {{0, 1, 2}};  // the last vertex is none of the mesh's any more
     keepApart(cut, affine, singlePrecision, job);
     std::set<double> places;
-    for (const Position& p : cut.mesh.positions) places.insert(affine.toWorld(p).x);
+    for (int i = 0; i < 3; ++i) places.insert(affine.toWorld(cut.mesh.positions[i]).x);
     EXPECT_EQ(places.size(), 3u);
+    EXPECT_EQ(cut.mesh.positions[3].x, 2.5);
     EXPECT_GT(cut.moved, 0);
     EXPECT_LE(cut.moved, 1e-14);
   }

@@ -1,6 +1,7 @@
 #include "chunks/cut/cut_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -48,29 +49,43 @@ class Cutter {
 
   CutMesh run() {
     load();
-    flipAllCaps({});
+    flip({});
     for (int axis = 0; axis < 3; ++axis) {
-      moveAll(axis);
+      // Before the cut: once the base of a cap is on a plane, its apex may be beside it.
+      if (moveAll(axis)) flip(out_.isNew);
       setPlaces(axis);
       cut(axis);
+      axesCut_ = static_cast<std::size_t>(axis) + 1;
       // Short edges of the uniform mesh the first time, from then on those of what is new.
-      joinAll(kLeastEdge, axis == 0 ? Marks() : out_.isNew, [](VertexIndex) { return true; });
-      flipAllCaps(out_.isNew);
+      join(kLeastEdge, axis == 0 ? Marks() : out_.isNew, [](VertexIndex) { return true; });
+      flip(out_.isNew);
     }
     out_.isParted = joinWhereRounded();
-    out_.moved += joined_ + kLeastHeight * voxelsOfStep();
+    out_.moved += reshaped_ * voxelsOfStep();
     finish();
     return std::move(out_);
   }
 
  private:
   using Marks = std::span<const std::uint8_t>;  // of vertices
+  using Stays = std::function<bool(VertexIndex)>;
 
-  // Whether all triangles at a vertex stay on their sides of the planes if it goes into another.
+  // Whether all triangles at a vertex stay on their sides of the planes that were cut at if it goes
+  // into another.
   [[nodiscard]] bool mayGoInto(VertexIndex v, VertexIndex into) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < axesCut_; ++axis) {
       const Place from = place_[v][axis], to = place_[into][axis];
       if (from != to && ((to & 1) != 0 || std::abs(from - to) > 1)) return false;
+    }
+    return true;
+  }
+
+  // Whether triangles of these vertices pass none of the planes that were cut at.
+  [[nodiscard]] bool isOnOneSide(const std::array<VertexIndex, 4>& vertices) const {
+    for (std::size_t axis = 0; axis < axesCut_; ++axis) {
+      const auto [low, high] = std::minmax({place_[vertices[0]][axis], place_[vertices[1]][axis],
+                                            place_[vertices[2]][axis], place_[vertices[3]][axis]});
+      if (high > (low | 1) + 1) return false;
     }
     return true;
   }
@@ -112,47 +127,54 @@ class Cutter {
     });
   }
 
-  void moveAll(int axis) {
+  // Whether there are any to move.
+  bool moveAll(int axis) {
     const double perVoxel = affine_.axis(axis).length() / affine_.voxelSize();
-    for (const auto& [v, by] : moveToPlanes(planes_, axis, out_.mesh.triangles, at_, job_)) {
+    const std::vector<MovedVertex> moved =
+        moveToPlanes(planes_, axis, out_.mesh.triangles, at_, job_);
+    for (const auto& [v, by] : moved) {
       moved_[v] += by * perVoxel;
       out_.isNew[v] = 1;
       out_.moved = std::max(out_.moved, moved_[v]);
     }
+    return !moved.empty();
   }
 
-  // Those with a marked vertex, or all without marks.
-  void flipAllCaps(Marks marks) {
+  // Flips caps with a marked vertex, or all without marks.
+  void flip(Marks marks) {
     unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
-      flipCaps(at_, kLeastHeight, marks, stays, out_.mesh.triangles, changed, job_);
+      const auto mayFlip = [&](const std::array<VertexIndex, 4>& v) {
+        return std::none_of(v.begin(), v.end(), stays) && isOnOneSide(v);
+      };
+      return flipCaps(at_, kLeastHeight, marks, mayFlip, out_.mesh.triangles, changed, job_);
     });
   }
 
-  // Collapses short edges of triangles as above, those of which both ends `isWanted`.
+  // Collapses short edges of triangles with a marked vertex, or of all without marks, both ends of
+  // which `isWanted`.
   template <class IsWanted>
-  void joinAll(double least, Marks marks, const IsWanted& isWanted) {
-    double longest = 0;
+  void join(double least, Marks marks, const IsWanted& isWanted) {
     unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
-      const auto mayGo = [&](VertexIndex v, VertexIndex into) {
+      const auto mayJoin = [&](VertexIndex v, VertexIndex into) {
         return isWanted(v) && isWanted(into) && !stays(v) && !stays(into) && mayGoInto(v, into);
       };
-      longest = joinNearVertices(at_, least, marks, mayGo, out_.mesh.triangles, changed, job_);
+      return joinNearVertices(at_, least, marks, mayJoin, out_.mesh.triangles, changed, job_);
     });
-    joined_ += longest * voxelsOfStep();
   }
 
   // Makes a change to the triangles, except around vertices where it would make some of them
-  // intersect. `change` is told which vertices these are, and lists those whose triangles it has
-  // changed.
-  using Stays = std::function<bool(VertexIndex)>;
+  // intersect. `change` is told which vertices these are, lists those whose triangles it has
+  // changed, and returns how far that moves the surface at most.
   template <class Change>
   void unlessIntersecting(const Change& change) {
     const std::vector<Triangle> before = out_.mesh.triangles;
     std::vector<std::uint8_t> stays(at_.size(), 0);
     std::vector<VertexIndex> changed;
+    double moved = 0;
     for (bool isAny = true; isAny;) {
       changed.clear();
-      change([&](VertexIndex v) { return stays[v] != 0; }, changed);
+      moved = change([&](VertexIndex v) { return stays[v] != 0; }, changed);
+      if (changed.empty()) return;
       std::vector<std::uint8_t> isChanged(at_.size(), 0);
       for (const VertexIndex v : changed) isChanged[v] = 1;
       isAny = false;
@@ -166,6 +188,7 @@ class Cutter {
       if (isAny) out_.mesh.triangles = before;
     }
     for (const VertexIndex v : changed) out_.isNew[v] = 1;
+    reshaped_ += moved;
   }
 
   // Where triangles that were cut intersect once they are rounded, collapses their short edges.
@@ -189,7 +212,7 @@ class Cutter {
           for (const VertexIndex v : out_.mesh.triangles[t].vertices) marks[v] = 1;
         }
       }
-      joinAll(least, marks, [&](VertexIndex v) { return marks[v] != 0; });
+      join(least, marks, [&](VertexIndex v) { return marks[v] != 0; });
     }
     return false;
   }
@@ -354,7 +377,8 @@ class Cutter {
   CutMesh out_;
   std::vector<Vec3> at_;  ///< lattice points, counted from the origin of positions
   std::vector<PlacesAmongPlanes> place_;
-  double joined_ = 0;          ///< the longest edges that were collapsed, voxels
+  std::size_t axesCut_ = 0;    ///< across the first so many axes the mesh is cut
+  double reshaped_ = 0;        ///< how far collapses and flips have moved the surface at most
   std::vector<double> moved_;  ///< how far each vertex was moved to planes, voxels
   std::unordered_map<std::uint64_t, VertexIndex> cuts_;
 };

@@ -17,21 +17,22 @@ constexpr double kHigher = 8;
 constexpr double kClearlyHigh = 1.001;
 constexpr std::size_t kGrain = 16384;
 
+using MayFlip = std::function<bool(const std::array<VertexIndex, 4>&)>;
+
 std::uint64_t keyOf(VertexIndex from, VertexIndex to) { return std::uint64_t{from} << 32 | to; }
 
 class CapFlipper {
  public:
-  CapFlipper(const std::vector<Vec3>& points, double height,
-             const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
-             std::vector<VertexIndex>& changed, base::Job& job)
+  CapFlipper(const std::vector<Vec3>& points, double height, const MayFlip& mayFlip,
+             std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed, base::Job& job)
       : points_(points),
         height_(height),
-        stays_(stays),
+        mayFlip_(mayFlip),
         triangles_(triangles),
         changed_(changed),
         job_(job) {}
 
-  void run(std::span<const std::uint8_t> marks) {
+  double run(std::span<const std::uint8_t> marks) {
     std::vector<std::uint32_t> caps =
         base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
           const auto& v = triangles_[t].vertices;
@@ -40,12 +41,13 @@ class CapFlipper {
     for (int i = 0; i < kMostPasses && !caps.empty(); ++i) {
       flipped_.clear();
       pass(caps);
-      if (flipped_.empty()) return;
+      if (flipped_.empty()) break;
       caps.insert(caps.end(), flipped_.begin(), flipped_.end());
       std::sort(caps.begin(), caps.end());
       caps.erase(std::unique(caps.begin(), caps.end()), caps.end());
       std::erase_if(caps, [&](std::uint32_t t) { return !isCap(t); });
     }
+    return farthest_;
   }
 
  private:
@@ -113,9 +115,8 @@ class CapFlipper {
     for (const VertexIndex v : triangles_[other].vertices) {
       if (v != p && v != q) s = v;
     }
-    if (stays_(p) || stays_(q) || stays_(r) || stays_(s)) return;
     if (s == r || heightOver(p, q, s) < kHigher * height_ || behind_.contains(keyOf(r, s)) ||
-        behind_.contains(keyOf(s, r))) {
+        behind_.contains(keyOf(s, r)) || !mayFlip_({p, q, r, s})) {
       return;
     }
     behind_.erase(keyOf(p, q));
@@ -124,26 +125,31 @@ class CapFlipper {
     triangles_[other] = {r, s, q};
     note(t);
     note(other);
+    const double moved = std::max(moved_[t], moved_[other]) + heightOver(p, q, r);
+    moved_[t] = moved_[other] = moved;
+    farthest_ = std::max(farthest_, moved);
     flipped_.insert(flipped_.end(), {t, other});
     changed_.insert(changed_.end(), {p, q, r, s});
   }
 
   const std::vector<Vec3>& points_;
   double height_;
-  const std::function<bool(VertexIndex)>& stays_;
+  const MayFlip& mayFlip_;
   std::vector<Triangle>& triangles_;
   std::vector<VertexIndex>& changed_;
   base::Job& job_;
   std::unordered_map<std::uint64_t, std::uint32_t> behind_;  ///< the triangle left of an edge
   std::vector<std::uint32_t> flipped_;                       ///< triangles, in the pass at hand
+  std::unordered_map<std::uint32_t, double> moved_;          ///< how far flips have moved triangles
+  double farthest_ = 0;
 };
 
 }  // namespace
 
-void flipCaps(const std::vector<Vec3>& points, double height, std::span<const std::uint8_t> marks,
-              const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
-              std::vector<VertexIndex>& changed, base::Job& job) {
-  CapFlipper(points, height, stays, triangles, changed, job).run(marks);
+double flipCaps(const std::vector<Vec3>& points, double height, std::span<const std::uint8_t> marks,
+                const MayFlip& mayFlip, std::vector<Triangle>& triangles,
+                std::vector<VertexIndex>& changed, base::Job& job) {
+  return CapFlipper(points, height, mayFlip, triangles, changed, job).run(marks);
 }
 
 }  // namespace tufa::chunks

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -13,11 +14,13 @@ namespace tufa::chunks {
 
 /// Flips the longest edges of caps: triangles with a vertex nearer than `height` to the edge
 /// opposite it, between its ends. Vertices in a row along a crease make such triangles, which
-/// rounding turns over. The surface moves by `height` at most. Begins with caps that have a vertex
-/// marked in `marks`, or with all if that is empty. Triangles with a vertex that `stays` are left as
-/// they are; adds the vertices of both triangles of each edge flipped to `changed`.
-void flipCaps(const std::vector<Vec3>& points, double height, std::span<const std::uint8_t> marks,
-              const std::function<bool(VertexIndex)>& stays, std::vector<Triangle>& triangles,
-              std::vector<VertexIndex>& changed, base::Job& job);
+/// rounding turns over. Begins with caps that have a vertex marked in `marks`, or with all if that
+/// is empty. Edges are flipped if `mayFlip` says so of the vertices of both triangles, which are
+/// then added to `changed`. Returns how far that moves the surface at most.
+[[nodiscard]] double flipCaps(const std::vector<Vec3>& points, double height,
+                              std::span<const std::uint8_t> marks,
+                              const std::function<bool(const std::array<VertexIndex, 4>&)>& mayFlip,
+                              std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed,
+                              base::Job& job);
 
 }  // namespace tufa::chunks

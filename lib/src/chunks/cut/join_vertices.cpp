@@ -13,6 +13,9 @@ namespace {
 using Edge = std::pair<VertexIndex, VertexIndex>;
 
 constexpr std::size_t kGrain = 16384;
+// Triangles may turn by the angle of this cosine, and shrink to this share.
+constexpr double kTurnCosine = 0.5;
+constexpr double kLeastShare = 0.1;
 
 bool has(const Triangle& t, VertexIndex v) {
   return t.vertices[0] == v || t.vertices[1] == v || t.vertices[2] == v;
@@ -35,19 +38,23 @@ class Joiner {
     if (edges.empty()) return 0;
     std::unordered_map<VertexIndex, VertexIndex> into;
     findTriangles(edges);
-    double longest = 0;
     for (auto [a, b] : edges) {
       while (into.contains(a)) a = into.at(a);
       while (into.contains(b)) b = into.at(b);
       if (!mayGoInto_(b, a)) std::swap(a, b);
-      if (a == b || !isShort(a, b) || !mayGoInto_(b, a) || !mayJoin(a, b)) continue;
-      longest = std::max(longest, (points_[a] - points_[b]).length());
+      if (a == b || !isShort(a, b) || !mayGoInto_(b, a) || !mayJoin(a, b) || spoils(a, b)) continue;
       join(a, b);
       into.emplace(b, a);
       changed_.push_back(a);
     }
     std::erase_if(triangles_, [](const Triangle& t) { return has(t, kGone); });
-    return longest;
+    double farthest = 0;
+    for (const auto& [gone, next] : into) {
+      VertexIndex last = next;
+      while (into.contains(last)) last = into.at(last);
+      farthest = std::max(farthest, (points_[gone] - points_[last]).length());
+    }
+    return farthest;
   }
 
  private:
@@ -125,6 +132,22 @@ class Joiner {
     if (isOpen(p) || isOpen(q) || p.size() <= 6 || q.size() <= 6) return false;
     std::set_intersection(p.begin(), p.end(), q.begin(), q.end(), std::back_inserter(common));
     return common.size() == 4;  // each twice
+  }
+
+  // Whether a triangle would turn or shrink too much if b went into a.
+  [[nodiscard]] bool spoils(VertexIndex a, VertexIndex b) const {
+    return std::any_of(around_.at(b).begin(), around_.at(b).end(), [&](std::uint32_t t) {
+      if (has(triangles_[t], kGone) || has(triangles_[t], a)) return false;
+      Vec3 before[3], after[3];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const VertexIndex v = triangles_[t].vertices[i];
+        before[i] = points_[v], after[i] = points_[v == b ? a : v];
+      }
+      const Vec3 m = (before[1] - before[0]).cross(before[2] - before[0]);
+      const Vec3 n = (after[1] - after[0]).cross(after[2] - after[0]);
+      return !(n.dot(m) >= kTurnCosine * n.length() * m.length() &&
+               n.length() >= kLeastShare * m.length());
+    });
   }
 
   void join(VertexIndex a, VertexIndex b) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "base/collect.h"
 #include "chunks/cut/pairs_at.h"
@@ -37,11 +38,11 @@ class PlaneMover {
       return off > 0 && off < kMoves[0].distance;
     });
     if (near_.empty()) return {};
-    std::vector<double> first;
-    for (const VertexIndex v : near_) first.push_back(points_[v][axis_]);
     findTouched();
     target_.assign(points_.size(), kStays);
     before_.assign(points_.size(), kStays);
+    std::vector<double> first;
+    for (const VertexIndex v : near_) first.push_back(points_[v][axis_]);
     for (const Move& move : kMoves) make(move);
     std::vector<MovedVertex> moved;
     for (std::size_t i = 0; i < near_.size(); ++i) {
@@ -79,8 +80,7 @@ class PlaneMover {
     for (const VertexIndex v : near_) {
       before_[v] = kStays;
       if (target_[v] == kStays) continue;
-      before_[v] = points_[v][axis_];
-      points_[v][axis_] = target_[v];
+      before_[v] = std::exchange(points_[v][axis_], target_[v]);
       isAny = true;
     }
     if (isAny) returnIntersecting();
@@ -132,7 +132,8 @@ class PlaneMover {
   base::Job& job_;
   std::vector<VertexIndex> near_;  ///< that may be moved, rising
   std::vector<std::uint32_t> touched_;
-  std::vector<double> target_, before_;  ///< of each vertex, for the move at hand, or kStays
+  // For each vertex, or kStays: where it goes in the move at hand, and where it was before.
+  std::vector<double> target_, before_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "base/collect.h"
 
@@ -13,6 +14,11 @@ namespace {
 constexpr std::size_t kGrain = 8192;
 // Where there are more vertices than so many a triangle, only those in use are copied.
 constexpr std::size_t kFew = 16;
+// Of more than one triangle in so many, others are mostly near.
+constexpr std::size_t kMany = 8;
+// Places in the table of cubes for each of some triangles. Many of these share a cube of some fifty
+// triangles, so that one place in four is marked at most, and a triangle seldom by mistake.
+constexpr std::size_t kPlaces = 8;
 
 // std::floor() is a call where the processor is not known to have an instruction for it.
 std::int64_t floorOf(double x) {
@@ -52,7 +58,7 @@ bool visitCubes(const Triangle& triangle, const std::vector<Vec3>& at, std::size
 std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
                                          const std::vector<Vec3>& at,
                                          const std::vector<std::uint32_t>& some, base::Job& job) {
-  const std::size_t size = std::bit_ceil(64 * some.size());
+  const std::size_t size = std::bit_ceil(kPlaces * some.size());
   std::vector<std::uint8_t> isMarked(size, 0);
   for (const std::uint32_t t : some) {
     (void)visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] = 1, false; });
@@ -100,7 +106,13 @@ std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& tri
         return (marks[v[0]] | marks[v[1]] | marks[v[2]]) != 0;
       });
   if (touched.empty()) return {};
-  const std::vector<std::uint32_t> near = trianglesNear(triangles, at, touched, job);
+  std::vector<std::uint32_t> near;
+  if (kMany * touched.size() < triangles.size()) {
+    near = trianglesNear(triangles, at, touched, job);
+  } else {
+    near.resize(triangles.size());
+    std::iota(near.begin(), near.end(), 0);
+  }
   Mesh mesh = meshOf(triangles, near, places);
   std::vector<intersect::PolygonIndex> candidates;
   candidates.reserve(touched.size());

@@ -31,12 +31,18 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
     const Position p = singlePrecision ? base::toSingle(world) : world;
     return Place{p.x, p.y, p.z};
   };
+  std::vector<std::uint8_t> isUsed(positions.size(), 0);  // collapses have left others
+  for (const Triangle& t : cut.mesh.triangles) {
+    for (const VertexIndex v : t.vertices) isUsed[v] = 1;
+  }
+  std::vector<VertexIndex> used;
+  for (VertexIndex v = 0; v < positions.size(); ++v) {
+    if (isUsed[v] != 0) used.push_back(v);
+  }
   using Entry = std::pair<Place, VertexIndex>;
-  std::vector<Entry> sorted(positions.size());
-  job.forRanges(positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      sorted[v] = {placeOf(positions[v]), static_cast<VertexIndex>(v)};
-    }
+  std::vector<Entry> sorted(used.size());
+  job.forRanges(used.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sorted[i] = {placeOf(positions[used[i]]), used[i]};
   });
   base::parallelSort(sorted.begin(), sorted.end(), std::less<>());
   std::set<Place> added;
