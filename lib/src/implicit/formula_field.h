@@ -29,7 +29,11 @@ class FormulaField final : public Field {
  public:
   explicit FormulaField(Formula formula) : formula_(std::move(formula)) {}
 
-  [[nodiscard]] double value(const Position& p) const override { return formula_(p.x, p.y, p.z); }
+  /// Points where the formula has no value are outside.
+  [[nodiscard]] double value(const Position& p) const override {
+    const double value = formula_(p.x, p.y, p.z);
+    return std::isnan(value) ? kInfinity : value;
+  }
 
   [[nodiscard]] Position gradient(const Position& p) const override {
     return toPosition(dualAt(p).slopes);
@@ -43,6 +47,7 @@ class FormulaField final : public Field {
       // The mean value form beside the natural one (Moore 1966): better where the box is small.
       const Dual<Interval> over = overBox(box);
       const double centre = value(centreOf(box));
+      if (std::isinf(centre)) return over.value;
       const Vec3 half = halfOf(box);
       Interval mean{centre, centre};
       for (std::size_t axis = 0; axis < 3; ++axis) {
