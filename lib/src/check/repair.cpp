@@ -52,8 +52,10 @@ Mesh repair(const Mesh& mesh, const RepairOptions& options, RepairReport* report
     if (tell && !tell("repair", done)) throw Error(ErrorCode::Cancelled, "cancelled by the caller");
   });
   out.after = checked(repaired, options, kStepsEnd, 1);
-  // Never a worse mesh than the input; nor an empty one in place of faces.
+  // Never a worse mesh than the input; nor an empty one in place of faces. What was closed may
+  // touch itself, which merging vertices makes a fault of another kind.
   const bool worse = faultsOf(out.after) > faultsOf(out.before) ||
+                     (out.before.watertight() && !out.after.watertight()) ||
                      (repaired.triangles.empty() && mesh.triangleCount() > 0);
   if (!worse) return repaired;
   const CheckReport before = out.before;

@@ -159,6 +159,24 @@ TEST(RepairSoup, OfNoFacesIsEmptyAndMergingAllKeepsTheInput) {
   EXPECT_TRUE(report.keptInput);
 }
 
+// Two cubes side by side, each closed, are watertight; their merged vertices are not.
+TEST(RepairSoup, NeverOpensWhatIsWatertight) {
+  Mesh two = cube();
+  const auto vertices = static_cast<VertexIndex>(two.positions.size());
+  const Mesh other = test::box(Position(1, 0, 0), Position(2, 2, 3));
+  two.positions.insert(two.positions.end(), other.positions.begin(), other.positions.end());
+  for (Quad q : other.quads) {
+    for (VertexIndex& v : q.vertices) v += vertices;
+    two.quads.push_back(q);
+  }
+  ASSERT_TRUE(check(two).watertight());
+  for (const int fill : {0, 10}) {
+    RepairOptions options;
+    options.fillEdges = fill;
+    EXPECT_TRUE(check(repair(two, options)).watertight()) << fill;
+  }
+}
+
 TEST(RepairSoup, RefusesOptionsOutOfRangeAndStops) {
   RepairOptions options;
   options.mergeDistance = -1;
