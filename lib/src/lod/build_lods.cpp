@@ -99,10 +99,15 @@ std::vector<Target> targetsOf(const LodOptions& options) {
 // it had to stay below.
 std::string stopOf(std::size_t level, const Target& target, std::size_t triangles,
                    std::size_t worthwhile, const std::vector<Lod>& before) {
+  if (target.triangles > 0 && triangles <= target.triangles) {
+    return "level " + std::to_string(level) + " was left out: level " + std::to_string(level - 1) +
+           " has " + std::to_string(triangles) + " triangles, fewer than the " +
+           std::to_string(target.triangles) + " asked for, already";
+  }
   if (target.triangles > 0) {
     return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
            " triangles: the surface allows no fewer than " + std::to_string(triangles) +
-           ", and that level was left out";
+           (level > 0 ? ", and that level was left out" : "");
   }
   return "level " + std::to_string(level) + " was left out: at a tolerance of " +
          base::numberText(target.tolerance) + " voxels " + std::to_string(triangles) +

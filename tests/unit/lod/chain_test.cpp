@@ -137,6 +137,9 @@ TEST(LodChain, EndsBeforeABudgetThatCannotBeMet) {
   EXPECT_NE(chain.stopped.find("level 1 cannot have 4 triangles"), std::string::npos)
       << chain.stopped;
   expectPromises(chain);
+  options.triangles = {1000000, 900000};
+  EXPECT_NE(buildLods(*shape(Shape::Torus, 0.05), options).stopped.find("fewer than the 900000"),
+            std::string::npos);
 }
 
 TEST(LodChain, SaysWhatWasComparedForALevelLeftOut) {
