@@ -168,12 +168,14 @@ std::string summary(const AssembleRun& run, const AssembleArguments& arguments) 
   return text + describeWritten({arguments.output}, run.writeSeconds);
 }
 
-/// What there is in a folder; nothing if it cannot be read, which is told later.
-std::vector<std::filesystem::path> filesIn(const std::string& folder) {
-  std::error_code error;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    files.push_back(entry.path());
+/// The files that chunks are read from.
+std::vector<std::filesystem::path> filesOf(const ChunkIndex& index, const std::string& folder) {
+  const std::filesystem::path in = folder;
+  std::vector<std::filesystem::path> files = {in / "chunks.json"};
+  for (const ChunkEntry& chunk : index.chunks) {
+    for (const ChunkLevelEntry& level : chunk.levels) {
+      if (!level.file.empty()) files.push_back(in / level.file);
+    }
   }
   return files;
 }
@@ -183,7 +185,7 @@ std::vector<std::filesystem::path> filesIn(const std::string& folder) {
 int runAssemble(const AssembleArguments& arguments) {
   if (arguments.check) requireChecker();
   requireMeshEnding(arguments.output);
-  requireDistinct(arguments.output, filesIn(arguments.folder));
+  requireDistinct(arguments.output, filesOf(readChunkIndex(arguments.folder), arguments.folder));
   requireWritable(arguments.output);
   const AssembleRun run = runStages(arguments);
   const bool broken = run.check && !run.check->watertight();

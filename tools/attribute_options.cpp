@@ -90,9 +90,11 @@ AttributeGrids::AttributeGrids(const std::string& file, const AttributeWords& wo
     const Word word = readWord(text);
     sources_.push_back({readVolume(file, word.grid), word.grid, word.role});
   }
-  if (!words.velocity) return;
-  sources_.push_back({readVolume(file, *words.velocity), *words.velocity, AttributeRole::Motion,
-                      readShutter(words)});
+  if (words.velocity) {
+    sources_.push_back({readVolume(file, *words.velocity), *words.velocity, AttributeRole::Motion,
+                        readShutter(words)});
+  }
+  static_cast<void>(sample({}, 1));
 }
 
 std::vector<Attribute> AttributeGrids::sample(std::span<const Position> positions,

@@ -35,10 +35,11 @@ void addAttributeOptions(CLI::App& app, AttributeWords& words);
 /// a format that holds none.
 void requireAttributes(const AttributeWords& words, MeshFormat format);
 
-/// The grids of a file that attributes are sampled from.
+/// The grids of a file that attributes are sampled from. To be made before a mesh is, so that words
+/// that name none, or one that cannot be sampled, are told at once.
 class AttributeGrids {
  public:
-  /// Reads the grids that words name. Throws Error.
+  /// Reads the grids that words name. Throws Error, also if one cannot be sampled.
   AttributeGrids(const std::string& file, const AttributeWords& words);
 
   /// Samples them at places in world space.

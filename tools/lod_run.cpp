@@ -40,6 +40,7 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
   grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run.filters);
   if (!arguments.allowEmpty) requireLeft(*grid, arguments.input, run.filters);
+  const AttributeGrids attributes(arguments.input, arguments.attributes);
   const LodOptions options = chainOptions(arguments, meshing, *grid, bar);
   run.dropping = options.allowTopologyChange;
   run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
@@ -64,7 +65,6 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   grid.reset();
   if (!arguments.attributes.empty()) {
     run.attributeSeconds = timed([&] {
-      const AttributeGrids attributes(arguments.input, arguments.attributes);
       for (Lod& lod : run.chain.levels) {
         lod.mesh.attributes = attributes.sample(lod.mesh.positions, options.contour.threads);
       }

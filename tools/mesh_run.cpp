@@ -83,12 +83,10 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
   requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
 }
 
-void sampleAttributes(const MeshArguments& arguments, GridRun& run) {
-  if (arguments.attributes.empty() || run.mesh.positions.empty()) return;
-  run.attributeSeconds = timed([&] {
-    run.mesh.attributes = AttributeGrids(arguments.input, arguments.attributes)
-                              .sample(run.mesh.positions, arguments.contour.threads);
-  });
+void sampleAttributes(const AttributeGrids& attributes, int threads, GridRun& run) {
+  if (run.mesh.positions.empty()) return;
+  run.attributeSeconds =
+      timed([&] { run.mesh.attributes = attributes.sample(run.mesh.positions, threads); });
 }
 
 /// Throws what readVolume() throws, with a hint where labels stand in the place of a surface.
@@ -361,6 +359,7 @@ MeshRun meshFile(const MeshArguments& arguments) {
   for (const std::string& name : meshes) {
     requireDistinct(outputOf(arguments.output, name), {arguments.input});
   }
+  const AttributeGrids attributes(arguments.input, arguments.attributes);
   ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, meshes.size())));
   if (arguments.labels) {
     run.grids = meshLabels(arguments, labels, std::move(volumes), bar);
@@ -372,7 +371,7 @@ MeshRun meshFile(const MeshArguments& arguments) {
   } else {
     for (const std::string& name : names) run.grids.push_back(meshGrid(arguments, name, bar));
   }
-  for (GridRun& grid : run.grids) sampleAttributes(arguments, grid);
+  for (GridRun& grid : run.grids) sampleAttributes(attributes, arguments.contour.threads, grid);
   if (names.empty() && !arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);
   if (arguments.check) {
     for (GridRun& grid : run.grids) checkMesh(grid, arguments, bar);

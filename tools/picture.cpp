@@ -251,7 +251,8 @@ int runPicture(PictureArguments& arguments) {
     run.pictureSeconds = timed([&] { run.picture = takePicture(*subject.surface, options); });
     run.writeSeconds = timed([&] { write(*run.picture, arguments.output); });
     if (run.picture->covered == 0) {
-      printNote("the picture is empty: no ray met a surface of " + shownInput(arguments.input));
+      printNote("note: the picture is empty: no ray met a surface of " +
+                shownInput(arguments.input));
     }
   }
   if (arguments.json) {

@@ -16,6 +16,7 @@
 #include "frames.h"
 #include "number.h"
 #include "open_edges.h"
+#include "paths.h"
 #include "standard_streams.h"
 
 namespace tufa::tools {
@@ -54,12 +55,34 @@ std::string suggestIsovalue(const GridInfo& info) {
   return greatest > 0 ? "--iso " + shortNumber(0.1 * greatest) : "a value between these";
 }
 
+/// What makes a volume of a file of another kind, by its ending; empty for a .vdb and what is not
+/// known.
+std::string commandFor(const std::string& file) {
+  const std::string ending = endingOf(file);
+  const auto isOneOf = [&](std::initializer_list<const char*> endings) {
+    return std::find(endings.begin(), endings.end(), ending) != endings.end();
+  };
+  if (isOneOf({".ply", ".obj", ".stl", ".off", ".glb"})) {
+    return "tufa voxelize makes a volume of a mesh";
+  }
+  if (isOneOf({".mhd", ".mha", ".nrrd", ".nii", ".png", ".tif", ".tiff", ".raw", ".dcm"})) {
+    return "tufa import makes a volume of images";
+  }
+  return ending == ".json" ? "tufa model makes a volume of a scene" : "";
+}
+
 /// Calls read() with a file, or with the bytes of standard input, under a CrashGuard.
 template <class Read>
 auto guarded(const std::string& file, Read&& read) {
   if (!isStandard(file)) {
     const CrashGuard guard(file);
-    return read(std::filesystem::path(file));
+    try {
+      return read(std::filesystem::path(file));
+    } catch (const Error& error) {
+      const std::string other = commandFor(file);
+      if (error.code() != ErrorCode::UnreadableFile || other.empty()) throw;
+      throw Error(error.code(), std::string(error.what()) + "; " + other);
+    }
   }
   const FileBytes bytes = standardInput();
   const CrashGuard guard(bytes.name);
@@ -217,9 +240,18 @@ void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
 void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
                     const std::string& file) {
   if (mesh.triangleCount() > 0) return;
+  const GridInfo info = describeGrid(grid);
+  const auto reaches = [&](const std::optional<double>& value, bool above) {
+    return value && (above ? *value >= isovalue : *value < isovalue);
+  };
+  // Between the values of active voxels there is none, but between them and the background.
+  const bool isAbove = reaches(info.minValue, true), isBelow = reaches(info.maxValue, false);
+  const bool runsOut =
+      (isAbove && info.background < isovalue) || (isBelow && info.background >= isovalue);
   throw Error(ErrorCode::UnsupportedGrid,
               "no surface at isovalue " + formatNumber(isovalue) + ": grid \"" + grid.getName() +
-                  "\" in " + shownInput(file) + " " + describeValues(describeGrid(grid)));
+                  "\" in " + shownInput(file) + " " + describeValues(info) +
+                  (runsOut ? "; --cap closes it where it runs out of the data" : ""));
 }
 
 std::optional<Length> lengthIn(const std::string& text) {

@@ -108,6 +108,10 @@ TEST_F(AttributeOptions, OfVelocitiesAreMorphTargets) {
                   "--shutter takes seconds");
   }
   expectFailure("mesh a.vdb -o n.glb --velocity heat --shutter 1", 2, "a motion needs vectors");
+  // Before there is a mesh: the grid would have none.
+  for (const char* command : {"mesh a.vdb -o n.glb", "lod a.vdb -o n.glb"}) {
+    expectFailure(std::string(command) + " --iso 1e9 --attribute nope", 3, "no grid \"nope\"");
+  }
 }
 
 TEST_F(AttributeOptions, SayWhatIsWrong) {

@@ -80,6 +80,17 @@ TEST_F(ChunksCommand, AssemblesClosedMeshesOfAnyLevels) {
   }
 }
 
+TEST_F(ChunksCommand, AssemblesIntoTheFolderAgain) {
+  makeChunks("--quiet");
+  for (int i = 0; i < 2; ++i) {
+    const Outcome outcome = run("chunks --assemble d --lods all:1 -o d/seen.ply");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  }
+  const ChunkIndex index = readChunkIndex((folder / "d").string());
+  const std::string file = "d/" + index.chunks.at(0).levels.at(0).file;
+  expectFailure("chunks --assemble d --lods all:1 -o " + file, 2, "would be overwritten");
+}
+
 TEST_F(ChunksCommand, AssemblesTheLevelsItSays) {
   makeChunks("--quiet");
   const auto lodsOf = [&](const std::string& lods) {

@@ -54,6 +54,16 @@ TEST_F(Hints, ForPatternsInThePlaceOfAName) {
   EXPECT_EQ(run("mesh v.vdb -o m.glb --grid 'f*' --quiet").exitCode, 0);
 }
 
+TEST_F(Hints, ForFilesOfOtherKinds) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o s.STL").exitCode, 0);
+  expectFailure("mesh s.STL -o m.ply", 3, "it is not an OpenVDB file; tufa voxelize");
+  for (const auto& [name, part] : {std::pair("ct.mhd", "tufa import"), {"s.json", "tufa model"}}) {
+    test::writeBytes(folder / name, "text of another kind");
+    expectFailure(std::string("info ") + name, 3, part);
+  }
+}
+
 TEST_F(Hints, ForIntegersAndFolders) {
   makeVolume();
   expectFailure("mesh l.vdb -o m.ply", 3, "--labels all");
