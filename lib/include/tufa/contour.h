@@ -62,8 +62,8 @@ struct ContourOptions {
   /// Mesh every cell on its own, at the finest level, instead of adaptively.
   bool uniform = false;
   /// Largest distance, both ways, between the adaptive mesh and the uniform one, in voxels (the
-  /// cube root of a voxel's world volume). Certified: it is measured, and cells are split until it
-  /// holds.
+  /// cube root of a voxel's world volume), 0 to 10^6. Certified: it is measured, and where it does
+  /// not hold less is collapsed, or, where cells alone are merged, they are split.
   double tolerance = 0.1;
   /// Largest angle between the normals of the surface that one cell gathers, in degrees: its cost
   /// follows curvature. 180: no bound.
@@ -170,7 +170,7 @@ struct ContourReport {
 ///
 /// Throws Error: UnsupportedGrid (other value types, frustum transforms), NonFiniteValues,
 /// InvalidArgument (isovalue not finite, an option out of its range), LimitExceeded (2^32 vertices
-/// or more), Cancelled.
+/// or more, or quads of the uniform mesh: 2^31, or 2^32 / 6 if it is to be reduced), Cancelled.
 [[nodiscard]] TUFA_API Mesh contour(const openvdb::GridBase& grid,
                                     const ContourOptions& options = {},
                                     ContourReport* report = nullptr);

@@ -20,6 +20,7 @@ CellTopology checkedTopology(const grid::Volume& volume, const ContourOptions& o
   CellTopology topology =
       buildCellTopology(volume.blocks, volume.scale, options.ambiguity, options.cap, job);
   requireIndexable(topology.vertexCount);
+  requireFaces(2 * topology.quadCount, options.uniform ? 1 : 3);
   return topology;
 }
 
@@ -30,6 +31,15 @@ void requireIndexable(std::uint64_t vertices) {
   throw Error(ErrorCode::LimitExceeded,
               "the mesh would have " + std::to_string(vertices) +
                   " vertices, more than 32-bit indices can name; use a coarser grid");
+}
+
+void requireFaces(std::uint64_t triangles, std::uint64_t each) {
+  const std::uint64_t most = std::numeric_limits<VertexIndex>::max() / each;
+  if (triangles <= most) return;
+  throw Error(ErrorCode::LimitExceeded, "the uniform mesh has " + std::to_string(triangles) +
+                                            " triangles, more than the " + std::to_string(most) +
+                                            " that can be worked on; use a coarser grid" +
+                                            (each > 1 ? ", or ask for the uniform mesh" : ""));
 }
 
 UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,

@@ -33,12 +33,16 @@ struct UniformSurface {
 };
 
 /// Runs the stages of the uniform mesh. Throws Error(LimitExceeded) if it would have more vertices
-/// than 32-bit indices can name.
+/// than 32-bit indices can name, or more triangles.
 [[nodiscard]] UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& options,
                                                 const StageEnds& ends, base::Job& job);
 
 /// Throws Error(LimitExceeded) for more vertices than 32-bit indices can name.
 void requireIndexable(std::uint64_t vertices);
+
+/// Throws Error(LimitExceeded) for more triangles than 32 bits can number, or if there are `each`
+/// of something for each of them.
+void requireFaces(std::uint64_t triangles, std::uint64_t each);
 
 /// What a report says of the cells of a surface.
 [[nodiscard]] ContourReport reportOf(const grid::Volume& volume, const CellTopology& topology);

@@ -20,6 +20,7 @@
 #include "chunks/cut/name_planes.h"
 #include "chunks/cut/pairs_at.h"
 #include "intersect/surface.h"
+#include "uniform/uniform_surface.h"
 
 namespace tufa::chunks {
 namespace {
@@ -259,6 +260,7 @@ class Cutter {
     }
     done.insert(done.end(), next, rest.end());
     out_.mesh.triangles = std::move(done);
+    uniform::requireFaces(out_.mesh.triangles.size(), 3);
   }
 
   [[nodiscard]] std::pair<Place, Place> rangeOf(const Triangle& t, int axis) const {
@@ -301,6 +303,7 @@ class Cutter {
   VertexIndex crossing(VertexIndex a, VertexIndex b, int axis, Place plane) {
     if (placeAt(a, axis) > placeAt(b, axis)) std::swap(a, b);
     const std::uint64_t key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+    uniform::requireIndexable(at_.size() + 1);
     const auto [found, isNew] = cuts_.emplace(key, static_cast<VertexIndex>(at_.size()));
     if (!isNew) return found->second;
     const double x = planes_.at(axis, plane / 2);
