@@ -127,7 +127,8 @@ struct ChunkIndex {
 
   /// The place of a chunk in `chunks`, or -1.
   [[nodiscard]] TUFA_API std::ptrdiff_t find(const Coord& index) const;
-  /// The place of the chunk beyond a face of a chunk, or -1.
+  /// The place of the chunk beyond a face, 0 to 5, of a chunk, or -1. Throws Error(InvalidArgument)
+  /// if there is no such face or chunk.
   [[nodiscard]] TUFA_API std::ptrdiff_t neighbour(std::size_t chunk, int face) const;
 };
 
@@ -153,15 +154,18 @@ TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOption
 [[nodiscard]] TUFA_API Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask);
 
 /// A bit for each face of a chunk whose neighbour is drawn at a coarser LOD. `lods` has an LOD for
-/// each of the index's chunks.
+/// each of the index's chunks. Throws Error(InvalidArgument) if it does not fit, or there is no
+/// such chunk.
 [[nodiscard]] TUFA_API unsigned transitionMask(const ChunkIndex& index, std::size_t chunk,
                                                const std::vector<std::size_t>& lods);
 
-/// Makes LODs finer until neighbours differ by at most one.
+/// Makes LODs finer until neighbours differ by at most one. Throws Error(InvalidArgument) if `lods`
+/// does not fit the index.
 TUFA_API void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods);
 
 /// For each chunk the coarsest LOD whose certified error covers at most `pixelError` pixels, made
-/// finer where neighbours would differ by more than one LOD.
+/// finer where neighbours would differ by more than one LOD. Throws Error(InvalidArgument) if a
+/// chunk of the index has no levels.
 [[nodiscard]] TUFA_API std::vector<std::size_t> selectLods(const ChunkIndex& index,
                                                            const Camera& camera,
                                                            double pixelError = 1);
@@ -187,8 +191,9 @@ struct ChunkFile {
 
 /// Writes the meshes of a chunk into a folder and returns the files, one for each LOD. Each appears
 /// whole or not at all. The index says how a .glb is stored; a .ply is in world units,
-/// uncompressed. Throws Error: UnwritableFile, InvalidArgument for compressed chunks off the
-/// index's lattice.
+/// uncompressed. May be called from several threads for different chunks. Throws Error:
+/// UnwritableFile, InvalidArgument for compressed chunks off the index's lattice, LimitExceeded for
+/// a .glb above 4 GiB.
 TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
                                            const std::string& folder, ChunkFormat format);
 

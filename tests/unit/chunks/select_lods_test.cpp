@@ -164,6 +164,18 @@ TEST(SelectLods, RefusesLevelsOfAnotherIndex) {
   test::expectError(ErrorCode::InvalidArgument, "3 levels for", [&] { restrictLods(index, lods); });
   test::expectError(ErrorCode::InvalidArgument, "3 levels for",
                     [&] { static_cast<void>(transitionMask(index, 0, lods)); });
+  const std::size_t count = index.chunks.size();
+  lods.assign(count, 0);
+  const auto refused = [](const std::string& part, const auto& call) {
+    test::expectError(ErrorCode::InvalidArgument, part, call);
+  };
+  refused("of chunk " + std::to_string(count),
+          [&] { static_cast<void>(transitionMask(index, count, lods)); });
+  refused("face 6", [&] { static_cast<void>(index.neighbour(0, 6)); });
+  refused("face -1", [&] { static_cast<void>(index.neighbour(0, -1)); });
+  ChunkIndex empty = index;
+  empty.chunks.front().levels.clear();
+  refused("no levels", [&] { static_cast<void>(selectLods(empty, Camera())); });
 }
 
 }  // namespace

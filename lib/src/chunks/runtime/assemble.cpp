@@ -242,7 +242,12 @@ std::ptrdiff_t ChunkIndex::find(const Coord& index) const {
 }
 
 std::ptrdiff_t ChunkIndex::neighbour(std::size_t chunk, int face) const {
-  return find(beyond(chunks.at(chunk).index, face));
+  if (chunk >= chunks.size() || face < 0 || face >= kChunkFaces) {
+    throw Error(ErrorCode::InvalidArgument,
+                "there is no face " + std::to_string(face) + " of chunk " + std::to_string(chunk) +
+                    ", of " + std::to_string(chunks.size()) + " with six faces each");
+  }
+  return find(beyond(chunks[chunk].index, face));
 }
 
 Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask) {

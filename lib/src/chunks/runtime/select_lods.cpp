@@ -15,6 +15,9 @@ void requireFit(const ChunkIndex& index, const std::vector<std::size_t>& lods) {
 
 /// The distance from a point to the box around all LODs of a chunk; 0 inside.
 double distanceTo(const ChunkEntry& chunk, const Position& eye) {
+  if (chunk.levels.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "a chunk of the index has no levels");
+  }
   const auto beyond = [&](double Position::*axis) {
     double least = chunk.levels.front().least.*axis;
     double greatest = chunk.levels.front().greatest.*axis;
