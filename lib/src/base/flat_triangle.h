@@ -35,12 +35,6 @@ class FlatTriangle {
     squared = height * height;
     return true;
   }
-  /// Squared distance of the point to the triangle's plane, not more than to the triangle; 0
-  /// without a plane.
-  [[nodiscard]] double squaredHeight(const Vec3& point) const {
-    const double height = normal_.dot(point - corners_[0]);
-    return height * height;
-  }
   /// Squared distance of the point.
   [[nodiscard]] double squaredDistance(const Vec3& point) const {
     double squared = 0;

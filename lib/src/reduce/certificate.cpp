@@ -401,6 +401,7 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
   Measured last;
   for (const Measured& p : parts) {
     for (const Index f : p.open) {
+      job.checkCancelled(0, 1);
       if (measure.findOwners(f, last)) continue;
       measure.halve(f, gaps, last);
       ++all.halved;

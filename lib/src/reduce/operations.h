@@ -26,7 +26,7 @@ enum class Outcome : std::uint8_t {
   Side,          ///< a small component would be turned inside out, or passed over
   Worthless      ///< a flip would not make the smaller angle larger
 };
-inline constexpr std::size_t kOutcomes = 15;
+inline constexpr std::size_t kOutcomes = static_cast<std::size_t>(Outcome::Worthless) + 1;
 
 /// How many operations came to each outcome.
 struct OperationCounts {

@@ -77,7 +77,7 @@ class Part {
     Index vertex;
     Vec3f axis;
   };
-  /// The neighbours of a vertex as seen from it, counter-clockwise.
+  /// The neighbours of a vertex as seen from it, counter-clockwise; none if there are too many.
   struct Link {
     Vec3f to[kMostRing + 1];
     int count = 0;

@@ -121,14 +121,14 @@ Outcome Part::tryContraction() {
   if (done_ + cluster_.size() - 1 > limits_.quota) return Outcome::Place;
   Vec3f exact;
   if (!solveCluster(exact)) return Outcome::Sample;
-  place_ = surface_->roundedPlace(exact);
+  place_ = exact;
   if (!box_.hasInside(place_)) return Outcome::Place;
   if (!gatherClusterRing() || isNarrowRing()) return Outcome::Link;
   if (const std::size_t before = cluster_.size(); !fillNotches()) {
     return Outcome::Link;
   } else if (cluster_.size() > before) {
     if (!solveCluster(exact)) return Outcome::Sample;
-    place_ = surface_->roundedPlace(exact);
+    place_ = exact;
     if (!box_.hasInside(place_)) return Outcome::Place;
   }
   const Index nearest = nearestMember();

@@ -86,7 +86,7 @@ Outcome Part::tryCollapse(Index a, Index b) {
   Vec3f exact;
   solve(a, b, exact, sum_);
   if (!gatherRing(a, b)) return Outcome::Link;
-  Outcome outcome = tryPlace(a, b, surface_->roundedPlace(exact));
+  Outcome outcome = tryPlace(a, b, exact);
   const bool isFar =
       outcome == Outcome::Sample || outcome == Outcome::Apex || outcome == Outcome::Crossing;
   if (outcome != Outcome::Done && (limits_.allPlaces || !isFar)) {

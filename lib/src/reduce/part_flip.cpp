@@ -121,6 +121,7 @@ Part::Link Part::linkAfterFlip(const Index* v, int k) const {
     }
     c = around(c);
   } while (c != corner_[v[k]] && link.count < kMostRing - 1);
+  if (c != corner_[v[k]]) return {};
   if (k == 1 || k == 2) link.changed = link.changed % link.count;
   return link;
 }

@@ -156,8 +156,8 @@ bool Part::passesOver(std::span<const Index> merged, std::span<const Index> vani
     };
     for (int i = 0; i < size_; ++i) without(at_[i] / 3);
     for (const Index gone : vanishing) without(gone);
-    constexpr float kHalfTurn = 6.2831853f;  // 0 outside, 4 pi inside
-    return std::abs(winding) > kHalfTurn;
+    constexpr float kHalfSphere = 6.2831853f;  // 0 outside, 4 pi inside
+    return std::abs(winding) > kHalfSphere;
   });
 }
 

@@ -83,7 +83,7 @@ Outcome Part::tryKnot() {
     if (done_ + cluster_.size() - 1 > limits_.quota) return Outcome::Place;
     Vec3f exact;
     if (!solveCluster(exact)) return Outcome::Sample;
-    place_ = surface_->roundedPlace(exact);
+    place_ = exact;
     if (!box_.hasInside(place_)) return Outcome::Place;
     if (!gatherClusterRing() || size_ > limits_.mostValence) return Outcome::Link;
     kept_ = cluster_[0];

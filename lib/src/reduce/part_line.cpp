@@ -110,7 +110,7 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
   Choice choices[3] = {{kNone, {}}, {kept[0], {}}, {kept[1], {}}};
   if (const Index moving = movingAtLine(a, b); moving != kNone) {
     const Index other = moving == a ? b : a;
-    choices[0] = {moving, surface_->roundedPlace(bestInPlane(moving, other, exact, sum_))};
+    choices[0] = {moving, bestInPlane(moving, other, exact, sum_)};
   }
   for (int i : {1, 2}) {
     if (choices[i].kept != kNone) choices[i].place = position_[choices[i].kept];

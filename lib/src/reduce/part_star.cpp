@@ -260,6 +260,7 @@ Part::Link Part::linkAfterMerging(Index v) const {
     }
     c = around(c);
   } while (c != corner_[v] && link.count < kMostRing);
+  if (c != corner_[v]) link.count = 0;
   return link;
 }
 

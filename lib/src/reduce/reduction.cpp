@@ -123,9 +123,7 @@ Reduction::Reduction(Meshes meshes, bool isReference, Options options, base::Job
       surface_(std::move(meshes.surface)),
       reference_(std::move(meshes.reference)),
       largestScale_(meshes.largestScale),
-      isReference_(isReference) {
-  surface_.rounded = options_.rounded;
-}
+      isReference_(isReference) {}
 
 Reduction::~Reduction() = default;
 
@@ -159,7 +157,6 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
 // is seldom: a copy would take 57 bytes a vertex, with regions, at the time of the most memory.
 Surface Reduction::wholeSurface() const {
   Surface surface = makeSurface(reference_.positions(), reference_.faces(), job_);
-  surface.rounded = options_.rounded;
   locateAll(surface, reference_, {}, job_);
   if (regions_) reduce::setRegions(surface, regions_(), job_);
   return surface;
@@ -442,8 +439,6 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
   lastStored_.clear();
   ++phaseNumber_;
 }
-
-void Reduction::measure(float expected) { measureWithin(expected * largestScale_); }
 
 void Reduction::measureWithin(float expected) {
   certificate_ = isReference_ ? Certificate() : certify(surface_, reference_, expected, job_);

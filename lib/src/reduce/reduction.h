@@ -41,9 +41,6 @@ struct ReducedMesh {
 };
 
 struct Options {
-  /// A place as the caller will write it, say rounded to single precision in world space: guards
-  /// judge what is written. Called from several threads. Empty: places are written as they are.
-  std::function<Vec3f(const Vec3f&)> rounded;
   Index partVertices = 8192;  ///< most vertices of a part; the result depends on it
   float leastAngle = 10;      ///< degrees under which a triangle is a sliver
   /// Of the triangles that may become slivers nevertheless. 0: a collapse makes none but in the
@@ -113,9 +110,6 @@ class Reduction {
   [[nodiscard]] Index triangleCount() const {
     return static_cast<Index>(surface_.triangles.size());
   }
-  /// Measures the mesh as it is. Distances up to `expected` voxels need not be found tightly, which
-  /// is what takes time. Done by the other two.
-  void measure(float expected);
   /// What was measured last. A mesh that is still the reference has a certificate of 0.
   [[nodiscard]] const Certificate& certificate() const { return certificate_; }
   /// How often the mesh was reduced to the last tolerance.

@@ -30,8 +30,6 @@ class ReferenceMesh {
   [[nodiscard]] const std::array<Index, 3>& vertices(Index face) const {
     return faces_[face].vertices;
   }
-  /// The corner across the edge opposite a corner, or kNone.
-  [[nodiscard]] Index opposite(Index c) const { return opposite_[c]; }
   /// One of a vertex's corners, or kNone.
   [[nodiscard]] Index cornerOf(Index vertex) const { return cornerOf_[vertex]; }
   /// Whether what guards allow differs from place to place.

@@ -29,7 +29,7 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
   Vec3f normals[kMost];
   const auto vertexAt = [&](Index c) { return s.triangles[c / 3].vertices[c % 3]; };
   int n = 0;
-  bool isSteep = false;
+  bool isSteep = false, isTooMany = false;
   Index sum = 0;  // each neighbour once as start and once as end of the link, unless it is open
   const Vec3f p = s.position[v];
   for (const Index c : corners.of(v)) {
@@ -41,11 +41,15 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
       isSteep = true;
       continue;
     }
-    if (n < kMost) normals[n++] = normal * (1 / l);
+    if (n == kMost) {
+      isTooMany = true;
+    } else {
+      normals[n++] = normal * (1 / l);
+    }
   }
   if (sum != 0) setFlag(s.flags[v], kBorder);
   float leastCosine = -1;
-  if (n > 0) s.axis[v] = commonAxis(normals, n, leastCosine);
+  if (n > 0 && !isTooMany) s.axis[v] = commonAxis(normals, n, leastCosine);
   if (isSteep || leastCosine < kSteepCosine) setFlag(s.flags[v], kSteep);
   if (leastCosine >= kLeastCosine) return;
   s.axis[v] = {};

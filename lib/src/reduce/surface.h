@@ -57,9 +57,6 @@ struct Surface {
   std::vector<Vec3f> planeNormals;  ///< see Regions
   std::function<bool(Index region, Index plane, Vec3f place, Vec3f a, Vec3f b)> mayHold;
 
-  /// A place as it will be written, which is what the guards judge; empty: as it is.
-  std::function<Vec3f(const Vec3f&)> rounded;
-
   [[nodiscard]] static std::uint64_t chordKey(Index a, Index b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
   }
@@ -70,7 +67,6 @@ struct Surface {
   [[nodiscard]] bool hasLines() const { return !line.empty(); }
   [[nodiscard]] bool isOnLine(Index v) const { return hasLines() && line[v].kind != LineKind::Off; }
   [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis[v]) != 0; }
-  [[nodiscard]] Vec3f roundedPlace(Vec3f p) const { return rounded ? rounded(p) : p; }
   [[nodiscard]] const Vec3f& corner(Index triangle, std::size_t i) const {
     return position[triangles[triangle].vertices[i]];
   }

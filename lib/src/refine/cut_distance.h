@@ -28,7 +28,7 @@ struct Deviation {
 /// triangles that have a vertex in common with the owner of one of its ends. So it is as it was
 /// unless something changed around these.
 ///
-/// Cost: about a quarter of a microsecond a uniform vertex at first.
+/// Cost: about half a microsecond a uniform vertex at first.
 class CutDistance {
  public:
   /// `base` is the uniform mesh. It, the rule and `job` must outlive this object.

@@ -44,7 +44,6 @@ class SurfaceReduction {
   [[nodiscard]] Position positionOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
   [[nodiscard]] reduce::ReducedMesh extract(AdaptiveMesh& adaptive) const;
-  [[nodiscard]] Normal normalAt(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   void findComponents();
   [[nodiscard]] std::vector<std::size_t> trianglesOfComponents(
       const reduce::ReducedMesh& reduced) const;

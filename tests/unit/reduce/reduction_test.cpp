@@ -147,24 +147,6 @@ TEST(Reduction, SaysWhichVerticesAreTheInputs) {
   EXPECT_LT(kept, out.positions.size());
 }
 
-TEST(Reduction, PlacesVerticesAsTheyWillBeWritten) {
-  const test::FineMesh mesh = test::bumpySphere(4, 8, 1, 2);
-  base::Job job(1, {});
-  Options options;
-  options.rounded = [](const Vec3f& p) {
-    const auto toSixteenths = [](float x) { return std::round(x * 16) / 16; };
-    return Vec3f(toSixteenths(p.x), toSixteenths(p.y), toSixteenths(p.z));
-  };
-  Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
-  reduction.toTolerance(0.3f);
-  const ReducedMesh out = reduction.mesh();
-  for (std::size_t v = 0; v < out.positions.size(); ++v) {
-    if (out.sources[v] != kNone) continue;
-    EXPECT_EQ(out.positions[v], options.rounded(out.positions[v]));
-  }
-  EXPECT_LE(reduction.certificate().largest, 0.3f);
-}
-
 TEST(Reduction, OfAChainGoesOnFromLevelToLevel) {
   const test::FineMesh mesh = test::bumpySphere(4, 8, 1, 4);
   base::Job job(1, {});
