@@ -83,10 +83,13 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
   requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
 }
 
-void sampleAttributes(const AttributeGrids& attributes, int threads, GridRun& run) {
-  if (run.mesh.positions.empty()) return;
-  run.attributeSeconds =
-      timed([&] { run.mesh.attributes = attributes.sample(run.mesh.positions, threads); });
+void sampleAttributes(const MeshArguments& arguments, std::optional<AttributeGrids>& attributes,
+                      GridRun& run) {
+  if (arguments.attributes.empty() || run.mesh.positions.empty()) return;
+  run.attributeSeconds = timed([&] {
+    if (!attributes) attributes.emplace(arguments.input, arguments.attributes);
+    run.mesh.attributes = attributes->sample(run.mesh.positions, arguments.contour.threads);
+  });
 }
 
 /// Throws what readVolume() throws, with a hint where labels stand in the place of a surface.
@@ -359,7 +362,9 @@ MeshRun meshFile(const MeshArguments& arguments) {
   for (const std::string& name : meshes) {
     requireDistinct(outputOf(arguments.output, name), {arguments.input});
   }
-  const AttributeGrids attributes(arguments.input, arguments.attributes);
+  // A frame of a sequence that may be empty need not have the grids.
+  std::optional<AttributeGrids> attributes;
+  if (!arguments.allowEmpty) attributes.emplace(arguments.input, arguments.attributes);
   ProgressBar bar(arguments.quiet, callShares(arguments, std::max<std::size_t>(1, meshes.size())));
   if (arguments.labels) {
     run.grids = meshLabels(arguments, labels, std::move(volumes), bar);
@@ -371,7 +376,7 @@ MeshRun meshFile(const MeshArguments& arguments) {
   } else {
     for (const std::string& name : names) run.grids.push_back(meshGrid(arguments, name, bar));
   }
-  for (GridRun& grid : run.grids) sampleAttributes(attributes, arguments.contour.threads, grid);
+  for (GridRun& grid : run.grids) sampleAttributes(arguments, attributes, grid);
   if (names.empty() && !arguments.quiet) noteChoice(arguments.input, run.grids.front().grid);
   if (arguments.check) {
     for (GridRun& grid : run.grids) checkMesh(grid, arguments, bar);
