@@ -92,6 +92,8 @@ foreach(file IN LISTS files)
       string(APPEND broken "${file}: only base names TBB\n")
     elseif(include MATCHES "<CGAL/" AND NOT folder STREQUAL "check")
       string(APPEND broken "${file}: only check names CGAL\n")
+    elseif(include MATCHES "<ceres/" AND NOT folder STREQUAL "fit")
+      string(APPEND broken "${file}: only fit names Ceres Solver\n")
     elseif(include MATCHES "${includes_openvdb}" AND NOT include MATCHES "${costs_nothing}"
         AND NOT file MATCHES "${knows_openvdb}")
       string(APPEND broken "${file}: only grid, attributes, filter, voxelize, shapes, io/grid and rays/grid include ${header}\n")
