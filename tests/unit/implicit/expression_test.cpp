@@ -2,8 +2,8 @@
 #include <tufa/implicit.h>
 
 #include <cmath>
-#include <limits>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
