@@ -84,17 +84,35 @@ bool sameNames(const std::vector<Attribute>& a, const std::vector<Attribute>& b)
   });
 }
 
+/// In what chunks of an earlier run differ, so that they would not meet those of this one: options
+/// and other things, with commas between them.
+std::string differences(const ChunkIndex& before, const ChunkIndex& index) {
+  const std::pair<const char*, bool> parts[] = {
+      {"the grid", before.grid != index.grid},
+      {"its transform", before.transform != index.transform || !(before.origin == index.origin)},
+      {"--chunk", before.chunkSize != index.chunkSize},
+      {"the tolerances", before.tolerances != index.tolerances},
+      {"--crease", before.creaseAngle != index.creaseAngle},
+      {"the compression", before.compression != index.compression || before.step != index.step},
+      {"--up", before.up != index.up},
+      {"--scale", before.scale != index.scale},
+      {"the attributes", !sameNames(before.attributes, index.attributes)},
+  };
+  std::string text;
+  for (const auto& [name, differs] : parts) {
+    if (differs) text += (text.empty() ? "" : ", ") + std::string(name);
+  }
+  return text;
+}
+
 /// Adds the chunks of an earlier run that this one has not built again.
 void keepOthers(ChunkIndex& index, const std::string& folder) {
   if (!std::filesystem::exists(std::filesystem::path(folder) / "chunks.json")) return;
   const ChunkIndex before = readChunkIndex(folder);
-  if (before.grid != index.grid || before.chunkSize != index.chunkSize ||
-      before.tolerances != index.tolerances || before.transform != index.transform ||
-      before.creaseAngle != index.creaseAngle || before.compression != index.compression ||
-      before.step != index.step || before.up != index.up || before.scale != index.scale ||
-      !sameNames(before.attributes, index.attributes) || !(before.origin == index.origin)) {
+  if (const std::string text = differences(before, index); !text.empty()) {
     throw Error(ErrorCode::InvalidArgument,
-                folder + " holds chunks of another volume or of other options");
+                folder + " holds chunks of another volume or of other options: they differ in " +
+                    text + "; make those of --only with the same, or all of them again");
   }
   std::map<tufa::Coord, ChunkEntry> chunks;
   for (const std::vector<ChunkEntry>* entries : {&before.chunks, &std::as_const(index.chunks)}) {
@@ -260,6 +278,9 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
   }
   if (assembling && arguments.assemble.lods.empty()) {
     throw Error(ErrorCode::InvalidArgument, "--assemble needs --lods");
+  }
+  if (command.count("--pixel-error") > 0 && !arguments.assemble.lods.starts_with("camera")) {
+    throw Error(ErrorCode::InvalidArgument, "--pixel-error is for --lods camera:X,Y,Z only");
   }
 }
 

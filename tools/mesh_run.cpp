@@ -29,15 +29,17 @@ bool hasBraces(const std::string& output) {
 
 /// The output with braces replaced by the grid's name, which may hold what a file name may not.
 std::string outputOf(const std::string& output, const std::string& grid) {
+  if (!hasBraces(output)) return output;
   const std::filesystem::path path = output;
   std::string name = path.filename().string();
-  const std::size_t braces = name.find("{}");
-  if (braces == std::string::npos) return output;
   std::string part = grid.empty() ? "mesh" : grid;
   for (char& c : part) {
     if (c == '/' || c == '\0') c = '_';
   }
-  name.replace(braces, 2, part);
+  for (std::size_t at = name.find("{}"); at != std::string::npos;
+       at = name.find("{}", at + part.size())) {
+    name.replace(at, 2, part);
+  }
   return (path.parent_path() / name).string();
 }
 

@@ -125,7 +125,8 @@ TEST_F(ChunksCommand, MakesChunksAloneAsTheyAreTogether) {
   for (const std::string& name : namesIn("d")) {
     EXPECT_EQ(readBytes(folder / "d" / name), readBytes(folder / "together" / name)) << name;
   }
-  expectFailure("chunks v.vdb -o d --chunk 16 --levels 2 --only 0,0,0", 2, "of other options");
+  expectFailure("chunks v.vdb -o d --chunk 16 --levels 2 --only 0,0,0", 2,
+                "of other options: they differ in the tolerances; make");
 }
 
 TEST_F(ChunksCommand, ASecondRunLeavesNoFileOfTheFirst) {
@@ -205,6 +206,8 @@ TEST_F(ChunksCommand, RefusesWhatItCannotDo) {
   expectFailure("chunks s.vdb -o d --format obj", 2, "--format");
   expectFailure("chunks s.vdb -o d --lods all:0", 2, "only for --assemble");
   expectFailure("chunks s.vdb -o d --normals faces", 2, "--normals");
+  expectFailure("chunks --assemble d --lods all:0 --pixel-error 2 -o m.ply", 2,
+                "camera:X,Y,Z only");
   expectFailure("chunks s.vdb -o missing/d", 3, "no folder");
   expectFailure("chunks missing.vdb -o d", 3, "missing.vdb");
   expectFailure("chunks s.vdb --assemble d --lods all:0 -o m.ply", 2, "takes no volume");

@@ -181,6 +181,8 @@ TEST_F(Usage, MeshesSeveralGrids) {
   EXPECT_EQ(run("mesh all.vdb -o m.obj --grid torus --grid box --quiet").exitCode, 0);
   EXPECT_EQ(readMesh(folder / "m.obj").triangleCount(), triangles);
   EXPECT_EQ(run("mesh all.vdb -o 'm_{}.ply' --grid '*' --quiet").exitCode, 0);
+  EXPECT_EQ(run("mesh all.vdb -o '{}_{}.ply' --grid sphere --quiet").exitCode, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "sphere_sphere.ply"));
   EXPECT_TRUE(std::filesystem::exists(folder / "m_sphere.ply"));
   EXPECT_EQ(readMesh(folder / "m_box.ply").triangleCount(), grids[0]["triangles"]);
   expectFailure("mesh all.vdb -o n.ply --grid '*'", 2, "{}");
