@@ -94,7 +94,7 @@ AttributeGrids::AttributeGrids(const std::string& file, const AttributeWords& wo
     sources_.push_back({readVolume(file, *words.velocity), *words.velocity, AttributeRole::Motion,
                         readShutter(words)});
   }
-  static_cast<void>(sample({}, 1));
+  static_cast<void>(sample({}, 1));  // throws what sampling would
 }
 
 std::vector<Attribute> AttributeGrids::sample(std::span<const Position> positions,

@@ -251,7 +251,7 @@ void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& 
   throw Error(ErrorCode::UnsupportedGrid,
               "no surface at isovalue " + formatNumber(isovalue) + ": grid \"" + grid.getName() +
                   "\" in " + shownInput(file) + " " + describeValues(info) +
-                  (runsOut ? "; --cap closes it where it runs out of the data" : ""));
+                  (runsOut ? "; it runs out of the data, where --cap of tufa mesh closes it" : ""));
 }
 
 std::optional<Length> lengthIn(const std::string& text) {

@@ -62,8 +62,8 @@ struct ContourOptions {
   /// Mesh every cell on its own, at the finest level, instead of adaptively.
   bool uniform = false;
   /// Largest distance, both ways, between the adaptive mesh and the uniform one, in voxels (the
-  /// cube root of a voxel's world volume), 0 to 10^6. Certified: it is measured, and where it does
-  /// not hold less is collapsed, or, where cells alone are merged, they are split.
+  /// cube root of a voxel's world volume), 0 to 10^6. Certified: it is measured. Where a
+  /// mesh exceeds it, fewer edges are collapsed there; without `simplify`, cells are split there.
   double tolerance = 0.1;
   /// Largest angle between the normals of the surface that one cell gathers, in degrees: its cost
   /// follows curvature. 180: no bound.

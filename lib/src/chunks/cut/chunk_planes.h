@@ -3,7 +3,6 @@
 #include <tufa/coord.h>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 
 namespace tufa::chunks {

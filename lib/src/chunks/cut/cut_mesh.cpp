@@ -381,7 +381,7 @@ class Cutter {
   std::vector<Vec3> at_;  ///< lattice points, counted from the origin of positions
   std::vector<PlacesAmongPlanes> place_;
   std::size_t axesCut_ = 0;    ///< across the first so many axes the mesh is cut
-  double reshaped_ = 0;        ///< how far collapses and flips have moved the surface at most
+  double reshaped_ = 0;        ///< how far collapses and flips have moved it, steps
   std::vector<double> moved_;  ///< how far each vertex was moved to planes, voxels
   std::unordered_map<std::uint64_t, VertexIndex> cuts_;
 };

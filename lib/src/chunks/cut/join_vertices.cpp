@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/collect.h"
+#include "chunks/cut/turned.h"
 
 namespace tufa::chunks {
 namespace {
@@ -143,10 +144,7 @@ class Joiner {
         const VertexIndex v = triangles_[t].vertices[i];
         before[i] = points_[v], after[i] = points_[v == b ? a : v];
       }
-      const Vec3 m = (before[1] - before[0]).cross(before[2] - before[0]);
-      const Vec3 n = (after[1] - after[0]).cross(after[2] - after[0]);
-      return !(n.dot(m) >= kTurnCosine * n.length() * m.length() &&
-               n.length() >= kLeastShare * m.length());
+      return isTurned(before, after, kTurnCosine, kLeastShare);
     });
   }
 

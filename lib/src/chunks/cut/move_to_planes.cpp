@@ -8,6 +8,7 @@
 
 #include "base/collect.h"
 #include "chunks/cut/pairs_at.h"
+#include "chunks/cut/turned.h"
 
 namespace tufa::chunks {
 namespace {
@@ -95,11 +96,7 @@ class PlaneMover {
       before[i] = after[i] = points_[v];
       if (target_[v] != kStays) after[i][axis_] = target_[v], isTouched = true;
     }
-    if (!isTouched) return false;
-    const Vec3 m = (before[1] - before[0]).cross(before[2] - before[0]);
-    const Vec3 n = (after[1] - after[0]).cross(after[2] - after[0]);
-    return !(n.dot(m) >= move.turnCosine * n.length() * m.length() &&
-             n.length() >= move.leastShare * m.length());
+    return isTouched && isTurned(before, after, move.turnCosine, move.leastShare);
   }
 
   // Puts vertices back whose move makes some of the triangles intersect others: where sheets nearly
