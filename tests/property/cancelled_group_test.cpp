@@ -163,6 +163,13 @@ TEST_F(CancelledGroup, ChangesNoFile) {
     writeLods(chain, folder / "m.glb", options);
     return test::readBytes(folder / "m.glb");
   });
+  expectNoWrongResult([&](const Progress& progress) {
+    WriteOptions options;
+    options.compression = GlbCompression::Quantized;
+    options.progress = progress;
+    write(chain.levels.front().mesh, folder / "w.glb", options);
+    return test::readBytes(folder / "w.glb");
+  });
   expectNoWrongResult([&](const Progress&) {
     writeGrids({grid}, folder / "g.vdb");
     const GridInfo info = describeGrids(folder / "g.vdb").at(0);

@@ -32,6 +32,7 @@ struct GlbTriangle {
   std::string primitives = R"([{"attributes":{"POSITION":0},"indices":1}])";
   std::string vertexCount = "3";
   std::string indexCount = "3";
+  std::string indexType = "5121";
   std::string more = "";  ///< further keys of the document, each with a comma before it
 };
 
@@ -48,8 +49,9 @@ inline std::string glbTriangle(const GlbTriangle& says) {
                              {"buffer":0,"byteOffset":36,"byteLength":4}],
               "accessors":[{"bufferView":0,"componentType":5126,"count":)" +
                    says.vertexCount + R"(,"type":"VEC3"},
-                           {"bufferView":1,"componentType":5121,"count":)" +
-                   says.indexCount + R"(,"type":"SCALAR"}])" + says.more + "}",
+                           {"bufferView":1,"componentType":)" +
+                   says.indexType + R"(,"count":)" + says.indexCount + R"(,"type":"SCALAR"}])" +
+                   says.more + "}",
                binary);
 }
 

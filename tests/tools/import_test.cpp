@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/expect_error.h"
 #include "support/json.h"
 #include "tools/command_fixture.h"
 
@@ -117,6 +118,14 @@ TEST_F(Import, ThresholdsAndNaNAreBackground) {
   EXPECT_EQ(grid->tree().getValue(openvdb::Coord(1, 1, 1)), 8);
   ASSERT_EQ(run("import v -o v.vdb --type f32 --size 2,2,2").exitCode, 0);
   EXPECT_EQ(gridOf("v.vdb")->background(), -5);
+}
+
+TEST_F(Import, KeepsToTheRoomThatAReaderIsGiven) {
+  ImageSlices image;
+  image.size = {4, 4, 4};
+  image.read = [](std::int64_t, std::int64_t, std::vector<float>& values) { values.resize(3); };
+  test::expectError(ErrorCode::InvalidArgument, "64, and not resize them to 3",
+                    [&] { (void)importSlices(image); });
 }
 
 TEST_F(Import, RefusesWhatDoesNotFit) {

@@ -89,11 +89,12 @@ struct Camera {
                                              double pixelError = 1);
 
 /// Options of writeLods(). `allLevelsScene` and `compression` are for .glb only, `up` and `scale`
-/// for .glb and .usda.
+/// for .glb, .usda and .3mf.
 struct LodWriteOptions {
   std::string name = "mesh";  ///< of nodes and meshes: NAME_LOD0, NAME_LOD1, ...
-  /// .glb and .obj: normals are split where those of two faces at an edge differ by more than this
-  /// angle: degrees, 0 to 180; 180 splits none. In .glb the vertices there become several.
+  /// .glb, .obj and .usda: normals are split where those of two faces at an edge differ by more
+  /// than this angle: degrees, 0 to 180; 180 splits none. In .glb the vertices there become
+  /// several.
   double creaseAngle = 40;
   /// A second scene of all LODs, NAME_all_levels, for programs that find LODs by their names.
   /// Without it the nodes of coarser LODs stand in no scene, and MSFT_lod alone leads to them.

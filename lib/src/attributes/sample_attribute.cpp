@@ -55,6 +55,17 @@ double sampleComponent(const Accessor& accessor, const Vec3d& place, int i) {
   return sum;
 }
 
+/// A place whose coordinates fit 32-bit integers, and 0 in place of NaN: mesh and grid may be of
+/// any size. That far out there is nothing but background.
+Vec3d nearestPlace(const Vec3d& place) {
+  constexpr double kMost = 1e9;
+  Vec3d nearest;
+  for (int axis = 0; axis < 3; ++axis) {
+    nearest[axis] = std::isnan(place[axis]) ? 0 : std::clamp(place[axis], -kMost, kMost);
+  }
+  return nearest;
+}
+
 /// The values at a range of positions.
 template <class GridT>
 void sampleRange(const GridT& grid, std::span<const Position> positions, double factor,
@@ -64,7 +75,7 @@ void sampleRange(const GridT& grid, std::span<const Position> positions, double 
   const auto width = static_cast<std::size_t>(attribute.width);
   for (std::size_t v = begin; v < end; ++v) {
     const Position& p = positions[v];
-    const Vec3d place = grid.transform().worldToIndex(Vec3d(p.x, p.y, p.z));
+    const Vec3d place = nearestPlace(grid.transform().worldToIndex(Vec3d(p.x, p.y, p.z)));
     for (int i = 0; i < attribute.width; ++i) {
       Vec3d at = place;
       if (staggered && attribute.width == 3) at[i] += 0.5;

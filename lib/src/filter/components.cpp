@@ -174,6 +174,7 @@ class Labelling {
   void joinTiles() {
     openvdb::tree::ValueAccessor<const LabelTree> accessor(labels_);
     constexpr int kStride = LabelLeaf::DIM;
+    std::size_t done = 0;
     for (const CoordBBox& tile : tiles_) {
       if (interrupter_.cancelled()) return;
       const Label label = accessor.getValue(tile.min());
@@ -182,6 +183,7 @@ class Labelling {
         Coord at = tile.min();
         at[axis] = tile.max()[axis] + 1;
         for (at[u] = tile.min()[u]; at[u] <= tile.max()[u]; at[u] += kStride) {
+          pollInterrupter(done++);
           for (at[v] = tile.min()[v]; at[v] <= tile.max()[v]; at[v] += kStride) {
             // Of a leaf this is one voxel of many, which were joined from there.
             const Label other = accessor.getValue(at);

@@ -65,6 +65,17 @@ Vec3 meanOfChanges(const CellLabels& labels) {
   return sum / static_cast<double>(count);
 }
 
+/// Throws Error(InvalidArgument) where a cell has one label: the mesh is of another grid.
+void requireChange(const CellLabels& corners, std::int64_t label, std::size_t vertex) {
+  const bool hasOne = std::all_of(corners.begin(), corners.end(),
+                                  [&](std::int64_t other) { return other == corners.front(); });
+  if (!hasOne) return;
+  throw Error(ErrorCode::InvalidArgument, "the mesh of label " + std::to_string(label) +
+                                              " is not of this grid and these "
+                                              "labels: no surface passes the cell of its vertex " +
+                                              std::to_string(vertex));
+}
+
 std::size_t labelsIn(const CellLabels& labels) {
   CellLabels sorted = labels;
   std::sort(sorted.begin(), sorted.end());
@@ -114,7 +125,7 @@ void requireNets(const std::vector<Mesh>& meshes, const std::vector<std::int64_t
   }
 }
 
-/// How far a world unit of each axis is in voxels, at most.
+/// The world length of the shortest step of the lattice.
 double shortestStep(const openvdb::math::Transform& transform) {
   const auto origin = transform.indexToWorld(openvdb::Vec3d(0.0));
   double least = (transform.indexToWorld(openvdb::Vec3d(1, 0, 0)) - origin).length();
@@ -150,6 +161,7 @@ std::vector<InterfaceReport> shareInterfaces(const openvdb::GridBase& grid,
       for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const Coord& cell = mesh.cells[v];
         const CellLabels corners = reader.cell(cell);
+        requireChange(corners, labels[n], v);
         const Vec3 place = Vec3(cell) + meanOfChanges(corners);
         const auto world = transform.indexToWorld(openvdb::Vec3d(place[0], place[1], place[2]));
         mesh.positions[v] = {world[0], world[1], world[2]};

@@ -14,6 +14,7 @@
 #include "base/job.h"
 #include "base/number_text.h"
 #include "filter/steps.h"
+#include "grid/non_finite.h"
 #include "grid/volume.h"
 
 namespace tufa {
@@ -37,7 +38,7 @@ double backgroundOf(const GridBase& grid) {
 std::size_t countNonFinite(const GridBase& grid) {
   std::size_t count = 0;
   grid.apply<openvdb::RealGridTypes>([&](const auto& typed) {
-    for (auto value = typed.cbeginValueOn(); value; ++value) {
+    for (auto value = typed.cbeginValueAll(); value; ++value) {
       if (!std::isfinite(*value)) ++count;
     }
   });
@@ -47,6 +48,7 @@ std::size_t countNonFinite(const GridBase& grid) {
 void requireUnitable(const GridBase& grid) {
   grid::requireMeshable(grid);
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) refuse(grid, "is none");
+  grid::requireFiniteBackground(backgroundOf(grid));
   if (!(backgroundOf(grid) > 0)) {
     refuse(grid, "has the background " + base::numberText(backgroundOf(grid)) +
                      ", which must be the width of its band");

@@ -30,8 +30,13 @@ std::function<double(const Vec3&)> toleranceScale(
   const auto grid = openvdb::gridConstPtrCast<openvdb::FloatGrid>(scales);
   return [grid, transform](const Vec3& point) {
     const openvdb::Vec3d world = toVdb(transform.indexToWorld(point));
-    const openvdb::Coord at = openvdb::Coord::round(grid->transform().worldToIndex(world));
-    const float value = grid->tree().getValue(at);
+    const openvdb::Vec3d place = grid->transform().worldToIndex(world);
+    // Coordinates are 32-bit integers.
+    constexpr double kMost = 1e9;
+    const bool isOnLattice =
+        std::abs(place[0]) < kMost && std::abs(place[1]) < kMost && std::abs(place[2]) < kMost;
+    const float value =
+        isOnLattice ? grid->tree().getValue(openvdb::Coord::round(place)) : grid->background();
     return std::isfinite(value) ? std::max(0.0, static_cast<double>(value)) : 0.0;
   };
 }

@@ -30,17 +30,40 @@ void requireRange(const openvdb::GridBase& grid) {
               "grid \"" + grid.getName() + "\" cannot be meshed: " + why);
 }
 
-void requireCoordinates(const openvdb::GridBase& grid) {
-  // Cells and nodes of the tree reach that far beyond the data at most.
-  constexpr std::int64_t kMargin = 4096;
-  constexpr std::int64_t kEnd = std::int64_t{1} << 31;
+// Cells and nodes of the tree reach that far beyond the data at most: as far as the root's children
+// and tiles are wide. Tiles that are not active count, too, as they may be inside.
+constexpr std::int64_t kCoordinateMargin = 4096;
+
+template <class Iterator>
+void addRootItems(Iterator item, openvdb::CoordBBox& box) {
+  for (; item; ++item) box.expand(item.getCoord());
+}
+
+template <class GridT>
+openvdb::CoordBBox rootOrigins(const openvdb::GridBase& grid) {
+  static_assert(GridT::TreeType::RootNodeType::ChildNodeType::DIM == kCoordinateMargin);
+  const auto& root = static_cast<const GridT&>(grid).tree().root();
   openvdb::CoordBBox box;
-  if (!grid.constBaseTree().evalLeafBoundingBox(box)) return;
+  addRootItems(root.cbeginChildOn(), box);
+  for (auto tile = root.cbeginValueAll(); tile; ++tile) {
+    if (tile.isValueOn() || *tile != root.background()) box.expand(tile.getCoord());
+  }
+  return box;
+}
+
+// The grid must be of float or double.
+void requireCoordinates(const openvdb::GridBase& grid) {
+  constexpr std::int64_t kEnd = std::int64_t{1} << 31;
+  const openvdb::CoordBBox box = grid.isType<openvdb::FloatGrid>()
+                                     ? rootOrigins<openvdb::FloatGrid>(grid)
+                                     : rootOrigins<openvdb::DoubleGrid>(grid);
+  if (box.empty()) return;
   for (int axis = 0; axis < 3; ++axis) {
-    if (box.min()[axis] >= kMargin - kEnd && box.max()[axis] < kEnd - kMargin) continue;
+    const std::int64_t least = box.min()[axis], most = box.max()[axis] + kCoordinateMargin - 1;
+    if (least >= kCoordinateMargin - kEnd && most < kEnd - kCoordinateMargin) continue;
     throw Error(ErrorCode::LimitExceeded,
-                "grid \"" + grid.getName() + "\" has coordinates from " +
-                    std::to_string(box.min()[axis]) + " to " + std::to_string(box.max()[axis]) +
+                "grid \"" + grid.getName() + "\" has coordinates from about " +
+                    std::to_string(least) + " to " + std::to_string(most) +
                     ", too near to the ends of 32-bit integers; move it towards the origin");
   }
 }

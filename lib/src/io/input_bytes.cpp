@@ -45,6 +45,11 @@ std::string_view withoutPlus(std::string_view word) {
 
 }  // namespace
 
+bool fitsMemory(std::uint64_t bytes) {
+  return bytes < static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                     static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
 InputBytes::InputBytes(const std::filesystem::path& path) : path_(path) {
   // O_NONBLOCK: a pipe without a writer is refused, not waited for.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
@@ -55,10 +60,7 @@ InputBytes::InputBytes(const std::filesystem::path& path) : path_(path) {
   if (!S_ISREG(status.st_mode)) fail("it is not a regular file");
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size == 0) fail("the file is empty");
-  // A sparse file may claim any size, and the system may promise any.
-  const auto memory = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-                      static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  if (size < memory) bytes_.reset(new (std::nothrow) char[size]);
+  if (fitsMemory(size)) bytes_.reset(new (std::nothrow) char[size]);
   if (!bytes_) fail("its " + std::to_string(size) + " bytes do not fit into memory");
   for (std::size_t done = 0; done < size;) {
     const ssize_t count = ::read(file.number, bytes_.get() + done, size - done);

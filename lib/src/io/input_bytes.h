@@ -11,6 +11,10 @@
 
 namespace tufa::io {
 
+/// Whether so many bytes are less than the machine's memory. A sparse file may claim any size, and
+/// the system may promise any.
+[[nodiscard]] bool fitsMemory(std::uint64_t bytes);
+
 /// A whole file in memory.
 class InputBytes {
  public:

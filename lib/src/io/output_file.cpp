@@ -66,19 +66,23 @@ void requireWritablePath(const std::filesystem::path& path) {
   }
 }
 
-OutputFile::OutputFile(const std::filesystem::path& path) : target_(path) {
+OutputFile::OutputFile() { buffer_.reserve(kBufferBytes); }
+
+OutputFile::OutputFile(const std::filesystem::path& path) : OutputFile() {
+  target_ = path;
   requireWritablePath(path);
-  buffer_.reserve(kBufferBytes);
   if (isPipeOrDevice(path)) {
     openDirect();
   } else {
     openTemporary();
+    keepMode();
   }
 }
 
-OutputFile::OutputFile(std::ostream& stream)
-    : target_("the stream"), stream_(&stream), direct_(true) {
-  buffer_.reserve(kBufferBytes);
+OutputFile::OutputFile(std::ostream& stream) : OutputFile() {
+  target_ = "the stream";
+  stream_ = &stream;
+  direct_ = true;
 }
 
 OutputFile::~OutputFile() {
@@ -103,7 +107,6 @@ void OutputFile::openTemporary() {
     descriptor_ = ::open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ >= 0) {
       temporary_ = candidate;
-      keepMode();
       return;
     }
     if (errno != EEXIST) break;

@@ -33,6 +33,7 @@ class OutputFile {
   void commit();
 
  private:
+  OutputFile();  ///< nothing is open yet: what fails from then on is cleaned up
   void openDirect();
   void openTemporary();
   void keepMode() const;

@@ -15,6 +15,7 @@
 #include "base/job.h"
 #include "base/lattice_range.h"
 #include "base/number_text.h"
+#include "base/parallel.h"
 #include "base/vec3.h"
 #include "grid/build_blocks.h"
 #include "implicit/boxes.h"
@@ -182,12 +183,15 @@ class Sampler {
 
 /// Where a field without slopes beside the surface leaves both ends of a crossing beyond the band,
 /// makes them active: the surface would have a hole there.
-void activateCrossings(openvdb::FloatGrid& grid) {
+void activateCrossings(openvdb::FloatGrid& grid, base::Job& job) {
   const auto& tree = grid.tree();
   const float nearly = grid.background() * 0.999F;
   std::vector<openvdb::Coord> crossings;
   const auto accessor = grid.getConstAccessor();
+  std::size_t done = 0;
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+    constexpr std::size_t kWork = openvdb::FloatTree::LeafNodeType::SIZE;
+    job.pollCancelled(kWork * done++);
     for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel) {
       const openvdb::Coord at = voxel.getCoord();
       const bool inside = *voxel < 0;
@@ -251,7 +255,7 @@ openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field, const VoxelizeOpt
   }
   // Leaves already hold the right signs; only the tiles between them are still all outside.
   job.run([&] { openvdb::tools::signedFloodFill(result->tree(), true, 1, 1); });
-  if (!field.hasUnitGradient()) activateCrossings(*result);
+  if (!field.hasUnitGradient()) activateCrossings(*result, job);
   if (options.fog) {
     job.run([&] { voxelize_field::toFog(*result); });
   }
@@ -259,7 +263,7 @@ openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field, const VoxelizeOpt
   if (report != nullptr) {
     report->samples = counts.samples;
     report->blocks = counts.blocks;
-    report->activeVoxels = result->activeVoxelCount();
+    base::runIsolated([&] { report->activeVoxels = result->activeVoxelCount(); });
     report->hiddenVoxels = counts.hidden.found;
     report->undecidedVoxels = counts.hidden.undecided;
     report->firstHidden = counts.hidden.first;

@@ -73,6 +73,17 @@ TEST(Attributes, AreTrilinearInWorldSpace) {
   }
 }
 
+// Coordinates of voxels are 32-bit integers, those of a mesh are not.
+TEST(Attributes, AreTheBackgroundFarAway) {
+  Mesh mesh;
+  const double nan = std::nan("");
+  mesh.positions = {{1e300, 0, 0}, {0, -1e12, 0}, {nan, nan, 1e30}};
+  const auto grid = openvdb::FloatGrid::create(7);
+  grid->setName("field");
+  grid->tree().setValue({0, 0, 0}, 1);
+  EXPECT_EQ(sampleAttribute(mesh, *grid).values, (std::vector<float>{7, 7, 7}));
+}
+
 TEST(Attributes, IntegersAreNotRoundedBetweenVoxels) {
   Mesh mesh;
   mesh.positions = {{0.25, 0, 0}, {1.5, 0, 0}};

@@ -305,6 +305,11 @@ TEST_F(ChunkFiles, IndexKeepsEveryBit) {
   }
 }
 
+TEST_F(ChunkFiles, HaveNoChunkBeyondTheLast) {
+  test::expectError(ErrorCode::InvalidArgument, "there is no chunk 2 among 2",
+                    [&] { (void)readChunk(index, 2, name); });
+}
+
 TEST_F(ChunkFiles, IndexTellsTheNeighbours) {
   writeChunkIndex(index, name);
   const auto json = test::parseJson(readBytes(folder / "chunks.json"));

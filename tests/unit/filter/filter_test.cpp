@@ -8,6 +8,8 @@
 #include <tufa/filter.h>
 
 #include <tufa/contour.h>
+#include <tufa/extract.h>
+#include <tufa/labels.h>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -318,6 +320,25 @@ TEST(Filters, TakeNonFiniteValuesAsOutsideBeforeTheFirstStep) {
   options.isovalue = 0.25;
   const auto clipped = applyFilters(*fog, {ClipBox{{-9, -9, -9}, {9, 9, 9}}}, options);
   EXPECT_EQ(openvdb::gridPtrCast<FloatGrid>(clipped)->tree().getValue({0, 0, 0}), -0.5F);
+}
+
+// Positions became NaN without a word.
+TEST(Labels, MeshesOfAnotherGridShareNoInterfaces) {
+  const auto grid = openvdb::Int32Grid::create(0);
+  grid->tree().setValueOn({5, 5, 5}, 3);
+  ContourOptions options;
+  options.isovalue = 0.5;
+  options.keepCells = true;
+  const auto meshes = [&] {
+    return std::vector<Mesh>{
+        extract(*labelVolumes(*grid, {3}).front(), Method::SurfaceNets, {.contour = options})};
+  };
+  std::vector<Mesh> own = meshes();
+  EXPECT_EQ(shareInterfaces(*grid, {3}, own).size(), 1U);
+  grid->tree().setValueOn({5, 5, 5}, 4);
+  own.front().cells.front() = Coord(100, 0, 0);
+  expectError(ErrorCode::InvalidArgument, "mesh of label 3 is not of this grid",
+              [&] { (void)shareInterfaces(*grid, {3}, own); });
 }
 
 TEST(Filters, CanBeCancelled) {

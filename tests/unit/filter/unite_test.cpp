@@ -130,6 +130,17 @@ TEST(Unite, RefusesWhatHasNoUnion) {
     (void)uniteLevelSets({ball, broken});
   });
 
+  broken = ball->deepCopy();
+  broken->tree().addTile(2, {100000, 0, 0}, std::numeric_limits<float>::infinity(), false);
+  expectError(ErrorCode::NonFiniteValues, "1 NaN or infinite", [&] {
+    (void)uniteLevelSets({ball, broken});
+  });
+  const auto endless = openvdb::FloatGrid::create(std::numeric_limits<float>::infinity());
+  endless->setGridClass(openvdb::GRID_LEVEL_SET);
+  expectError(ErrorCode::NonFiniteValues, "background", [&] {
+    (void)uniteLevelSets({ball, endless});
+  });
+
   UniteOptions options;
   options.mostVoxels = 1000;
   expectError(ErrorCode::LimitExceeded, "the union would sample", [&] {

@@ -23,6 +23,7 @@ TEST(ToleranceScale, IsTheNearestValue) {
   EXPECT_EQ(scale(Vec3(1.4, 1.6, 3.4)), 0.5);
   EXPECT_EQ(scale(Vec3(1.6, 2, 3)), 7);
   EXPECT_EQ(scale(Vec3(-1e6, 0, 0)), 7) << "the background";
+  EXPECT_EQ(scale(Vec3(1e30, 0, 0)), 7) << "beyond all coordinates";
 }
 
 TEST(ToleranceScale, IsZeroWhereTheValueSaysNothing) {

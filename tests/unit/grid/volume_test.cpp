@@ -42,6 +42,12 @@ TEST(Volume, RefusesCoordinatesNearTheEndsOfIntegers) {
     const auto grid = FloatGrid::create(1);
     grid->tree().setValue(openvdb::Coord(0, at, 0), -1);
     test::expectError(ErrorCode::LimitExceeded, "coordinates", [&] { requireMeshable(*grid); });
+    // A tile may be inside whether it is active or not.
+    for (const openvdb::Index level : {1, 2, 3}) {
+      const auto tiles = openvdb::DoubleGrid::create(1);
+      tiles->tree().addTile(level, openvdb::Coord(at, 0, 0), -1, false);
+      test::expectError(ErrorCode::LimitExceeded, "coordinates", [&] { requireMeshable(*tiles); });
+    }
   }
 }
 

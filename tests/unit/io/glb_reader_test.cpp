@@ -91,6 +91,13 @@ TEST(GlbReader, TakesWholeNumbersOnlyForCounts) {
   expectUnreadable("m.glb", glbTriangle({.scene = "18446744073709551615"}), "damaged");
 }
 
+TEST(GlbReader, TakesUnsignedIndicesOnly) {
+  for (const char* type : {"5120", "5122", "5126"}) {
+    expectUnreadable("m.glb", glbTriangle({.indexCount = "1", .indexType = type}),
+                     "must be unsigned integers");
+  }
+}
+
 /// 20,000 parts of one accessor claimed 48 GB.
 TEST(GlbReader, BoundsWhatAFewBytesMayTake) {
   std::string binary;

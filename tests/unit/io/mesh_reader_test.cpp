@@ -137,6 +137,15 @@ TEST(PlyReader, BoundsCountsByTheFile) {
   expectUnreadable("m.ply", bytes, "longer than the file");
   expectUnreadable(
       "m.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1", "no y");
+  const std::string ascii = "ply\nformat ascii 1.0\n";
+  const std::string faces = "element face 1\nproperty list uchar uint vertex_indices\nend_header\n";
+  expectUnreadable("m.ply",
+                   ascii + "element vertex 9000000\n" + faces + "3 7000000 8000000 8999999\n",
+                   "the vertices have no x");
+  const std::string one =
+      "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  expectUnreadable("m.ply", ascii + one + one + faces + "0 0 0\n0 0 0\n3 0 0 0\n",
+                   "two elements \"vertex\"");
   expectUnreadable("m.ply", "ply\nelement vertex 0\nend_header\n", "no format");
   expectUnreadable("m.ply", "ply\nformat ascii 1.0\n", "does not end");
   expectUnreadable("m.ply", "plywood\n", "not a .ply");

@@ -140,6 +140,43 @@ TEST(LodFiles, AnEmptyChainIsAnEmptyScene) {
   EXPECT_EQ(readMesh(folder / "empty.glb").triangleCount(), 0u);
 }
 
+TEST(LodFiles, CountsVerticesOfEmptyLevelsToo) {
+  const ScratchFolder folder;
+  LodChain chain = chainOf(Shape::Sphere, 0.1, 2);
+  chain.levels[0].mesh = {};
+  for (const char* name : {"one.glb", "one.usda", "many{}.glb", "many{}.ply"}) {
+    LodWriteReport report;
+    writeLods(chain, folder / name, {}, &report);
+    ASSERT_EQ(report.vertices.size(), 2u) << name;
+    EXPECT_EQ(report.vertices[0], 0u) << name;
+    EXPECT_GT(report.vertices[1], 0u) << name;
+  }
+}
+
+// Each call of the progress may be the last.
+TEST(LodFiles, CanBeCancelledWhileTheyAreWritten) {
+  const LodChain chain = chainOf(Shape::Sphere, 0.1, 2);
+  for (const char* name : {"one.usda", "many{}.obj"}) {
+    std::size_t calls = 0;
+    LodWriteOptions options;
+    options.progress = [&](std::string_view, double) { return ++calls > 0; };
+    const ScratchFolder whole;
+    writeLods(chain, whole / name, options);
+    ASSERT_GT(calls, 4u) << name;
+    for (std::size_t last = 0; last < calls; ++last) {
+      const ScratchFolder folder;
+      std::size_t left = last;
+      options.progress = [&](std::string_view, double) { return left-- > 0; };
+      test::expectError(ErrorCode::Cancelled, "cancelled",
+                        [&] { writeLods(chain, folder / name, options); });
+      for (const auto& file : std::filesystem::directory_iterator(folder / "")) {
+        const std::string finished = file.path().filename().string();
+        EXPECT_EQ(readBytes(file.path()), readBytes(whole / finished)) << finished;
+      }
+    }
+  }
+}
+
 TEST(LodFiles, FloatsKeepEveryLevelAsItIs) {
   const ScratchFolder folder;
   const LodChain chain = chainOf(Shape::Bracket, 0.04);
@@ -420,6 +457,7 @@ TEST(LodFiles, BracesMakeOneFileForEachLevel) {
   const Json json = documentOf(readBytes(folder / "s_LOD1.glb"));
   EXPECT_EQ(json["nodes"][0]["name"], "mesh_LOD1");
   EXPECT_EQ(lodFile("a{}/b.glb", 3), "a{}/b.glb");
+  EXPECT_EQ(lodFile("a{}/b{}_{}.glb", 12), "a{}/b12_12.glb");
 }
 
 TEST(LodFiles, RefusesWrongUseAndLeavesNothing) {

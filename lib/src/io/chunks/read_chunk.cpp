@@ -167,7 +167,11 @@ ChunkLevel readLevel(const ChunkIndex& index, const ChunkLevelEntry& entry,
 }  // namespace
 
 Chunk readChunk(const ChunkIndex& index, std::size_t chunk, const std::string& folder) {
-  const ChunkEntry& entry = index.chunks.at(chunk);
+  if (chunk >= index.chunks.size()) {
+    throw Error(ErrorCode::InvalidArgument, "there is no chunk " + std::to_string(chunk) +
+                                                " among " + std::to_string(index.chunks.size()));
+  }
+  const ChunkEntry& entry = index.chunks[chunk];
   Chunk read;
   read.index = entry.index;
   for (const ChunkLevelEntry& level : entry.levels) {

@@ -92,6 +92,13 @@ Vec3 File::pointAt(const View& view, std::size_t n) const {
 std::vector<std::uint32_t> File::indicesOf(const nlohmann::json& accessorIndex,
                                            std::size_t positionCount) {
   const View view = viewOf(accessorIndex, "SCALAR", 1);
+  const bool isUnsigned = view.componentType == kUnsignedByte ||
+                          view.componentType == kUnsignedShort ||
+                          view.componentType == kUnsignedInt;
+  if (!isUnsigned) {
+    input_.fail("its indices are of component type " + std::to_string(view.componentType) +
+                ", and must be unsigned integers");
+  }
   takeMemory(view.count, sizeof(std::uint32_t));
   std::vector<std::uint32_t> indices;
   indices.reserve(view.count);

@@ -2,6 +2,7 @@
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/memory.h>
+#include <algorithm>
 #include <cmath>
 
 #include "base/job.h"
@@ -200,19 +201,34 @@ class LodWriter {
         report_.vertices.push_back(mesh.positions.size());
       }
       job_.beginStage("writing", 1);
-      const Progress nobody;
-      MeshSink sink(file, 0, 0, nobody);
+      std::size_t total = 0;
+      for (const MeshPart& part : parts) total += part.mesh->positions.size();
+      const Progress progress = writingProgress();
+      MeshSink sink(file, total, 0, progress);
       writeUsdaLods(parts, {options_.name, options_.up, options_.scale}, sink);
       file.commit();
     });
     job_.finish();
   }
 
+  /// The progress of what writes meshes by itself, as that of the present stage.
+  [[nodiscard]] Progress writingProgress() {
+    return [this](std::string_view /*stage*/, double fraction) {
+      constexpr double kSteps = 1000;
+      job_.checkCancelled(static_cast<std::size_t>(kSteps * std::clamp(fraction, 0.0, 1.0)),
+                          static_cast<std::size_t>(kSteps));
+      return true;
+    };
+  }
+
   void addLevel(LodDocument& document, std::size_t level) {
     const Mesh& mesh = chain_.levels[level].mesh;
     job_.beginStage("encoding", shareUpTo(level + 1));
     requireSoundAttributes(mesh.attributes, mesh.positions.size(), true);
-    if (mesh.triangleCount() == 0) return;
+    if (mesh.triangleCount() == 0) {
+      report_.vertices.push_back(0);
+      return;
+    }
     ShadedMesh shaded = shading::splitAtCreases(mesh, options_.creaseAngle, job_);
     const std::size_t whole[] = {shaded.indices.size()};
     shading::orderForGraphics(shaded, whole);
@@ -248,6 +264,7 @@ class LodWriter {
     options.up = options_.up;
     options.scale = options_.scale;
     options.threads = options_.threads;
+    options.progress = writingProgress();
     tufa::write(mesh, path, options);
     report_.vertices.push_back(mesh.positions.size());
     report_.files.push_back(path);
@@ -278,9 +295,11 @@ void runWriter(const LodChain& chain, const LodWriteOptions& options, LodWriteRe
 
 std::filesystem::path lodFile(const std::filesystem::path& path, std::size_t level) {
   std::string name = path.filename().string();
-  const std::size_t braces = name.find(io::kBraces);
-  if (braces == std::string::npos) return path;
-  name.replace(braces, io::kBraces.size(), std::to_string(level));
+  const std::string number = std::to_string(level);
+  for (std::size_t at = name.find(io::kBraces); at != std::string::npos;
+       at = name.find(io::kBraces, at + number.size())) {
+    name.replace(at, io::kBraces.size(), number);
+  }
   return path.parent_path() / name;
 }
 

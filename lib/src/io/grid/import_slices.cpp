@@ -78,8 +78,15 @@ void forLayers(const ImageSlices& image, base::Job& job, const Visit& visit) {
   for (std::int64_t z = 0; z < image.size[2]; z += kDim) {
     const std::int64_t count = std::min(kDim, image.size[2] - z);
     job.checkCancelled(static_cast<std::size_t>(z), static_cast<std::size_t>(image.size[2]));
-    values.resize(area * static_cast<std::size_t>(count));
+    const std::size_t size = area * static_cast<std::size_t>(count);
+    values.resize(size);
     image.read(z, count, values);
+    if (values.size() != size) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "the reader of slices must fill the values that it is given, " +
+                      std::to_string(size) + ", and not resize them to " +
+                      std::to_string(values.size()));
+    }
     visit(z, values);
   }
 }

@@ -176,7 +176,7 @@ class Converter {
       const auto key = RootData::KeyToCoord(tile.key);
       const Coord origin(key[0], key[1], key[2]);
       if (tile.child != 0) {
-        addUpper(place + tile.child, origin);
+        addUpper(sum(place, tile.child), origin);
       } else {
         addTile(kRootLevel, origin, valueOf(tile.value), tile.state != 0);
       }
@@ -203,6 +203,12 @@ class Converter {
     } else {
       return static_cast<Value>(value);
     }
+  }
+
+  // Offsets are what the file says: the sum may wrap around, and is checked where it is used.
+  static std::int64_t sum(std::int64_t place, std::int64_t offset) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(place) +
+                                     static_cast<std::uint64_t>(offset));
   }
 
   void requireInside(std::int64_t place, std::uint64_t bytes) const {
@@ -267,7 +273,7 @@ class Converter {
                                            kCell * static_cast<int>(n >> kBits & kMask),
                                            kCell * static_cast<int>(n & kMask));
       if (data.mChildMask.isOn(n)) {
-        child(place + data.mTable[n].child, corner);
+        child(sum(place, data.mTable[n].child), corner);
       } else {
         addTile(level, corner, valueOf(data.mTable[n].value), data.mValueMask.isOn(n));
       }

@@ -6,13 +6,13 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <new>
 #include <utility>
 
 #include "io/grid/head_checks.h"
 #include "io/grid/nanovdb.h"
 #include "io/grid/tree_walker.h"
+#include "io/input_bytes.h"
 #include "io/memory_buffer.h"
 
 namespace tufa::io {
@@ -101,11 +101,16 @@ bool VdbReader::readMagic() {
 }
 
 void VdbReader::readNano() {
-  std::string bytes(fileBytes_, '\0');
-  stream_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  std::map<std::string, openvdb::Index> count;
+  std::string bytes;
+  if (hasNanoVdb()) {
+    if (!fitsMemory(fileBytes_)) {
+      fail("its " + std::to_string(fileBytes_) + " bytes do not fit into memory");
+    }
+    bytes.resize(fileBytes_);
+    stream_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
   for (const GridBase::Ptr& grid : readNanoVdb(bytes, [this](const auto& why) { fail(why); })) {
-    const openvdb::Index before = count[grid->getName()]++;
+    const std::size_t before = timesNamed_[grid->getName()]++;
     const std::string unique = GridDescriptor::addSuffix(grid->getName(), static_cast<int>(before));
     entries_.push_back({GridDescriptor(unique, grid->type()), grid});
   }
@@ -131,6 +136,7 @@ void VdbReader::readHead() {
     Entry& entry = entries_.emplace_back();
     requireSoundDescriptor();
     entry.whole = entry.descriptor.read(stream_);
+    ++timesNamed_[entry.descriptor.gridName()];
     if (inputHasGridOffsets()) {
       entry.whole.reset();
       requireInside(entry.descriptor);
@@ -267,11 +273,9 @@ void VdbReader::requireSoundTree(const GridDescriptor& descriptor) {
 
 std::string VdbReader::gridName(std::size_t index) const {
   const GridDescriptor& descriptor = entries_.at(index).descriptor;
-  const auto sameName = std::count_if(entries_.begin(), entries_.end(), [&](const Entry& other) {
-    return other.descriptor.gridName() == descriptor.gridName();
-  });
-  return sameName == 1 ? descriptor.gridName()
-                       : GridDescriptor::nameAsString(descriptor.uniqueName());
+  return timesNamed_.at(descriptor.gridName()) == 1
+             ? descriptor.gridName()
+             : GridDescriptor::nameAsString(descriptor.uniqueName());
 }
 
 bool VdbReader::isNamed(std::size_t index, const std::string& name) const {

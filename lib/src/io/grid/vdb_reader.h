@@ -12,6 +12,7 @@
 #include <memory>
 #include <streambuf>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace tufa::io {
@@ -82,6 +83,7 @@ class VdbReader : private openvdb::io::Archive {
   std::istream stream_{nullptr};
   std::uint64_t fileBytes_ = 0;
   std::vector<Entry> entries_;
+  std::unordered_map<std::string, std::size_t> timesNamed_;  ///< how many grids have a name
 };
 
 }  // namespace tufa::io

@@ -1,9 +1,16 @@
 #include "io/mesh/mesh_builder.h"
 
+#include <limits>
+
 namespace tufa::io {
 
 void MeshBuilder::addFace(std::span<const std::uint64_t> corners, std::uint64_t positionCount,
                           const Fail& fail) {
+  constexpr std::uint64_t kMost = std::numeric_limits<VertexIndex>::max();
+  if (positionCount > kMost) {
+    fail("there are " + std::to_string(positionCount) +
+         " vertices, more than a mesh can have: " + std::to_string(kMost));
+  }
   for (const std::uint64_t corner : corners) {
     if (corner >= positionCount) {
       fail("a face names vertex " + std::to_string(corner) + " of " +

@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/known_enum.h"
 #include "io/mesh/mesh_format.h"
 #include "io/mesh/mesh_readers.h"
 
@@ -49,6 +50,7 @@ Mesh readMesh(const std::filesystem::path& path) {
 }
 
 Mesh readMesh(const FileBytes& file, MeshFormat format) {
+  base::requireKnown(format, MeshFormat::ThreeMf, "the format");
   return readAs(format, io::InputBytes(file));
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/job.h"
 #include "base/known_enum.h"
+#include "base/parallel.h"
 #include "base/single_precision.h"
 #include "io/input_bytes.h"
 #include "io/mesh/file_attributes.h"
@@ -59,9 +60,9 @@ void MeshSink::advance(std::size_t count) {
   done_ = std::min(done_ + count, total_);
   if (!progress_) return;
   const double share = static_cast<double>(done_) / static_cast<double>(total_);
-  if (!progress_("writing", begin_ + (1 - begin_) * share)) {
-    throw Error(ErrorCode::Cancelled, "cancelled while writing");
-  }
+  bool goesOn = true;
+  base::runIsolated([&] { goesOn = progress_("writing", begin_ + (1 - begin_) * share); });
+  if (!goesOn) throw Error(ErrorCode::Cancelled, "cancelled while writing");
 }
 
 namespace {
@@ -115,26 +116,17 @@ void requireFormat(MeshFormat format) {
               "this build of Tufa has no lib3mf, which writes .3mf; write .stl or another format");
 }
 
-/// `open()` opens what is written to, once the options are known to be sound.
-template <class Open>
-void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions& options,
-                WriteReport* report, Open&& open) {
-  if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
-    throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
-  }
-  requireFormat(format);
-  const FileFrame frame{options.name, options.up, options.scale};
-  requireSoundFrame(frame);
-  base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
+/// Writes to an open file. Returns what writeCompactGlb() reports.
+WriteReport writeTo(OutputFile& file, std::span<MeshPart> parts, MeshFormat format,
+                    const WriteOptions& options) {
   std::size_t total = 0;
   for (const MeshPart& part : parts) {
-    requireSound(part, format);
     const Mesh& mesh = *part.mesh;
     total +=
         mesh.positions.size() + mesh.normals.size() + mesh.quads.size() + mesh.triangles.size();
   }
-  OutputFile file(open());
   const double begin = hasNormalsAtCorners(format) ? splitNormals(parts, options) : 0;
+  const FileFrame frame{options.name, options.up, options.scale};
   MeshSink sink(file, total, begin, options.progress);
   WriteReport found;
   switch (format) {
@@ -165,6 +157,25 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
       break;
   }
   file.commit();
+  return found;
+}
+
+/// `open()` opens what is written to, once the options are known to be sound.
+template <class Open>
+void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions& options,
+                WriteReport* report, Open&& open) {
+  if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
+    throw Error(ErrorCode::InvalidArgument, "the crease angle must be between 0 and 180 degrees");
+  }
+  requireFormat(format);
+  requireSoundFrame({options.name, options.up, options.scale});
+  base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
+  for (const MeshPart& part : parts) requireSound(part, format);
+  WriteReport found;
+  base::Job(options.threads, {}).run([&] {
+    OutputFile file(open());
+    found = writeTo(file, parts, format, options);
+  });
   if (report != nullptr) *report = std::move(found);
 }
 

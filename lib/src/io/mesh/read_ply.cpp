@@ -194,9 +194,14 @@ class BodyReader {
       : header_(header), body_(std::move(body)), parts_(parts) {}
 
   Mesh read() {
+    bool hasVertices = false;
     for (const Element& element : header_.elements) {
-      if (element.name == "vertex") vertexCount_ = element.count;
       if (element.name == "tristrips") body_.fail("triangle strips are not supported");
+      if (element.name != "vertex") continue;
+      if (hasVertices) body_.fail("there are two elements \"vertex\"");
+      if (element.properties.empty()) body_.fail("the vertices have no x");
+      hasVertices = true;
+      vertexCount_ = element.count;
     }
     for (const Element& element : header_.elements) {
       if (element.properties.empty()) continue;
