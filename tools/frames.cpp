@@ -93,6 +93,14 @@ std::string frameFile(const std::string& name, int frame) {
   return (path.parent_path() / file).string();
 }
 
+void requireOnePlace(const std::string& name) {
+  const std::string file = std::filesystem::path(name).filename().string();
+  const Place place = placeIn(file);
+  if (place.length == 0 || file.find('#', place.begin + place.length) == std::string::npos) return;
+  throw Error(ErrorCode::InvalidArgument,
+              name + " has # in several places, and a frame's number goes to one");
+}
+
 std::vector<int> readFrames(const std::string& text) {
   std::vector<int> frames;
   for (std::string_view rest = text; true;) {

@@ -16,6 +16,9 @@ namespace tufa::tools {
 /// write it: %04d, $F4; empty for any other.
 [[nodiscard]] std::string framesInAnotherWay(const std::string& name);
 
+/// Throws Error(InvalidArgument) if the last part of a name has several such places.
+void requireOnePlace(const std::string& name);
+
 /// The file of a frame.
 [[nodiscard]] std::string frameFile(const std::string& name, int frame);
 

@@ -134,6 +134,15 @@ void requireMeaning(const CLI::App& app, Method method) {
   if (!sharp && app.get_option("--sharp-angle")->count() > 0) {
     throw Error(ErrorCode::InvalidArgument, "--sharp-angle is for --method emc and cms alone");
   }
+  const bool asksFaces = method == Method::Dual || method == Method::MarchingCubes ||
+                         method == Method::ExtendedMarchingCubes || method == Method::SurfaceNets ||
+                         method == Method::OctreeCubes;
+  if (!asksFaces && app.get_option("--ambiguity")->count() > 0) {
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "--ambiguity is for --method dual, mc, emc, surface-nets and octree-mc alone, as the "
+        "others have no choice; leave it out");
+  }
   if (method == Method::Dual) return;
   const bool adaptive = method == Method::OctreeCubes || method == Method::CubicalMarchingSquares;
   if (!adaptive && app.get_option("--tolerance")->count() > 0) {

@@ -121,6 +121,7 @@ void requireSound(const MeshArguments& arguments, const SequenceArguments& seque
     refuse("--frames needs a name with #### in the place of the frame's number, which " +
            arguments.input + " does not have");
   }
+  for (const std::string& name : {arguments.input, arguments.output}) requireOnePlace(name);
   const bool isOne = isOneFile(arguments);
   if (!isOne && !namesFrames(arguments.output)) {
     refuse("all frames would be written to " + arguments.output +

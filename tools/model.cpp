@@ -80,6 +80,31 @@ std::string hiddenNote(const VoxelizeReport& report) {
          (elsewhere ? " and elsewhere" : "") + "; take smaller voxels";
 }
 
+/// Throws Error(UnsupportedGrid). `hidden`: of hiddenNote().
+[[noreturn]] void refuseEmpty(const ModelArguments& arguments, const implicit::Field& field,
+                              double voxelSize, const std::string& hidden) {
+  const auto isEmpty = [](const implicit::Box& box) {
+    return box.least.x > box.greatest.x || box.least.y > box.greatest.y ||
+           box.least.z > box.greatest.z;
+  };
+  const auto isFinite = [](const implicit::Box& box) {
+    const Position& a = box.least;
+    const Position& b = box.greatest;
+    return std::isfinite(a.x + a.y + a.z) && std::isfinite(b.x + b.y + b.z);
+  };
+  std::string text = shownInput(arguments.input) + " has no surface ";
+  if (!isEmpty(field.extent())) text += "that voxels of " + formatNumber(voxelSize) + " show ";
+  text += arguments.bounds ? "within --bounds " + *arguments.bounds : "within its bounds";
+  if (arguments.bounds && !isStandard(arguments.input)) {
+    const implicit::Box whole = readSceneInput(arguments.input, {}).field->extent();
+    if (!isEmpty(whole) && isFinite(whole)) {
+      text += "; without them it lies from " + shownPoint(whole.least) + " to " +
+              shownPoint(whole.greatest);
+    }
+  }
+  throw Error(ErrorCode::UnsupportedGrid, text + (hidden.empty() ? "" : "; " + hidden));
+}
+
 int runModel(const ModelArguments& arguments) {
   if (arguments.at && !arguments.output.empty()) {
     throw Error(ErrorCode::InvalidArgument, "--at only prints: leave out --output");
@@ -105,16 +130,7 @@ int runModel(const ModelArguments& arguments) {
     grid = voxelize(*scene.field, options, &report);
   });
   const std::string hidden = hiddenNote(report);
-  if (report.activeVoxels == 0) {
-    const implicit::Box box = scene.field->extent();
-    const bool isOutside = box.least.x > box.greatest.x || box.least.y > box.greatest.y ||
-                           box.least.z > box.greatest.z;
-    throw Error(
-        ErrorCode::UnsupportedGrid,
-        shownInput(arguments.input) + " has no surface " +
-            (isOutside ? "" : "that voxels of " + formatNumber(options.voxelSize) + " show ") +
-            "within its bounds" + (hidden.empty() ? "" : "; " + hidden));
-  }
+  if (report.activeVoxels == 0) refuseEmpty(arguments, *scene.field, options.voxelSize, hidden);
   if (!hidden.empty()) printNote("note: " + hidden);
   grid->setName(scene.name);
   WrittenGrid written;

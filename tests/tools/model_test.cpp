@@ -198,6 +198,8 @@ TEST_F(Model, RefusesHostileScenes) {
   writeScene("ball.json", R"({"type": "sphere", "radius": 1e6})");
   expectFailure("model ball.json -o o.vdb --voxel 0.01", 3, "--band-voxels");
   expectFailure("model ball.json -o o.vdb --voxel 1", 3, "--band-voxels");
+  expectFailure("model ball.json -o o.vdb --bounds 2e6,0,0,3e6,1,1 --voxel 0.1", 3,
+                "lies from (-1e+06, -1e+06, -1e+06) to (1e+06, 1e+06, 1e+06)");
   writeScene("row.json", R"({"type": "repeat", "object": {"type": "sphere", "radius": 1},
                              "step": [3, 3, 3], "count": [1000000000, 1000000000, 1000000000]})");
   expectFailure("model row.json -o o.vdb --voxel 0.1", 2, "too small");

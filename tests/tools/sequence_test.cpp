@@ -181,6 +181,7 @@ TEST_F(Sequence, WhatIsWrongWithAllFramesIsToldOnce) {
   expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --report m.0001.csv --tolerance x", 2,
                 "--tolerance");
   expectFailure("mesh 'f.####.vdb' -o 'f.####.vdb'", 2, "overwritten");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.####.ply'", 2, "# in several places");
 }
 
 /// The attributes of the first mesh of a .usda of one frame, as they are declared, and their

@@ -307,6 +307,10 @@ TEST_F(Usage, MeshTakesEveryMethodAndRefusesWhatMeansNothingToIt) {
   expectFailure("mesh s.vdb -o m.ply --method emc --sharp-angle 200", 2, "sharp angle");
   expectFailure("mesh s.vdb -o m.ply --ambiguity original", 2, "original");
   EXPECT_EQ(run("mesh s.vdb -o m.ply --method mc --ambiguity original --quiet").exitCode, 0);
+  for (const std::string method : {"mc33", "cms", "mt5", "mt6", "mt24", "bcc"}) {
+    expectFailure("mesh s.vdb -o m.ply --ambiguity join --method " + method, 2,
+                  "--ambiguity is for");
+  }
 }
 
 TEST_F(Usage, RepairMakesASoupWatertightOrSaysWhatIsLeft) {

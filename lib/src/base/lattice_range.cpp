@@ -63,10 +63,10 @@ void requireVoxelSize(double voxelSize) {
 }
 
 void requireHalfWidth(double halfWidth) {
-  constexpr double kMost = 1000;
-  if (halfWidth >= 1 && halfWidth <= kMost) return;
-  throw Error(ErrorCode::InvalidArgument, "half width must be from 1 to " + numberText(kMost) +
-                                              " voxels, not " + numberText(halfWidth));
+  if (isHalfWidth(halfWidth)) return;
+  throw Error(ErrorCode::InvalidArgument, "half width must be from 1 to " +
+                                              numberText(kMostHalfWidth) + " voxels, not " +
+                                              numberText(halfWidth));
 }
 
 }  // namespace tufa::base

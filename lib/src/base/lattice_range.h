@@ -22,7 +22,15 @@ struct Lattice {
 /// Throws Error(InvalidArgument) unless grids can be made with voxels of that size.
 void requireVoxelSize(double voxelSize);
 
-/// Throws Error(InvalidArgument) unless narrow bands can be made that wide: from 1 to 1000 voxels.
+/// Voxels on either side of the surface in the widest narrow band that is made.
+inline constexpr double kMostHalfWidth = 1000;
+
+/// Whether narrow bands can be made that wide.
+[[nodiscard]] constexpr bool isHalfWidth(double voxels) {
+  return voxels >= 1 && voxels <= kMostHalfWidth;
+}
+
+/// Throws Error(InvalidArgument) unless narrow bands can be made that wide.
 void requireHalfWidth(double halfWidth);
 
 }  // namespace tufa::base

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "base/lattice_range.h"
 #include "base/number_text.h"
 #include "implicit/boxes.h"
 #include "implicit/fields.h"
@@ -104,7 +105,7 @@ class SceneReader {
     scene.name = "surface";
     if (const auto name = object_.find("name")) scene.name = name->text();
     if (const auto voxel = object_.find("voxel")) scene.voxelSize = voxel->above0();
-    if (const auto width = object_.find("half_width")) scene.halfWidth = width->above0();
+    if (const auto width = object_.find("half_width")) scene.halfWidth = halfWidthOf(*width);
     std::optional<Box> limits = bounds;
     if (const auto own = object_.find("bounds")) {
       const Box box = readBounds(*own);
@@ -120,6 +121,14 @@ class SceneReader {
   }
 
  private:
+  static double halfWidthOf(const SceneValue& value) {
+    const double width = value.number();
+    if (!base::isHalfWidth(width)) {
+      value.failWith("a number of voxels from 1 to " + base::numberText(base::kMostHalfWidth));
+    }
+    return width;
+  }
+
   static Box readBounds(const SceneValue& value) {
     const std::vector<double> n = value.numbers(6);
     for (std::size_t axis = 0; axis < 3; ++axis) {

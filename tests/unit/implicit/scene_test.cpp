@@ -114,6 +114,8 @@ TEST(Scene, ErrorsNameThePath) {
   const auto refused = [](const std::string& text, const std::string& part) {
     expectError(ErrorCode::UnreadableFile, part, [&] { static_cast<void>(sceneOf(text)); });
   };
+  refused(sceneText("{'type': 'plane'}", ", 'half_width': 0.5"),
+          "/half_width: must be a number of voxels from 1 to 1000");
   const auto object = [&](const std::string& text, const std::string& part) {
     refused(sceneText("{'type': 'sphere', 'radius': 1}, " + text), "s.json: /objects/1" + part);
   };
