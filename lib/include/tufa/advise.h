@@ -53,6 +53,8 @@ struct SamplingReport {
   /// measured. World units.
   double voxelSizeNeeded = 0;
 
+  bool operator==(const SamplingReport&) const = default;
+
   /// Whether the grid is fine enough.
   [[nodiscard]] bool enough() const {
     return voxelSizeNeeded >= voxelSize && unresolvedKinks <= sparedCells && hiddenSheets == 0;

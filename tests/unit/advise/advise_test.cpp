@@ -150,16 +150,14 @@ TEST(Advise, FindsKinksThatShareACell) {
 
 TEST(Advise, IsTheSameForAnyNumberOfThreads) {
   const FloatGrid::Ptr grid = turnedBox({14, 9, 2});
-  std::array<SamplingReport, 2> reports;
-  for (int i = 0; i < 2; ++i) {
+  const auto withThreads = [&](int threads) {
     AdviseOptions options;
-    options.contour.threads = i + 1;
-    reports[i] = adviseSampling(*grid, options);
-  }
-  EXPECT_EQ(reports[0].leastVoxels, reports[1].leastVoxels);
-  EXPECT_EQ(reports[0].voxelSizeNeeded, reports[1].voxelSizeNeeded);
-  EXPECT_EQ(reports[0].thinSharp, reports[1].thinSharp);
-  EXPECT_EQ(reports[0].unresolvedKinks, reports[1].unresolvedKinks);
+    options.contour.threads = threads;
+    return adviseSampling(*grid, options);
+  };
+  const SamplingReport one = withThreads(1);
+  EXPECT_GT(one.thinSharp, 0u);
+  for (const int threads : {2, 7}) EXPECT_EQ(withThreads(threads), one) << threads;
 }
 
 TEST(Advise, TakesAGridWithoutSurface) {

@@ -112,10 +112,19 @@ TEST(CutDistance, MeasuresAgainWhatChangedOnly) {
 TEST(CutDistance, AsksTheToleranceWhereThingsLie) {
   Ball ball;
   ball.move(100, 0.3);
-  octree::CutRule rule = ruleOf(1);
-  rule.scale = [](const Vec3&) { return 0.1; };
-  CutDistance strict(ball.model.model().view(), rule, ball.model.job());
-  EXPECT_FALSE(strict.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
+  const auto tooFar = [&](double there, double elsewhere) {
+    octree::CutRule rule = ruleOf(1);
+    const grid::Affine& affine = ball.model.model().view().affine;
+    const Vec3 moved = affine.latticePoint(ball.model.mesh().positions[100], affine.origin()) +
+                       Vec3(affine.origin());
+    rule.scale = [=](const Vec3& point) {
+      return (point - moved).length() < 4 ? there : elsewhere;
+    };
+    CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+    return distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed);
+  };
+  EXPECT_EQ(tooFar(0.1, 1), std::vector<VertexIndex>{100});
+  EXPECT_TRUE(tooFar(1, 0.1).empty());
 }
 
 // A speck of one sample is thinner than the tolerance. Where its top is in the mesh, both of its

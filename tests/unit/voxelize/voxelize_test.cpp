@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/vec3.h"
 #include "support/expect_error.h"
 
 namespace tufa {
@@ -72,7 +73,21 @@ TEST(Voxelize, TakesOpenMeshes) {
   options.voxelSize = 0.1;
   Mesh open = makeCube();
   open.quads.pop_back();
-  EXPECT_GT(voxelize(open, options)->activeVoxelCount(), 0u);
+  const auto grid = voxelize(open, options);
+  const auto closed = voxelize(makeCube(), options);
+  // At the middle of each face that is left, 0.05 in front of it, the distance is that of the cube.
+  std::size_t faces = 0;
+  for (const Quad& quad : open.quads) {
+    Vec3 middle(0.0);
+    for (const VertexIndex v : quad.vertices) middle += Vec3(open.positions[v]) * 0.25;
+    const Vec3 before = middle + middle.unitOrX() * options.voxelSize;
+    const auto place = openvdb::Coord::round(
+        grid->transform().worldToIndex(openvdb::Vec3d(before[0], before[1], before[2])));
+    EXPECT_TRUE(grid->tree().isValueOn(place)) << place;
+    EXPECT_EQ(grid->tree().getValue(place), closed->tree().getValue(place)) << place;
+    ++faces;
+  }
+  EXPECT_EQ(faces, 5u);
 }
 
 TEST(Voxelize, RefusesWhatCannotBeDone) {
