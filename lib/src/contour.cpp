@@ -44,7 +44,7 @@ Mesh contourGrid(const openvdb::GridBase& grid, const ContourOptions& options,
   } else {
     refine::AdaptiveMesh adaptive = makeAdaptive(model, rule, options, job);
     report.certificate =
-        refine::certificateOf(adaptive, model.affine().voxelSize(), options.keepLeaves);
+        refine::certificateOf(adaptive, model.affine().voxelSize(), options.keepLeaves, job);
     extracted = std::move(adaptive.extracted);
   }
   job.beginStage("finish", 1.0);

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/sort_unique.h"
 #include "check/stars.h"
 
 namespace tufa::checks {
@@ -50,8 +51,7 @@ std::size_t countLoops(std::vector<Edge> edges) {
     ends.push_back(edge.first);
     ends.push_back(edge.second);
   }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  base::sortUnique(ends);
   const auto indexOf = [&](VertexIndex v) {
     return static_cast<VertexIndex>(std::lower_bound(ends.begin(), ends.end(), v) - ends.begin());
   };

@@ -19,7 +19,7 @@
 #include "chunks/chain/shaded_level.h"
 #include "chunks/chain/split_level.h"
 #include "chunks/cut/cut_mesh.h"
-#include "chunks/cut/part_rounded.h"
+#include "chunks/cut/separate_rounded.h"
 #include "grid/blocks.h"
 #include "grid/field.h"
 #include "intersect/surface.h"
@@ -155,14 +155,21 @@ class ChunkBuilder {
  public:
   ChunkBuilder(const openvdb::GridBase& grid, const ChunkOptions& options, const ChunkSink& sink,
                ContourReport& report, base::Job& job)
-      : grid_(grid), options_(options), sink_(sink), report_(report), job_(job) {}
+      : grid_(grid),
+        options_(options),
+        sink_(sink),
+        report_(report),
+        job_(job),
+        only_(options.only) {
+    std::sort(only_.begin(), only_.end());
+  }
 
   ChunkIndex build() {
     ContourOptions contour = options_.contour;
     contour.uniform = false;
     contour.normals = Normals::Gradient;
     // Vertices at one place, where the surface touches itself, would be one to what joins chunks by
-    // positions; and what is parted later only, costs errors, triangles and time.
+    // positions; and what is separated later only, costs errors, triangles and time.
     contour.repair = true;
     const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_));
     ChunkIndex index;
@@ -207,9 +214,9 @@ class ChunkBuilder {
                                               options_.chunkSize, ground.isSingle, job_);
     if (std::exchange(report_.intersectionsLeft, 0) > 0) {
       cut.isNew.assign(cut.isNew.size(), 1);  // triangles of the uniform mesh intersect
-      cut.isParted = false;
+      cut.isSeparated = false;
     }
-    chunks::partRounded(cut, ground.affine, ground.isSingle, job_);
+    chunks::separateRounded(cut, ground.affine, ground.isSingle, job_);
     chunks::keepApart(cut, ground.affine, ground.isSingle, job_);
     // The farthest that a vertex moves to the lattice.
     cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
@@ -262,8 +269,7 @@ class ChunkBuilder {
   }
 
   [[nodiscard]] bool isAskedFor(const Coord& chunk) const {
-    return options_.only.empty() ||
-           std::find(options_.only.begin(), options_.only.end(), chunk) != options_.only.end();
+    return only_.empty() || std::binary_search(only_.begin(), only_.end(), chunk);
   }
 
   const openvdb::GridBase& grid_;
@@ -271,6 +277,7 @@ class ChunkBuilder {
   const ChunkSink& sink_;
   ContourReport& report_;
   base::Job& job_;
+  std::vector<Coord> only_;  ///< sorted
   std::vector<chunks::ChainLevel> levels_;
 };
 

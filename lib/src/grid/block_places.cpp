@@ -34,17 +34,17 @@ void BlockPlaces::buildBox(const base::IndexBox& box,
 }
 
 void BlockPlaces::addTileBlocks(const std::vector<Coord>& origins, BlockRef first) {
-  std::vector<Coord> widerBudget;
+  std::vector<Coord> looseOrigins;
   for (std::size_t i = 0; i < origins.size(); ++i) {
     const BlockRef block = first + static_cast<BlockRef>(i);
     if (const BlockRef* node = nodeAt(origins[i])) {
       places_[static_cast<std::size_t>(node - places_.data()) + placeInNode(origins[i])] = block;
     } else {
-      widerBudget.push_back(origins[i]);
+      looseOrigins.push_back(origins[i]);
       looseBlocks_.push_back(block);
     }
   }
-  number(widerBudget, looseTable_);
+  number(looseOrigins, looseTable_);
 }
 
 }  // namespace tufa::grid

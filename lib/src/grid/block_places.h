@@ -49,8 +49,8 @@ class BlockPlaces {
     if (!box_.isEmpty()) return box_.contains(origin) ? places_[boxIndex(origin)] : kUnknown;
     const BlockRef* node = nodeAt(origin);
     if (node != nullptr) return node[placeInNode(origin)];
-    const std::uint32_t widerBudget = looseTable_.find(origin);
-    return widerBudget == base::CoordTable::kNone ? kUnknown : looseBlocks_[widerBudget];
+    const std::uint32_t loose = looseTable_.find(origin);
+    return loose == base::CoordTable::kNone ? kUnknown : looseBlocks_[loose];
   }
 
   /// Calls take(i, block) for the places (dx, dy, dz) = -1..1 steps around a block, i being

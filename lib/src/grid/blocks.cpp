@@ -1,9 +1,9 @@
 #include "grid/blocks.h"
 
-#include <algorithm>
 #include <mutex>
 
 #include "base/huge_pages.h"
+#include "base/sort_unique.h"
 #include "grid/non_finite.h"
 
 namespace tufa::grid {
@@ -131,8 +131,7 @@ void Blocks::addTileBlocks(base::Job& job) {
     const std::scoped_lock lock(mutex);
     tiles.insert(tiles.end(), found.begin(), found.end());
   });
-  std::sort(tiles.begin(), tiles.end());
-  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  base::sortUnique(tiles);
   const auto accessor = this->accessor();
   const std::size_t leafCount = origins_.size();
   std::vector<BlockRef> sides;

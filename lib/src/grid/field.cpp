@@ -27,7 +27,7 @@ openvdb::math::Mat3d linearPart(const openvdb::math::Transform& transform) {
   return columns;
 }
 
-// The share of gradients near the surface with a length near 1.
+// Whether enough of the gradients near the surface have a length near 1.
 template <class TreeT>
 bool hasUnitGradient(const TreeT& tree, const FieldScale& scale, const IsoChoice& iso) {
   using Leaf = typename TreeT::LeafNodeType;

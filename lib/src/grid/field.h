@@ -31,8 +31,8 @@ struct FieldScale {
   }
 };
 
-/// Decides from a sample of the grid's leaves whether the field is a distance. `scale` must come
-/// from a linear transform.
+/// Decides from a sample of the grid's leaves whether the field is a distance. The grid's transform
+/// must be linear.
 [[nodiscard]] FieldScale readFieldScale(const openvdb::GridBase& grid, const IsoChoice& iso);
 
 }  // namespace tufa::grid

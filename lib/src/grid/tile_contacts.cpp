@@ -1,9 +1,9 @@
 #include "grid/tile_contacts.h"
 
-#include <algorithm>
 #include <array>
 #include <mutex>
 
+#include "base/sort_unique.h"
 #include "grid/block_bits.h"
 #include "grid/node_tiles.h"
 
@@ -60,8 +60,7 @@ class TileContacts {
       for (std::size_t i = begin; i < end; ++i) walkLowerNode(*lowers[i], accessor, found);
       keep(found);
     });
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    base::sortUnique(found_);
     return std::move(found_);
   }
 

@@ -67,7 +67,8 @@ bool staysInEnvelope(const Mesh& mesh, const Quad& quad, const Vec3& inner, cons
   const auto at = [&](int i) { return Vec3(mesh.positions[quad.vertices[i]]); };
   const Vec3 corner = at(0), diagonal = at(2) - corner;
   const Between between(corner, inner, outer, margin);
-  return between.areParted(at(1) - corner, diagonal) && between.areParted(diagonal, at(3) - corner);
+  return between.areSeparated(at(1) - corner, diagonal) &&
+         between.areSeparated(diagonal, at(3) - corner);
 }
 
 // Tells the candidates of one block after another.

@@ -135,8 +135,8 @@ class CutEnvelopes {
     const Vec3& inner = place.upward ? lower : upper;
     const Vec3& outer = place.upward ? upper : lower;
     const Between between(corner, inner, outer, margin_);
-    return between.areParted(at(1) - corner, diagonal) &&
-           (v.size() == 3 || between.areParted(diagonal, at(3) - corner));
+    return between.areSeparated(at(1) - corner, diagonal) &&
+           (v.size() == 3 || between.areSeparated(diagonal, at(3) - corner));
   }
 
   // Whether the segment between the vertices of two neighbouring cells around a lattice edge passes

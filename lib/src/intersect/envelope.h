@@ -21,7 +21,7 @@ class Between {
   /// corner. That moves the plane at a point by no more than the margin times 1 + 2 d / h, h being
   /// the least height of the triangle and d the distance of the point from a corner: the plane of a
   /// needle turns easily. All squared, so that no square root is needed.
-  [[nodiscard]] bool areParted(const Vec3& q, const Vec3& r) const {
+  [[nodiscard]] bool areSeparated(const Vec3& q, const Vec3& r) const {
     const Vec3 normal = q.cross(r);
     const double before = normal.dot(outer_), behind = -normal.dot(inner_);
     if (!(before > 0 && behind > 0)) return false;

@@ -18,7 +18,7 @@ namespace {
 // Whether a plane certainly separates two polygons but for what they share, even if each vertex
 // moves by half of `margin`; a quick answer for most that share two vertices or less. Quads need
 // not be plane: their hulls are separated.
-bool areParted(std::span<const Position> positions, Corners a, Corners b, double margin) {
+bool areSeparated(std::span<const Position> positions, Corners a, Corners b, double margin) {
   std::array<Position, 4> ofA, ofB;
   std::array<Position, 2> common;
   std::size_t countA = 0, shared = 0;
@@ -35,16 +35,16 @@ bool areParted(std::span<const Position> positions, Corners a, Corners b, double
     if (std::find(a.begin(), a.end(), vertex) == a.end()) ofB[countB++] = positions[vertex];
   }
   const std::span<const Position> ownA(ofA.data(), countA), ownB(ofB.data(), countB);
-  if (shared == 2) return arePartedAlong(common[0], common[1], ownA, ownB, margin);
-  return arePartedAt(shared == 1 ? common[0] : positions[a[0]], ownA, ownB, shared == 1, margin);
+  if (shared == 2) return areSeparatedAlong(common[0], common[1], ownA, ownB, margin);
+  return areSeparatedAt(shared == 1 ? common[0] : positions[a[0]], ownA, ownB, shared == 1, margin);
 }
 
 // The same for the two triangles of a quad.
-bool areHalvesParted(std::span<const Position> positions, Corners v, double margin) {
+bool areHalvesSeparated(std::span<const Position> positions, Corners v, double margin) {
   if (v.size() != 4) return true;
   const Position& a = positions[v[1]];
   const Position& b = positions[v[3]];
-  return arePartedAlong(positions[v[0]], positions[v[2]], {&a, 1}, {&b, 1}, margin);
+  return areSeparatedAlong(positions[v[0]], positions[v[2]], {&a, 1}, {&b, 1}, margin);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ bool intersectElsewhere(std::span<const Position> positions, Corners a, Corners 
   std::array<Triangle, 2> ta, tb;
   const int countA = trianglesOf(a, ta), countB = trianglesOf(b, tb);
   if (same) return countA == 2 && intersectElsewhere(positions, ta[0], ta[1]);
-  if (areParted(positions, a, b, 0)) return false;
+  if (areSeparated(positions, a, b, 0)) return false;
   for (int i = 0; i < countA; ++i) {
     for (int j = 0; j < countB; ++j) {
       if (intersectElsewhere(positions, ta[i], tb[j])) return true;
@@ -100,9 +100,9 @@ void test(const Search& search, const PolygonPair& pair, ClosePairs& found) {
   const std::vector<Position>& positions = search.surface.mesh().positions;
   const Corners a = search.surface.corners(pair.a), b = search.surface.corners(pair.b);
   const bool same = pair.a == pair.b;
-  const bool parted = same ? areHalvesParted(positions, a, search.margin)
-                           : areParted(positions, a, b, search.margin);
-  if (parted) return;
+  const bool separated = same ? areHalvesSeparated(positions, a, search.margin)
+                              : areSeparated(positions, a, b, search.margin);
+  if (separated) return;
   if (search.keepsClose) found.close.push_back(pair);
   if (intersectElsewhere(positions, a, b, same)) found.intersecting.push_back(pair);
 }

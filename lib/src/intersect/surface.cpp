@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/sort_unique.h"
+
 namespace tufa::intersect {
 
 using base::Box;
@@ -17,8 +19,7 @@ std::vector<PolygonIndex> polygonsOf(const std::vector<PolygonPair>& pairs) {
 
 std::vector<PolygonIndex> distinctPolygonsOf(const std::vector<PolygonPair>& pairs) {
   std::vector<PolygonIndex> polygons = polygonsOf(pairs);
-  std::sort(polygons.begin(), polygons.end());
-  polygons.erase(std::unique(polygons.begin(), polygons.end()), polygons.end());
+  base::sortUnique(polygons);
   return polygons;
 }
 
@@ -33,8 +34,7 @@ std::vector<VertexIndex> verticesOf(const Mesh& mesh, const std::vector<PolygonI
       vertices.insert(vertices.end(), v.begin(), v.end());
     }
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  base::sortUnique(vertices);
   return vertices;
 }
 

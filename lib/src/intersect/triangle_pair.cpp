@@ -135,8 +135,8 @@ bool isFoldedOver(const Corners& a, const Corners& b) {
 
 // Points that move, and a plane that moves with `at`, come nearer to each other by `margin` at
 // most.
-bool arePartedAt(const Position& at, std::span<const Position> a, std::span<const Position> b,
-                 bool common, double margin) {
+bool areSeparatedAt(const Position& at, std::span<const Position> a, std::span<const Position> b,
+                    bool common, double margin) {
   Vec3 toA(0), toB(0);
   for (const Position& p : a) toA += between(at, p);
   for (const Position& p : b) toB += between(at, p);
@@ -162,8 +162,8 @@ bool arePartedAt(const Position& at, std::span<const Position> a, std::span<cons
 // The plane through the line moves by half of `margin` at `from` and turns by no more than `margin`
 // over the length of the edge: with the point's own half that is margin * (1 + distance / length).
 // The square of the sum is at most twice the sum of the squares.
-bool arePartedAlong(const Position& from, const Position& to, std::span<const Position> a,
-                    std::span<const Position> b, double margin) {
+bool areSeparatedAlong(const Position& from, const Position& to, std::span<const Position> a,
+                       std::span<const Position> b, double margin) {
   const Vec3 edge = between(from, to);
   const double length = edge.squaredLength();
   if (!(length > 0)) return false;
@@ -197,8 +197,8 @@ bool intersectElsewhere(std::span<const Position> positions, const Triangle& a, 
   const Corners pa{positions[va[0]], positions[va[1]], positions[va[2]]};
   const Corners pb{positions[vb[0]], positions[vb[1]], positions[vb[2]]};
   const std::size_t skip = shared == 1 ? 1 : 0;
-  if (shared <= 1 &&
-      arePartedAt(pa[0], std::span(pa).subspan(skip), std::span(pb).subspan(skip), shared == 1)) {
+  if (shared <= 1 && areSeparatedAt(pa[0], std::span(pa).subspan(skip), std::span(pb).subspan(skip),
+                                    shared == 1)) {
     return false;
   }
   const bool meet = shared == 0   ? intersectAnywhere(pa, pb)

@@ -17,14 +17,14 @@ namespace tufa::intersect {
 /// points `b`; if `common`, a plane through the point `at`, with none of them on it. True is a
 /// proof, even if each point moves by half of `margin`; false means nothing. `at` must be near the
 /// points, so that differences to it lose little.
-[[nodiscard]] bool arePartedAt(const Position& at, std::span<const Position> a,
-                               std::span<const Position> b, bool common, double margin = 0);
+[[nodiscard]] bool areSeparatedAt(const Position& at, std::span<const Position> a,
+                                  std::span<const Position> b, bool common, double margin = 0);
 
 /// The same for a plane through the line from one point to another, with none of `a` and `b` on it:
 /// the hulls of these and the two points have that line alone in common.
-[[nodiscard]] bool arePartedAlong(const Position& from, const Position& to,
-                                  std::span<const Position> a, std::span<const Position> b,
-                                  double margin = 0);
+[[nodiscard]] bool areSeparatedAlong(const Position& from, const Position& to,
+                                     std::span<const Position> a, std::span<const Position> b,
+                                     double margin = 0);
 
 /// Whether the corners of a triangle lie on a line.
 [[nodiscard]] bool isFlat(std::span<const Position> positions, const Triangle& triangle);

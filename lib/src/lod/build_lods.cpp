@@ -212,7 +212,7 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
       break;
     }
     Lod lod;
-    lod.certificate = refine::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves);
+    lod.certificate = refine::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves, job);
     lod.tolerance = target.triangles > 0 ? lod.certificate.maxErrorVoxels : target.tolerance;
     for (const refine::Dropped& piece : adaptive.dropped) {
       lod.dropped.push_back({model.affine().toWorld(piece.centre), piece.size});

@@ -1,8 +1,10 @@
 #include "reduce/corners.h"
 
 #include "base/huge_pages.h"
+#include "base/sort_unique.h"
 
 namespace tufa::reduce {
+
 std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
                                    const CornersOfVertices& corners, base::Job& job) {
   std::vector<Index> opposite;
@@ -10,6 +12,18 @@ std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
   forOppositeCorners(triangles, corners, job,
                      [&](Index corner, Index other) { opposite[corner] = other; });
   return opposite;
+}
+
+std::vector<Index> trianglesAround(std::span<const Triangle> triangles,
+                                   const CornersOfVertices& corners, std::span<const Index> some) {
+  std::vector<Index> around;
+  for (const Index t : some) {
+    for (const Index v : triangles[t].vertices) {
+      for (const Index c : corners.of(v)) around.push_back(c / 3);
+    }
+  }
+  base::sortUnique(around);
+  return around;
 }
 
 CornersOfVertices::CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles,

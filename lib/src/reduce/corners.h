@@ -30,6 +30,11 @@ struct CornersOfVertices {
   std::vector<Index> corners;
 };
 
+/// All triangles that have a vertex in common with one of these, in rising order.
+[[nodiscard]] std::vector<Index> trianglesAround(std::span<const Triangle> triangles,
+                                                 const CornersOfVertices& corners,
+                                                 std::span<const Index> some);
+
 /// Calls set(corner, other) for every corner, other being the one across its edge, or kNone at a
 /// border; where several are, the last one. In parallel. Vertex by vertex: an edge that comes from
 /// another vertex meets the one that goes back there.

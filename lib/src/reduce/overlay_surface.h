@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "reduce/overlay_path.h"
+#include "reduce/reference_mesh.h"
 #include "reduce/surface.h"
 
 namespace tufa::reduce {
@@ -20,5 +22,12 @@ struct OverlaySurface {
     return c == kNone ? kNone : c / 3;
   }
 };
+
+/// A face of the reference. `owner`: of each of its vertices.
+[[nodiscard]] inline OwnedFace ownedFace(const ReferenceMesh& reference,
+                                         std::span<const Index> owner, Index face) {
+  const auto& v = reference.vertices(face);
+  return {reference.cornersOf(face), v, {owner[v[0]], owner[v[1]], owner[v[2]]}};
+}
 
 }  // namespace tufa::reduce

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/sort_unique.h"
 #include "reduce/overlay_path.h"
 #include "reduce/part.h"
 
@@ -354,8 +355,7 @@ bool Part::facesNear() {
     });
   }
   if (roughFaces_.empty()) return true;
-  std::sort(roughFaces_.begin(), roughFaces_.end());
-  roughFaces_.erase(std::unique(roughFaces_.begin(), roughFaces_.end()), roughFaces_.end());
+  base::sortUnique(roughFaces_);
   if (takers_.empty()) takers_.assign(owners_.size(), {kNone, 0});
   for (const Taken& t : taken_) {
     takers_[t.sample] = {t.triangle, now_};

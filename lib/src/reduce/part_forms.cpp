@@ -15,7 +15,7 @@ constexpr float kFoldCosine = 0.9999f;  // of that at a common edge: folded onto
 // Whether a plane through their common vertex, the first of both, certainly parts two triangles,
 // but for one edge of each or all of one that may lie in it. All planes that could be the only one
 // are tried: of a triangle, across it through one of its edges, and through an edge of each.
-bool isPartedAtVertex(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 3>& b) {
+bool isSeparatedAtVertex(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 3>& b) {
   const Vec3f p[2] = {unit(a[1] - a[0]), unit(a[2] - a[0])};
   const Vec3f q[2] = {unit(b[1] - b[0]), unit(b[2] - b[0])};
   // Whether the two vectors `in` are on one side of a plane, or on it, and the others on the other.
@@ -72,7 +72,7 @@ bool mayMeet(Form a, Form b) {
     }
   }
   if (shared == 0) return !planeParts(a.corners.data(), b.corners.data(), kGap);
-  if (shared == 1) return !isPartedAtVertex(a.corners, b.corners);
+  if (shared == 1) return !isSeparatedAtVertex(a.corners, b.corners);
   return shared == 3 || isFolded(a.corners, b.corners);
 }
 
@@ -88,8 +88,9 @@ void Part::loadForms(const Surface& surface) {
     changeOf_[t] = surface.changeOf[triangles[t]];
     if (changeOf_[t] != kNone) formsOf_[region_[t]].changed.push_back(t);
   }
-  for (const Form& form : surface.oldForms) {
-    if (box_.meets(boxOf(form.corners.data()))) formsOf_[form.region].old.push_back(form);
+  for (const Index i : partition_->oldForms(number_)) {
+    const Form& form = surface.oldForms[i];
+    formsOf_[form.region].old.push_back(form);
   }
   for (const Index t : partition_->foreign(number_)) {
     if (surface.changeOf[t] == kNone) continue;

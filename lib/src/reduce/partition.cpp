@@ -29,6 +29,15 @@ void both(Index items, const First& first, const Second& second) {
   second();
 }
 
+// Of pairs of a part and a member, the members of each part.
+base::Groups membersOf(const std::vector<std::array<Index, 2>>& pairs, std::size_t parts,
+                       base::Job& job) {
+  base::Groups groups = base::groupBy(
+      pairs.size(), parts, [&](Index i) { return pairs[i][0]; }, [](Index, Index) {}, job);
+  for (Index& member : groups.members) member = pairs[member][1];
+  return groups;
+}
+
 }  // namespace
 
 void Partition::build(const Surface& surface, Index most, float share, base::Job& job) {
@@ -63,6 +72,7 @@ void Partition::finish(const Surface& surface, base::Job& job) {
   numberVertices(job);
   base::release(items_);
   shareTriangles(surface, job);
+  shareForms(surface, job);
   if (!surface.isWhole) shareSamples(surface, job);
   base::release(partOfTriangle_);
 }
@@ -193,9 +203,17 @@ void Partition::shareTriangles(const Surface& surface, base::Job& job) {
     for (const Index i : surface.triangles[t].vertices) box.add(surface.position[i]);
     forPartsAt(box, [&](Index part) { reached.push_back({part, t}); });
   }
-  foreign_ = base::groupBy(
-      reached.size(), parts, [&](Index i) { return reached[i][0]; }, [](Index, Index) {}, job);
-  for (Index& member : foreign_.members) member = reached[member][1];
+  foreign_ = membersOf(reached, parts, job);
+}
+
+void Partition::shareForms(const Surface& surface, base::Job& job) {
+  std::vector<std::array<Index, 2>> reached;
+  for (Index i = 0; i < surface.oldForms.size(); ++i) {
+    forPartsAt(boxOf(surface.oldForms[i].corners.data()), [&](Index part) {
+      reached.push_back({part, i});
+    });
+  }
+  forms_ = membersOf(reached, size(), job);
 }
 
 void Partition::shareSamples(const Surface& surface, base::Job& job) {

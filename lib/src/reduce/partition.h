@@ -46,6 +46,10 @@ class Partition {
   [[nodiscard]] std::span<const Index> foreign(Index p) const {
     return of(foreign_.members, foreign_.first, p);
   }
+  /// Those of Surface::oldForms that reach into the box of a part, in rising order.
+  [[nodiscard]] std::span<const Index> oldForms(Index p) const {
+    return of(forms_.members, forms_.first, p);
+  }
   /// Triangles of several parts, in rising order.
   [[nodiscard]] std::span<const Index> acrossParts() const { return across_; }
   /// Reference vertices whose owners are triangles of a part; where these have several, those of a
@@ -95,6 +99,7 @@ class Partition {
   void splitAlong(Index node, Index begin, Index end, const Box3f& box);
   void numberVertices(base::Job& job);
   void shareTriangles(const Surface& surface, base::Job& job);
+  void shareForms(const Surface& surface, base::Job& job);
   void shareSamples(const Surface& surface, base::Job& job);
   void sortSamples(const Surface& surface, std::size_t part, std::vector<Index>& next,
                    std::vector<Index>& sorted);
@@ -104,7 +109,7 @@ class Partition {
   std::vector<Box3f> boxes_;
   std::vector<Index> vertices_, ranges_, partOf_, localVertex_;
   std::vector<Index> partOfTriangle_, localTriangle_, localSample_;
-  base::Groups triangles_, foreign_, samples_;
+  base::Groups triangles_, foreign_, forms_, samples_;
   std::vector<Index> across_;
   std::vector<std::uint8_t> inner_;
 };

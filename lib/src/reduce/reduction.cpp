@@ -15,6 +15,15 @@ namespace tufa::reduce {
 namespace {
 
 constexpr float kRadians = 0.01745329252f;
+// The first phase may spend so much of the tolerance.
+constexpr float kFirstShare = 0.7f;
+// Of the tolerance that guards allow. The rest is for crossings that walks along an axis do not see
+// exactly.
+constexpr float kMargin = 0.998f;
+// Degrees by which a triangle's normal may turn at a time.
+constexpr float kMostTurn = 60;
+// Other surface farther than so many tolerances needs no intersection test.
+constexpr float kClearance = 4;
 // PhaseLimits::errorShare of most phases, and of one that tries harder. Above that hardly a
 // collapse passes the distance guard.
 constexpr float kErrorShare = 1;
@@ -27,31 +36,12 @@ constexpr float kRamp = 0.25f;
 constexpr float kRampEnd = 0.09f;
 // No step is below this many times the tolerance that the surface has been reduced to.
 constexpr float kRampStep = 1.5f;
-constexpr int kRampPhases = 2;
 // Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
 constexpr int kMostPhases = 24;
 // Where lines alone are reduced, triangles beside them get longer and thinner than they will be.
 constexpr float kLeastAngleAtLines = 2;
 constexpr int kMostValenceAtLines = 40;
-// Phases end once one has removed less than this share of the triangles.
-constexpr Index kLittle = 16;
-// For a number of triangles: the first tolerance, and the factor by which it grows.
-constexpr float kFirstTolerance = 0.025f;
-constexpr float kStep = 4;
-// The least tolerance that reaches the number may be smaller by so much than one at which two
-// phases do not; it is found to 3%.
-constexpr float kReserve = 1.5f;
-constexpr int kHalvings = 6;
-// A mesh above the number by less than one triangle in so many gets more phases: in other parts
-// they may find what is missing.
-constexpr Index kNearly = 8;
-// A certificate up to so many times the tolerance that was found is left at that.
-constexpr float kNearTolerance = 1.02f;
-// Where a tolerance above so many voxels gave little, the shape of triangles is in the way:
-// slivers, fans and turns are allowed from then on. Where that gives nothing so often, it is the
-// topology.
-constexpr float kStuckTolerance = 2;
-constexpr int kMostStuck = 2;
+// Where the topology or the shape of triangles is in the way, slivers, fans and turns are allowed.
 constexpr int kMostValenceAtLast = 40;
 constexpr float kMostTurnAtLast = 120;
 // Voxels; at larger tolerances the first attempt lets edges end anywhere near.
@@ -62,8 +52,6 @@ constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 2;
 constexpr float kHeldShare = 0.25f;
 constexpr float kLeastHeld = 0.2f;
-
-float heldShareOf(float tolerance) { return kHeldShare * tolerance < kLeastHeld ? 0 : kHeldShare; }
 
 // The share of the vertices on the lower side of each cut between parts. It differs in all phases,
 // so that no two have borders at the same places: multiples of the golden ratio are far apart.
@@ -146,11 +134,17 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     std::vector<Index> held = certificate_.beyond;
     if (options_.faults) addFacesNear(options_.faults(mesh()), held);
     if (held.empty() || attempt_ == options_.attempts) break;
-    reference_.hold(held, kHeldTolerances * tolerance + kHeldVoxels, heldShareOf(tolerance));
+    hold(held, tolerance);
     tolerance_ = toleranceBefore;
     surface_ = before ? *before : wholeSurface();
   }
   reference_.releaseAll();
+}
+
+// Less is allowed around some faces of the reference than the tolerance.
+void Reduction::hold(const std::vector<Index>& faces, float tolerance) {
+  const float share = kHeldShare * tolerance < kLeastHeld ? 0 : kHeldShare;
+  reference_.hold(faces, kHeldTolerances * tolerance + kHeldVoxels, share);
 }
 
 // The surface as it was while the mesh was the reference. Made again where it is asked for, which
@@ -204,7 +198,7 @@ void Reduction::descendTo(float tolerance, Index count) {
   const float least = std::max(kRampStep * tolerance_, kRampEnd);
   while (way.back() * kRamp > least) way.push_back(way.back() * kRamp);
   for (std::size_t i = way.size(); i-- > 1;) reduce(way[i], count, kRampPhases);
-  reduce(tolerance, count, options_.phases);
+  reduce(tolerance, count, kPhases);
 }
 
 // Each phase sees other parts. The first one spends a share of the tolerance only, so that surface
@@ -216,8 +210,8 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   const float sine = std::sin(options_.leastAngle * kRadians);
   limits.leastSine2 = sine * sine;
   limits.sliverShare = options_.sliverShare;
-  limits.turnCosine = std::cos(options_.mostTurn * kRadians);
-  limits.flips = options_.flips && lines_ != LineMode::Alone;
+  limits.turnCosine = std::cos(kMostTurn * kRadians);
+  limits.flips = lines_ != LineMode::Alone;
   limits.lines = lines_;
   if (lines_ == LineMode::Alone) {
     const float least = std::sin(kLeastAngleAtLines * kRadians);
@@ -232,20 +226,19 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   limits.isLoose = tolerance > kLooseTolerance && attempt_ == 0;
   limits.switchedOff = options_.switchedOff;
   for (int i = 0, left = phases; left > 0 && triangleCount() > count; ++i, --left) {
-    const bool isLast = left == 1 && phases == options_.phases;
-    limits.distance = tolerance * options_.margin * (i == 0 ? options_.firstShare : 1);
+    const bool isLast = left == 1 && phases == kPhases;
+    limits.distance = tolerance * kMargin * (i == 0 ? kFirstShare : 1);
     limits.errorShare = isLast ? kLargeErrorShare : kErrorShare;
     limits.allPlaces = isLast;
     limits.clusters = options_.clusters && isFirst && lines_ == LineMode::Free &&
                       i < (limits.keepsAngle() ? 1 : kClusterPhases);
     const Index before = triangleCount();
     buildParts();
-    if (i == 0) markNarrow(surface_, partition_, options_.clearance * tolerance, job_);
+    if (i == 0) markNarrow(surface_, partition_, kClearance * tolerance, job_);
     runPhase(limits, count);
-    const bool isLittle = triangleCount() > before - before / kLittle;
     const bool isMore = lastCounts_.overQuota > 0 && triangleCount() < before;
     if (isMore && left == 1 && i < kMostPhases) ++left;
-    if (i > 0 && isLittle && !isMore) left = std::min(left, 2);
+    if (i > 0 && hasRemovedLittle(before) && !isMore) left = std::min(left, 2);
   }
 }
 
@@ -259,118 +252,6 @@ void Reduction::buildParts() {
     partition_.build(surface_, trees_[nextTree_], job_);
   }
   ++nextTree_;
-}
-
-Reduction::State Reduction::state() const {
-  return {surface_, tolerance_, phaseNumber_, isReference_};
-}
-
-void Reduction::restore(const State& state) {
-  surface_ = state.surface;
-  tolerance_ = state.tolerance;
-  phaseNumber_ = state.phaseNumber;
-  isReference_ = state.isReference;
-}
-
-float Reduction::toCount(Index count, float mostTolerance) {
-  return toCountWithin(count, mostTolerance * largestScale_) / largestScale_;
-}
-
-// Where the certificate is beyond the tolerance that was found, the mesh is left as it was around
-// there, and the search begins again, as in toTolerance(). The mesh of the least error is taken.
-float Reduction::toCountWithin(Index count, float mostTolerance) {
-  if (triangleCount() <= count) {
-    measureWithin(tolerance_);
-    return tolerance_;
-  }
-  const State start = state();
-  std::optional<State> best;
-  Certificate certificate;
-  for (attempt_ = 0;; ++attempt_) {
-    const bool isReached = findCount(count, mostTolerance);
-    if (best && !isReached) break;
-    measureWithin(tolerance_);
-    if (!best || certificate_.largest < certificate.largest) {
-      best = state(), certificate = certificate_;
-    }
-    if (!isReached || certificate_.mostOver <= kNearTolerance || attempt_ == options_.attempts) {
-      break;
-    }
-    reference_.hold(certificate_.beyond, kHeldTolerances * tolerance_ + kHeldVoxels,
-                    heldShareOf(tolerance_));
-    restore(start);
-  }
-  restore(*best);
-  certificate_ = std::move(certificate);
-  reference_.releaseAll();
-  return triangleCount() <= count ? tolerance_ : mostTolerance;
-}
-
-// Growing tolerances to the first that reaches the count, and between that one and the one before
-// by halves, each from the mesh of two tolerances ago: as toTolerance() goes. So the error at the
-// count is that of the tolerance that gives as many triangles. Whether the count is reached.
-bool Reduction::findCount(Index count, float mostTolerance) {
-  keepsShape_ = true;
-  const auto isReached = [&] { return triangleCount() <= count; };
-  const auto reduceTo = [&](float tolerance, int phases) {
-    trees_.clear(), nextTree_ = 0;
-    reduce(tolerance, count, phases);
-  };
-  State start = state(), last = start;
-  float low = tolerance_,
-        high = std::min(std::max(tolerance_ * kStep, kFirstTolerance), mostTolerance);
-  for (int stuck = 0;;) {
-    const Index before = triangleCount();
-    State next = state();
-    reduceTo(high, kRampPhases);
-    stuck = triangleCount() == before ? stuck + 1 : 0;
-    if (keepsShape_ && high > kStuckTolerance && triangleCount() > before - before / kLittle) {
-      keepsShape_ = false, stuck = 0;
-    }
-    const bool isLast = high >= mostTolerance || (stuck == kMostStuck && high > kStuckTolerance);
-    if (isLast) reduceTo(high, options_.phases);
-    start = std::move(last), last = std::move(next);
-    if (isReached()) break;
-    if (isLast) return false;
-    low = high / kReserve, high = std::min(high * kStep, mostTolerance);
-  }
-  low = std::max({low, start.tolerance, high / (kStep * kReserve)});
-  State best = state();
-  for (int i = 0; i < kHalvings && low < high; ++i) {
-    const float middle = std::sqrt(low * high);
-    restore(start);
-    trees_.clear(), nextTree_ = 0;
-    descendTo(middle, count);
-    const bool isNear = triangleCount() <= count + count / kNearly;
-    if (!isReached() && isNear) reduceTo(middle, options_.phases);
-    if (!isReached()) {
-      low = middle;
-      continue;
-    }
-    best = state(), high = middle;
-  }
-  restore(best);
-  return true;
-}
-
-// The collapses that a phase may still make, shared among parts by their inner vertices.
-std::vector<Index> Reduction::quotas(Index count) const {
-  std::vector<Index> quota(partition_.size(), kNone);
-  if (count == 0) return quota;
-  std::vector<double> inner(partition_.size(), 0);
-  double all = 0;
-  for (Index p = 0; p < quota.size(); ++p) {
-    for (const Index v : partition_.vertices(p)) inner[p] += partition_.isInner(v) ? 1 : 0;
-    all += inner[p];
-  }
-  const double allowed = static_cast<double>((triangleCount() - count + 1) / 2);
-  double sum = 0;
-  for (Index p = 0; p < quota.size(); ++p) {
-    const double before = std::floor(sum);
-    sum += all > 0 ? allowed * inner[p] / all : 0;
-    quota[p] = static_cast<Index>(std::floor(sum + 1e-6) - before);
-  }
-  return quota;
 }
 
 // The parts, those of much work first, so that threads end at about the same time.

@@ -65,6 +65,7 @@ void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index
                base::Job& job) {
   std::vector<float> nearest(s.position.size(), kFar);
   for (Index f = 0; f < reference.faceCount(); ++f) {
+    job.pollCancelled(f);
     for (const Index r : reference.vertices(f)) {
       const Index v = standsFor[r];
       const float d = squaredLength(reference.positions()[r] - s.position[v]);

@@ -112,7 +112,7 @@ class Finder {
     const Index seed = seedOf_[faces.front().first];
     MapDegree degree(overlay_, seed, corners_.of(seed).front() / 3);
     for (const auto& [component, face] : faces) {
-      const OwnedFace owned = ownedFace(face);
+      const OwnedFace owned = ownedFace(reference_, owner_, face);
       if (owned.hasOneOwner()) continue;
       const float found =
           overlayBound2(overlay_, owned, limit2_, [&](const OverlayTurn& turn) { degree(turn); });
@@ -154,11 +154,6 @@ class Finder {
     box.growBy(reach_);
     return box.meets({p, p}) &&
            squaredDistanceToTriangle(p, corners[0], corners[1], corners[2]) <= limit2_;
-  }
-
-  [[nodiscard]] OwnedFace ownedFace(Index f) const {
-    const auto& v = reference_.vertices(f);
-    return {reference_.cornersOf(f), v, {owner_[v[0]], owner_[v[1]], owner_[v[2]]}};
   }
 
   [[nodiscard]] Uncovered partsOfUncovered() const {

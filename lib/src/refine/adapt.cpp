@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "base/polygons.h"
 #include "base/small_angles.h"
 #include "intersect/cut_candidates.h"
@@ -29,17 +31,26 @@ std::vector<VertexIndex> baseVerticesOf(const octree::Cut& cut) {
 }
 
 // Vertices - edges + faces. Edges are told apart by sorting, as the mesh may be open.
-std::int64_t eulerCharacteristic(const Mesh& mesh) {
-  std::vector<std::pair<VertexIndex, VertexIndex>> edges;
+std::int64_t eulerCharacteristic(const Mesh& mesh, base::Job& job) {
+  struct Edge {
+    VertexIndex low, high;
+    base::PolygonIndex polygon;  // so that no two are equal
+    auto operator<=>(const Edge&) const = default;
+  };
+  std::vector<Edge> edges;
   edges.reserve(3 * mesh.triangles.size() + 4 * mesh.quads.size());
-  base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+  base::forPolygons(mesh, [&](base::PolygonIndex polygon, base::Corners v) {
+    job.pollCancelled(polygon);
     for (std::size_t i = 0; i < v.size(); ++i) {
       const VertexIndex a = v[i], b = v[(i + 1) % v.size()];
-      edges.emplace_back(std::min(a, b), std::max(a, b));
+      edges.push_back({std::min(a, b), std::max(a, b), polygon});
     }
   });
-  std::sort(edges.begin(), edges.end());
-  const auto distinct = std::unique(edges.begin(), edges.end()) - edges.begin();
+  base::parallelSort(edges.begin(), edges.end(), std::less<>());
+  const auto isSame = [](const Edge& a, const Edge& b) {
+    return a.low == b.low && a.high == b.high;
+  };
+  const auto distinct = std::unique(edges.begin(), edges.end(), isSame) - edges.begin();
   return static_cast<std::int64_t>(mesh.positions.size()) - distinct +
          static_cast<std::int64_t>(mesh.triangles.size() + mesh.quads.size());
 }
@@ -207,12 +218,13 @@ void widen(Certificate& certificate, double moved, double voxelSize) {
   certificate.maxErrorWorld += moved * voxelSize;
 }
 
-Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves) {
+Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves,
+                          base::Job& job) {
   Certificate certificate;
   certificate.maxErrorVoxels = adaptive.largestError;
   certificate.meanErrorVoxels = adaptive.meanError;
   certificate.maxErrorWorld = adaptive.largestError * voxelSize;
-  certificate.eulerCharacteristic = eulerCharacteristic(adaptive.extracted.mesh);
+  certificate.eulerCharacteristic = eulerCharacteristic(adaptive.extracted.mesh, job);
   for (const LeafCell& leaf : adaptive.leaves) {
     const auto level = static_cast<std::size_t>(leaf.level);
     if (certificate.leafLevels.size() <= level) certificate.leafLevels.resize(level + 1);

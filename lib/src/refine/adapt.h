@@ -31,7 +31,8 @@ struct AdaptiveMesh {
 
 /// The certificate of an adaptive mesh; `voxelSize` is in world units. Takes the leaves over if
 /// they are to be kept.
-[[nodiscard]] Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves);
+[[nodiscard]] Certificate certificateOf(AdaptiveMesh& adaptive, double voxelSize, bool keepLeaves,
+                                        base::Job& job);
 
 /// Sets what a certificate tells of the angles of the finished mesh; `minAngle` as in
 /// ContourOptions.

@@ -9,6 +9,7 @@
 
 #include "base/collect.h"
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "intersect/candidates.h"
 #include "uniform/block_ranges.h"
 #include "uniform/quads.h"
@@ -150,8 +151,7 @@ void ConflictFinder::addFolds(const std::vector<std::uint32_t>& off,
     const auto& v = cornersOf(face).vertices;
     vertices.insert(vertices.end(), v.begin(), v.end());
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  base::sortUnique(vertices);
   const std::vector<std::uint32_t> quads = quadsAt(vertices);
   mark(vertices, 1);
   std::vector<EdgeFace> edges;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/polygons.h"
+#include "base/sort_unique.h"
 #include "reduce/certificate.h"
 #include "reduce/reference_mesh.h"
 #include "reduce/surface.h"
@@ -47,10 +48,7 @@ class Measure {
   }
 
  private:
-  void sortCoarse() {
-    std::sort(coarse_.begin(), coarse_.end());
-    coarse_.erase(std::unique(coarse_.begin(), coarse_.end()), coarse_.end());
-  }
+  void sortCoarse() { base::sortUnique(coarse_); }
 
   // How many of the cells that must be split may be: then there is a next mesh.
   [[nodiscard]] std::size_t splittable() const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/sort_unique.h"
 #include "refine/rounding.h"
 #include "refine/uniform_repair.h"
 #include "uniform/place_vertices.h"
@@ -19,8 +20,7 @@ void askOrigins(const Ask& ask, const std::vector<std::uint32_t>& origins,
   for (const std::uint32_t origin : origins) {
     if (origin != octree::kNone) sorted.push_back(origin);
   }
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  base::sortUnique(sorted);
   const std::vector<Position> answers = ask(sorted);
   for (std::size_t i = 0; i < origins.size(); ++i) {
     if (origins[i] == octree::kNone) continue;

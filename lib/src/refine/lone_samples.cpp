@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/box.h"
+#include "base/sort_unique.h"
 
 namespace tufa::refine {
 namespace {
@@ -67,8 +68,7 @@ std::vector<VertexIndex> verticesOf(const Mesh& mesh, const LoneComponent& compo
     const auto& v = mesh.quads[quad].vertices;
     vertices.insert(vertices.end(), v.begin(), v.end());
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  base::sortUnique(vertices);
   return vertices;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/sort_unique.h"
 #include "uniform/block_ranges.h"
 #include "uniform/quads.h"
 
@@ -241,8 +242,7 @@ class CreaseOrder {
       vertices_.push_back(order.first);
       vertices_.push_back(order.second);
     }
-    std::sort(vertices_.begin(), vertices_.end());
-    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    base::sortUnique(vertices_);
     for (const VertexIndex v : vertices_) directions_.push_back(directionOf(v));
     slides_.assign(vertices_.size(), 0);
     up_ = down_ = slides_;

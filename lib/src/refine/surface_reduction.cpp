@@ -8,6 +8,7 @@
 #include "base/box.h"
 #include "base/connected.h"
 #include "base/huge_pages.h"
+#include "base/interpolated_normal.h"
 #include "base/polygons.h"
 #include "intersect/surface.h"
 #include "refine/rounding.h"
@@ -32,22 +33,6 @@ std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
     }
   });
   return faces;
-}
-
-// The normal of the uniform mesh at the point of a face next to p.
-Normal normalOn(const Mesh& mesh, const Triangle& face, const Vec3& p) {
-  const Vec3 a(mesh.positions[face.vertices[0]]), b(mesh.positions[face.vertices[1]]),
-      c(mesh.positions[face.vertices[2]]);
-  const Vec3 normal = (b - a).cross(c - a);
-  const double weights[3] = {(c - b).cross(p - b).dot(normal), (a - c).cross(p - c).dot(normal),
-                             (b - a).cross(p - a).dot(normal)};
-  Vec3 sum(0.0);
-  for (int i = 0; i < 3; ++i) {
-    sum += Vec3(mesh.normals[face.vertices[i]]) * std::max(0.0, weights[i]);
-  }
-  if (!(sum.squaredLength() > 0)) return mesh.normals[face.vertices[0]];
-  const Vec3 unit = sum.unitOrX();
-  return {static_cast<float>(unit[0]), static_cast<float>(unit[1]), static_cast<float>(unit[2])};
 }
 
 }  // namespace
@@ -164,9 +149,10 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
     const reduce::Index source = reduced.sources[i];
     extracted.baseVertices[i] = source == reduce::kNone ? octree::kNone : source;
     mesh.positions[i] = positionOf(reduced, i);
-    mesh.normals[i] = source != reduce::kNone
-                          ? base.normals[source]
-                          : normalOn(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
+    mesh.normals[i] =
+        source != reduce::kNone
+            ? base.normals[source]
+            : base::interpolatedNormal(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
   }
   mesh.triangles = reduced.triangles;
   extracted.baseQuads.assign(mesh.triangles.size(), octree::kNone);

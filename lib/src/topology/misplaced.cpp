@@ -9,6 +9,7 @@
 #include "base/connected.h"
 #include "base/flat_triangle.h"
 #include "base/polygons.h"
+#include "base/sort_unique.h"
 #include "intersect/exact.h"
 
 namespace tufa::topology {
@@ -174,17 +175,18 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::si
   // A component some of whose vertices are right intersects another one: it is not misplaced as a
   // whole. Only components whose first vertex is wrong are tested vertex by vertex.
   for (std::size_t i = 0; i < names.size(); ++i) {
+    job.pollCancelled(i);
     if (names[i] != i && wrong[names[i]] != 0 && !isWrong(i)) wrong[names[i]] = 0;
   }
   for (VertexIndex i = 0; i < names.size(); ++i) {
+    job.pollCancelled(i);
     if (wrong[names[i]] == 0) continue;
     misplaced.push_back(i);
     Triangle nearest;
     if (!components.findNearestOther(i, nearest)) continue;
     misplaced.insert(misplaced.end(), nearest.vertices.begin(), nearest.vertices.end());
   }
-  std::sort(misplaced.begin(), misplaced.end());
-  misplaced.erase(std::unique(misplaced.begin(), misplaced.end()), misplaced.end());
+  base::sortUnique(misplaced);
   return misplaced;
 }
 

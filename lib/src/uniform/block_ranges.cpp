@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/collect.h"
+#include "base/sort_unique.h"
 
 namespace tufa::uniform {
 namespace {
@@ -54,8 +55,7 @@ std::vector<std::uint32_t> quadsAt(const CellTopology& topology, const Mesh& mes
       if (block != kNoSurfaceBlock) blocks.push_back(block);
     }
   }
-  std::sort(blocks.begin(), blocks.end());
-  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  base::sortUnique(blocks);
   const auto add = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceBlock& block = topology.blocks[blocks[i]];

@@ -144,9 +144,9 @@ void CreaseCell::collectPlanes() {
   const Vector middle = {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F,
                          static_cast<float>(z) + 0.5F};
   for (int cube = 0; cube < 27; ++cube) {
-    const PatchPlane* plane = planes_.at(x + cube / 9 - 1, y + cube / 3 % 3 - 1, z + cube % 3 - 1);
+    const CubePlane* plane = planes_.at(x + cube / 9 - 1, y + cube / 3 % 3 - 1, z + cube % 3 - 1);
     if (plane == nullptr) continue;
-    PatchPlane local = *plane;
+    CubePlane local = *plane;
     local.foot = plus(local.foot, middle, -1);
     const float away = std::max(0.0F, outside(local.foot));
     if (away > kReach) continue;
@@ -163,7 +163,7 @@ void CreaseCell::sortIntoSheets() {
   while (static_cast<int>(sheets_.size()) < kMostSheets) {
     const auto best = std::max_element(weights_.begin(), weights_.end());
     if (best == weights_.end() || *best <= 0) break;
-    const PatchPlane seed = near_[static_cast<std::size_t>(best - weights_.begin())];
+    const CubePlane seed = near_[static_cast<std::size_t>(best - weights_.begin())];
     Sheet sheet;
     Vector point{};
     members_.clear();

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "uniform/patch_planes.h"
+#include "uniform/cube_planes.h"
 #include "uniform/qef.h"
 #include "uniform/sample_balls.h"
 
@@ -98,9 +98,9 @@ class CreaseCell {
 
   const grid::BlockSamples& samples_;
   const grid::FieldScale& scale_;
-  PatchPlanes planes_;
-  std::vector<PatchPlane> near_;  ///< feet in voxels from the middle of the cell
-  std::vector<float> weights_;    ///< of near_
+  CubePlanes planes_;
+  std::vector<CubePlane> near_;  ///< feet in voxels from the middle of the cell
+  std::vector<float> weights_;   ///< of near_
   std::vector<Sheet> sheets_;
   std::vector<std::size_t> members_;  ///< of near_: those of the sheet at hand
   /// Squared radii of the balls around the 64 samples nearest to the cell that the surface does not

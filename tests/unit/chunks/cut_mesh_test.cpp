@@ -10,7 +10,7 @@
 
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
-#include "chunks/cut/part_rounded.h"
+#include "chunks/cut/separate_rounded.h"
 #include "support/mesh_oracle.h"
 #include "support/model.h"
 

@@ -77,11 +77,11 @@ TEST(TrianglePair, AgreesWithCgalOnRandomPoints) {
 }
 
 // Two quads over one edge, from nearly flat to folded over, at any place and scale.
-TEST(TrianglePair, WhatIsPartedAlongAnEdgeDoesNotMeet) {
+TEST(TrianglePair, WhatIsSeparatedAlongAnEdgeDoesNotMeet) {
   std::mt19937 random(14);
   std::uniform_real_distribution<double> coordinate(-1, 1), place(-1e6, 1e6);
   const Triangle own[] = {{0, 1, 2}, {0, 2, 3}}, other[] = {{1, 0, 4}, {1, 4, 5}};
-  int parted = 0, met = 0;
+  int separated = 0, met = 0;
   for (int i = 0; i < 20000; ++i) {
     // Flatter and flatter, so that rounding counts at last.
     const double flat = std::pow(10.0, -20.0 * (i % 1000) / 1000);
@@ -96,21 +96,22 @@ TEST(TrianglePair, WhatIsPartedAlongAnEdgeDoesNotMeet) {
     for (const Triangle& a : own) {
       for (const Triangle& b : other) meet |= expected(p, a, b);
     }
-    const bool apart = intersect::arePartedAlong(p[0], p[1], {p.data() + 2, 2}, {p.data() + 4, 2});
+    const bool apart =
+        intersect::areSeparatedAlong(p[0], p[1], {p.data() + 2, 2}, {p.data() + 4, 2});
     ASSERT_FALSE(apart && meet) << i;
-    parted += apart ? 1 : 0;
+    separated += apart ? 1 : 0;
     met += meet ? 1 : 0;
   }
-  EXPECT_GT(parted, 8000);
+  EXPECT_GT(separated, 8000);
   EXPECT_GT(met, 2000);
 }
 
-TEST(TrianglePair, NothingIsPartedAlongAPoint) {
+TEST(TrianglePair, NothingIsSeparatedAlongAPoint) {
   const std::vector<Position> p = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, -1, 0}, {1, 0, 0}};
-  EXPECT_FALSE(intersect::arePartedAlong(p[0], p[1], {&p[2], 1}, {&p[3], 1}));
-  EXPECT_TRUE(intersect::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[3], 1}));
-  EXPECT_FALSE(intersect::arePartedAlong(p[0], p[4], {&p[2], 1}, {&p[2], 1}));
-  EXPECT_FALSE(intersect::arePartedAlong(p[0], p[4], {&p[4], 1}, {&p[3], 1}));
+  EXPECT_FALSE(intersect::areSeparatedAlong(p[0], p[1], {&p[2], 1}, {&p[3], 1}));
+  EXPECT_TRUE(intersect::areSeparatedAlong(p[0], p[4], {&p[2], 1}, {&p[3], 1}));
+  EXPECT_FALSE(intersect::areSeparatedAlong(p[0], p[4], {&p[2], 1}, {&p[2], 1}));
+  EXPECT_FALSE(intersect::areSeparatedAlong(p[0], p[4], {&p[4], 1}, {&p[3], 1}));
 }
 
 TEST(TrianglePair, FlatMeansOnALine) {

@@ -88,7 +88,8 @@ TEST(CertificateOf, CountsLeavesByLevelAndMeasuresInTheWorld) {
   // A tetrahedron.
   adaptive.extracted.mesh.positions.resize(4, Position(0, 0, 0));
   adaptive.extracted.mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  const Certificate without = certificateOf(adaptive, kVoxel, false);
+  base::Job job(1, {});
+  const Certificate without = certificateOf(adaptive, kVoxel, false, job);
   EXPECT_EQ(without.maxErrorVoxels, 0.25);
   EXPECT_EQ(without.meanErrorVoxels, 0.125);
   EXPECT_EQ(without.maxErrorWorld, 0.125);
@@ -96,7 +97,7 @@ TEST(CertificateOf, CountsLeavesByLevelAndMeasuresInTheWorld) {
   EXPECT_EQ(without.eulerCharacteristic, 2);
   EXPECT_EQ(without.leafLevels, (std::vector<std::size_t>{2, 0, 1}));
   EXPECT_TRUE(without.leaves.empty());
-  EXPECT_EQ(certificateOf(adaptive, kVoxel, true).leaves.size(), 3U);
+  EXPECT_EQ(certificateOf(adaptive, kVoxel, true, job).leaves.size(), 3U);
 }
 
 }  // namespace

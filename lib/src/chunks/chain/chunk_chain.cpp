@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/box.h"
+#include "base/interpolated_normal.h"
 #include "base/single_precision.h"
 #include "refine/surface_reduction.h"
 #include "refine/tolerance_scales.h"
@@ -145,21 +146,6 @@ std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate)
   return errors;
 }
 
-Normal ChunkChain::normalOn(const Triangle& face, const Vec3& p) const {
-  const Mesh& mesh = cut_.mesh;
-  const Vec3 a(mesh.positions[face.vertices[0]]), b(mesh.positions[face.vertices[1]]),
-      c(mesh.positions[face.vertices[2]]);
-  const Vec3 normal = (b - a).cross(c - a);
-  const double weights[3] = {(c - b).cross(p - b).dot(normal), (a - c).cross(p - c).dot(normal),
-                             (b - a).cross(p - a).dot(normal)};
-  Vec3 sum(0.0);
-  for (std::size_t i = 0; i < 3; ++i) {
-    sum += Vec3(mesh.normals[face.vertices[i]]) * std::max(0.0, weights[i]);
-  }
-  if (!(sum.squaredLength() > 0)) return mesh.normals[face.vertices[0]];
-  return Normal(sum.unitOrX());
-}
-
 // A vertex of the mesh as it is now.
 void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, VertexIndex v) const {
   const reduce::Index source = reduced.sources[v];
@@ -172,7 +158,7 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
     level.normals.push_back(cut_.mesh.normals[source]);
   } else {
     p = positionOf(reduced.positions[v]);
-    level.normals.push_back(normalOn(faces_[reduced.faces[v]], Vec3(p)));
+    level.normals.push_back(base::interpolatedNormal(cut_.mesh, faces_[reduced.faces[v]], Vec3(p)));
   }
   p = affine_.toWorld(p);
   level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);

@@ -65,7 +65,6 @@ class ChunkChain {
   void add(ChainLevel& level, const reduce::ReducedMesh& reduced, VertexIndex v) const;
   [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
   [[nodiscard]] base::Vec3f localOf(const Position& p) const;
-  [[nodiscard]] Normal normalOn(const Triangle& face, const Vec3& p) const;
   void setInto(ChainLevel& level);
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 

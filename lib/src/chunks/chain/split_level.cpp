@@ -17,14 +17,14 @@ struct CurveEdge {
 
 class Splitter {
  public:
-  Splitter(const CutMesh& cut, const ChainLevel& level, const ShadedLevel& shaded)
+  Splitter(const CutMesh& cut, const ChainLevel& level, const ShadedLevel& shaded, base::Job& job)
       : cut_(cut), level_(level), shaded_(shaded) {
     triangles_.resize(cut.chunks.size());
     edges_.resize(cut.chunks.size());
     for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
       triangles_[level.chunkOf[t]].push_back(t);
     }
-    findEdges();
+    findEdges(job);
   }
 
   [[nodiscard]] ChunkLevel make(std::uint32_t chunk) const {
@@ -83,10 +83,11 @@ class Splitter {
   }
 
   // The edges between triangles of different chunks, for each chunk in the order of its triangles.
-  void findEdges() {
+  void findEdges(base::Job& job) {
     const auto keyOf = [](VertexIndex a, VertexIndex b) { return std::uint64_t{a} << 32 | b; };
     const auto forEdges = [&](const auto& visit) {
       for (std::uint32_t t = 0; t < level_.triangles.size(); ++t) {
+        job.pollCancelled(t);
         const auto& v = level_.triangles[t].vertices;
         for (std::size_t i = 0; i < 3; ++i) {
           const VertexIndex a = v[i], b = v[(i + 1) % 3];
@@ -158,7 +159,7 @@ class Splitter {
 
 std::vector<ChunkLevel> splitLevel(const CutMesh& cut, const ChainLevel& level,
                                    const ShadedLevel& shaded, base::Job& job) {
-  const Splitter splitter(cut, level, shaded);
+  const Splitter splitter(cut, level, shaded, job);
   std::vector<ChunkLevel> chunks(cut.chunks.size());
   job.forRanges(chunks.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -61,7 +61,7 @@ class Cutter {
       join(kLeastEdge, axis == 0 ? Marks() : out_.isNew, [](VertexIndex) { return true; });
       flip(out_.isNew);
     }
-    out_.isParted = joinWhereRounded();
+    out_.isSeparated = joinWhereRounded();
     out_.moved += reshaped_ * voxelsOfStep();
     finish();
     return std::move(out_);

@@ -35,7 +35,7 @@ struct CutMesh {
   std::vector<std::uint8_t> isNew;
   /// Whether a search has shown that no triangle with a new vertex intersects another one once
   /// positions are rounded.
-  bool isParted = false;
+  bool isSeparated = false;
   double moved = 0;  ///< how far vertices were moved at most: to planes, and apart; voxels
 };
 

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "base/collect.h"
+#include "base/sort_unique.h"
 
 namespace tufa::chunks {
 namespace {
@@ -43,8 +44,7 @@ class CapFlipper {
       pass(caps);
       if (flipped_.empty()) break;
       caps.insert(caps.end(), flipped_.begin(), flipped_.end());
-      std::sort(caps.begin(), caps.end());
-      caps.erase(std::unique(caps.begin(), caps.end()), caps.end());
+      base::sortUnique(caps);
       std::erase_if(caps, [&](std::uint32_t t) { return !isCap(t); });
     }
     return farthest_;

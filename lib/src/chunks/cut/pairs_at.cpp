@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/collect.h"
+#include "base/sort_unique.h"
 
 namespace tufa::chunks {
 namespace {
@@ -82,8 +83,7 @@ Mesh meshOf(const std::vector<Triangle>& triangles, const std::vector<std::uint3
   for (const Triangle& t : mesh.triangles) {
     used.insert(used.end(), t.vertices.begin(), t.vertices.end());
   }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  base::sortUnique(used);
   for (const VertexIndex v : used) mesh.positions.emplace_back(places[v]);
   for (Triangle& t : mesh.triangles) {
     for (VertexIndex& v : t.vertices) {

@@ -7,7 +7,8 @@
 
 #include "base/bvh.h"
 #include "base/single_precision.h"
-#include "refine/repair/cluster.h"
+#include "base/sort_unique.h"
+#include "refine/repair/pair_group.h"
 
 namespace tufa::refine {
 namespace {
@@ -24,12 +25,6 @@ constexpr int kCrowdedRounds = 2;
 // this in voxels.
 constexpr double kSight = 0.75;
 constexpr double kLeastSight = 1.0;
-
-template <class T>
-void sortUnique(std::vector<T>& items) {
-  std::sort(items.begin(), items.end());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
 
 class Repairer {
  public:
@@ -57,7 +52,7 @@ class Repairer {
     repairInRounds(false);
     if (source_.lastResort) repairInRounds(true);
     surface_.finish();
-    sortUnique(report_.changed);
+    base::sortUnique(report_.changed);
     report_.left = std::move(pairs_);
     return std::move(report_);
   }
@@ -67,7 +62,7 @@ class Repairer {
     stuck_.clear();
     for (int round = 0; round < kMostRounds && stuck_.size() < pairs_.size(); ++round) {
       readFallbacks();
-      lookAgain(repairClusters(lastResort));
+      lookAgain(repairGroups(lastResort));
     }
   }
 
@@ -86,8 +81,8 @@ class Repairer {
         }
       }
     }
-    sortUnique(quads);
-    sortUnique(vertices);
+    base::sortUnique(quads);
+    base::sortUnique(vertices);
     if (!vertices.empty()) {
       const std::vector<Position> points = source_.massPoints(vertices);
       for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -117,28 +112,27 @@ class Repairer {
     return all;
   }
 
-  // Each cluster is repaired in a copy of its surroundings, in parallel; changes are applied in the
-  // order of the clusters.
-  std::vector<intersect::PolygonIndex> repairClusters(bool lastResort) {
-    const std::vector<std::vector<intersect::PolygonPair>> clusters = findClusters();
-    const std::vector<std::vector<intersect::PolygonIndex>> polygons =
-        findPolygons(clusters.size());
-    std::vector<Changes> changes(clusters.size());
-    job_.forRanges(clusters.size(), 1, [&](std::size_t begin, std::size_t end) {
+  // Each group is repaired in a copy of its surroundings, in parallel; changes are applied in the
+  // order of the groups.
+  std::vector<intersect::PolygonIndex> repairGroups(bool lastResort) {
+    const std::vector<std::vector<intersect::PolygonPair>> groups = findGroups();
+    const std::vector<std::vector<intersect::PolygonIndex>> polygons = findPolygons(groups.size());
+    std::vector<Changes> changes(groups.size());
+    job_.forRanges(groups.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        Cluster cluster(Patch(surface_, polygons[i]), clusters[i], fallbacks_);
-        changes[i] = cluster.repairIntersections(lastResort);
+        PairGroup group(LocalMesh(surface_, polygons[i]), groups[i], fallbacks_);
+        changes[i] = group.repairIntersections(lastResort);
       }
     });
     std::vector<intersect::PolygonIndex> changed;
-    for (std::size_t i = 0; i < clusters.size(); ++i) {
+    for (std::size_t i = 0; i < groups.size(); ++i) {
       // A pair that nothing helped is not tried again unless something changes around it.
       if (changes[i].polygons.empty() && changes[i].fans.empty()) {
-        stuck_.insert(clusters[i].begin(), clusters[i].end());
+        stuck_.insert(groups[i].begin(), groups[i].end());
       }
       apply(changes[i], changed);
     }
-    sortUnique(changed);
+    base::sortUnique(changed);
     report_.changed.insert(report_.changed.end(), changed.begin(), changed.end());
     return changed;
   }
@@ -173,7 +167,7 @@ class Repairer {
   // repaired at the same time, and the others wait for a later round. Greedy by place, so the
   // choice does not depend on threads or on the order of polygons. A polygon may reach into two
   // surroundings; what its two changes make together is found by the search after the round.
-  std::vector<std::vector<intersect::PolygonPair>> findClusters() {
+  std::vector<std::vector<intersect::PolygonPair>> findGroups() {
     std::vector<Box> all;
     for (const intersect::PolygonPair& pair : pairs_) all.push_back(sightOf(pair));
     const base::Bvh tree(all, job_);
@@ -187,14 +181,14 @@ class Repairer {
     std::vector<std::uint32_t> order(pairs_.size());
     std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(), before);
-    std::vector<std::vector<intersect::PolygonPair>> clusters;
+    std::vector<std::vector<intersect::PolygonPair>> groups;
     sights_.clear();
     std::vector<bool> taken(pairs_.size());
     // Of one pair at a time: where a surface touches itself everywhere, each sees thousands.
     std::vector<std::uint32_t> seen;
     for (const std::uint32_t i : order) {
       if (taken[i] || stuck_.count(pairs_[i]) != 0) continue;
-      clusters.push_back({pairs_[i]});
+      groups.push_back({pairs_[i]});
       sights_.push_back(all[i]);
       seen.clear();
       tree.itemsMeeting(all[i], [&](std::uint32_t other, const Box&) {
@@ -203,10 +197,10 @@ class Repairer {
       std::sort(seen.begin(), seen.end(), before);
       for (const std::uint32_t other : seen) {
         taken[other] = true;
-        if (contains(all[i], pairs_[other])) clusters.back().push_back(pairs_[other]);
+        if (contains(all[i], pairs_[other])) groups.back().push_back(pairs_[other]);
       }
     }
-    return clusters;
+    return groups;
   }
 
   [[nodiscard]] bool contains(const Box& sight, const intersect::PolygonPair& pair) const {
@@ -216,9 +210,9 @@ class Repairer {
     return own.lower == sight.lower && own.upper == sight.upper;
   }
 
-  // The polygons in the surroundings of each cluster, sorted.
-  std::vector<std::vector<intersect::PolygonIndex>> findPolygons(std::size_t clusters) {
-    using Entry = std::pair<std::uint32_t, intersect::PolygonIndex>;  // a cluster and a polygon
+  // The polygons in the surroundings of each group, sorted.
+  std::vector<std::vector<intersect::PolygonIndex>> findPolygons(std::size_t groups) {
+    using Entry = std::pair<std::uint32_t, intersect::PolygonIndex>;  // a group and a polygon
     const base::Bvh tree(sights_, job_);
     std::vector<std::vector<Entry>> ofRun(surface_.runCount());
     job_.forRanges(surface_.runCount(), 64, [&](std::size_t begin, std::size_t end) {
@@ -236,9 +230,9 @@ class Repairer {
         }
       }
     });
-    std::vector<std::vector<intersect::PolygonIndex>> polygons(clusters);
+    std::vector<std::vector<intersect::PolygonIndex>> polygons(groups);
     for (const std::vector<Entry>& entries : ofRun) {
-      for (const auto& [cluster, polygon] : entries) polygons[cluster].push_back(polygon);
+      for (const auto& [group, polygon] : entries) polygons[group].push_back(polygon);
     }
     return polygons;
   }
@@ -281,7 +275,7 @@ class Repairer {
   std::vector<intersect::PolygonPair> pairs_;
   FallbackPositions fallbacks_;
   std::set<intersect::PolygonPair> stuck_;  // pairs that nothing in this phase helps
-  std::vector<Box> sights_;                 // surroundings of the clusters
+  std::vector<Box> sights_;                 // surroundings of the groups
   RepairReport report_;
 };
 

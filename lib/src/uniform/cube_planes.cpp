@@ -1,4 +1,4 @@
-#include "uniform/patch_planes.h"
+#include "uniform/cube_planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,17 +16,17 @@ constexpr float kLargestResidual = 0.06F;
 
 }  // namespace
 
-const PatchPlane* PatchPlanes::at(int x, int y, int z) {
+const CubePlane* CubePlanes::at(int x, int y, int z) {
   const int index = ((x + 1) * kSize + y + 1) * kSize + z + 1;
   if (states_[index] == State::Unknown) {
-    const std::optional<PatchPlane> plane = fit(x, y, z);
+    const std::optional<CubePlane> plane = fit(x, y, z);
     states_[index] = plane ? State::Plane : State::None;
     if (plane) planes_[index] = *plane;
   }
   return states_[index] == State::Plane ? &planes_[index] : nullptr;
 }
 
-std::optional<PatchPlane> PatchPlanes::fit(int x, int y, int z) const {
+std::optional<CubePlane> CubePlanes::fit(int x, int y, int z) const {
   std::array<float, 8> values;
   float mean = 0;
   Vector gradient{};
@@ -42,7 +42,7 @@ std::optional<PatchPlane> PatchPlanes::fit(int x, int y, int z) const {
   }
   const float unit = std::sqrt(scale_.squaredLength(gradient[0], gradient[1], gradient[2]));
   if (std::abs(unit - 1) > kLengthTolerance) return {};
-  PatchPlane plane;
+  CubePlane plane;
   for (int corner = 0; corner < 8; ++corner) {
     const float dx = static_cast<float>(corner >> 2) - 0.5F;
     const float dy = static_cast<float>((corner >> 1) & 1) - 0.5F;

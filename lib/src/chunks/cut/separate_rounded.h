@@ -6,12 +6,13 @@
 
 namespace tufa::chunks {
 
-/// Parts triangles of a cut mesh that nearly touch, so that they do not intersect once positions
-/// are rounded as they will be written, to single precision in world space if `singlePrecision`.
-/// Moves vertices that are on no plane a little, and keeps all positions as they were before as
-/// `reference` if there are any. Looks at triangles that have a new vertex: those of the uniform
-/// mesh do not intersect each other.
-void partRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job);
+/// Separates triangles of a cut mesh that nearly touch, so that they do not intersect once
+/// positions are rounded as they will be written, to single precision in world space if
+/// `singlePrecision`. Moves vertices that are on no plane a little, and keeps all positions as they
+/// were before as `reference` if there are any. Looks at triangles that have a new vertex: those of
+/// the uniform mesh do not intersect each other.
+void separateRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision,
+                     base::Job& job);
 
 /// Gives vertices that would be at the place of another one in world space, rounded as above, a
 /// place of their own, the next free one along x: what joins chunks by positions would make one

@@ -1,4 +1,4 @@
-#include "chunks/cut/part_rounded.h"
+#include "chunks/cut/separate_rounded.h"
 
 #include <algorithm>
 #include <array>
@@ -69,8 +69,9 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
   cut.moved += moved / affine.voxelSize();
 }
 
-void partRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job) {
-  if (cut.isParted) return;
+void separateRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision,
+                     base::Job& job) {
+  if (cut.isSeparated) return;
   std::vector<Position>& positions = cut.mesh.positions;
   Mesh rounded;
   rounded.positions.resize(positions.size());

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/vec3.h"
-#include "refine/repair/patch.h"
+#include "refine/repair/local_mesh.h"
 
 namespace tufa::refine {
 
@@ -18,7 +18,7 @@ struct FallbackPositions {
   bool singlePrecision = false;
 };
 
-/// The changes to a cluster; of each element the final state.
+/// The changes to a group; of each element the final state.
 struct Changes {
   std::vector<std::pair<VertexIndex, Position>> moves;
   std::vector<intersect::PolygonIndex> turns;
@@ -27,21 +27,21 @@ struct Changes {
       polygons;  ///< all that are not as they were, but for fans' triangles
 };
 
-/// Repairs the pairs of one patch, each by the change of least harm that leaves fewer pairs than
+/// Repairs the pairs of one group, each by the change of least harm that leaves fewer pairs than
 /// before. Harm is how far the surface moves off itself, in voxels; so a vertex on a crease slides
 /// along it before it leaves it. Cost: each edit tried tests the polygons it touches against all of
-/// the patch, boxes first.
-class Cluster {
+/// the group, boxes first.
+class PairGroup {
  public:
-  Cluster(Patch patch, const std::vector<intersect::PolygonPair>& pairs,
-          const FallbackPositions& fallbacks);
+  PairGroup(LocalMesh mesh, const std::vector<intersect::PolygonPair>& pairs,
+            const FallbackPositions& fallbacks);
 
   /// If `lastResort`, polygons of a pair that no such change helps go to their mass points, and if
   /// they are there already they are fanned, whatever that does to others.
   Changes repairIntersections(bool lastResort);
 
  private:
-  using Local = Patch::Local;
+  using Local = LocalMesh::Local;
   using Pair = std::array<Local, 2>;
 
   struct Edit {
@@ -72,7 +72,7 @@ class Cluster {
   void accept(const Edit& edit, const std::vector<Local>& touched, const std::vector<Pair>& pairs);
   [[nodiscard]] Changes changes() const;
 
-  Patch patch_;
+  LocalMesh mesh_;
   const FallbackPositions& fallbacks_;
   std::vector<Pair> pairs_;
   std::vector<std::pair<Local, Position>> undoMoves_;

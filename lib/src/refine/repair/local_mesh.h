@@ -12,13 +12,13 @@ namespace tufa::refine {
 
 /// A copy of a part of the mesh, to be changed and tested many times. Vertices and polygons have
 /// indices of their own here.
-class Patch {
+class LocalMesh {
  public:
-  /// Index of a vertex or polygon of the patch.
+  /// Index of a vertex or polygon of this mesh.
   using Local = VertexIndex;
 
   /// Takes a copy of these polygons, sorted, and their vertices.
-  Patch(const intersect::Surface& surface, std::vector<intersect::PolygonIndex> polygons);
+  LocalMesh(const intersect::Surface& surface, std::vector<intersect::PolygonIndex> polygons);
 
   [[nodiscard]] Local polygonCount() const { return static_cast<Local>(polygons_.size()); }
   [[nodiscard]] Local find(intersect::PolygonIndex polygon) const;
@@ -30,7 +30,7 @@ class Patch {
     return {polygons_[polygon].vertices.data(), counts_[polygon]};
   }
   [[nodiscard]] const Position& point(Local vertex) const { return points_[vertex]; }
-  /// The polygons of the patch at a vertex.
+  /// The polygons of this mesh at a vertex.
   [[nodiscard]] const std::vector<Local>& around(Local vertex) const { return around_[vertex]; }
 
   void move(Local vertex, const Position& to);

@@ -1,12 +1,14 @@
-#include "refine/repair/patch.h"
+#include "refine/repair/local_mesh.h"
 
 #include <algorithm>
 
+#include "base/sort_unique.h"
 #include "intersect/triangle_pair.h"
 
 namespace tufa::refine {
 
-Patch::Patch(const intersect::Surface& surface, std::vector<intersect::PolygonIndex> polygons)
+LocalMesh::LocalMesh(const intersect::Surface& surface,
+                     std::vector<intersect::PolygonIndex> polygons)
     : numbers_(std::move(polygons)),
       polygons_(numbers_.size()),
       counts_(numbers_.size()),
@@ -15,8 +17,7 @@ Patch::Patch(const intersect::Surface& surface, std::vector<intersect::PolygonIn
     const intersect::Corners corners = surface.corners(polygon);
     vertices_.insert(vertices_.end(), corners.begin(), corners.end());
   }
-  std::sort(vertices_.begin(), vertices_.end());
-  vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+  base::sortUnique(vertices_);
   points_.reserve(vertices_.size());
   for (const VertexIndex vertex : vertices_) points_.push_back(surface.mesh().positions[vertex]);
   around_.resize(vertices_.size());
@@ -33,12 +34,12 @@ Patch::Patch(const intersect::Surface& surface, std::vector<intersect::PolygonIn
   }
 }
 
-Patch::Local Patch::find(intersect::PolygonIndex polygon) const {
+LocalMesh::Local LocalMesh::find(intersect::PolygonIndex polygon) const {
   return static_cast<Local>(std::lower_bound(numbers_.begin(), numbers_.end(), polygon) -
                             numbers_.begin());
 }
 
-void Patch::updateBox(Local polygon) {
+void LocalMesh::updateBox(Local polygon) {
   base::Box box = base::Box::empty();
   for (const Local vertex : corners(polygon)) {
     const Position& p = points_[vertex];
@@ -47,17 +48,17 @@ void Patch::updateBox(Local polygon) {
   boxes_[polygon] = box;
 }
 
-void Patch::move(Local vertex, const Position& to) {
+void LocalMesh::move(Local vertex, const Position& to) {
   points_[vertex] = to;
   for (const Local polygon : around_[vertex]) updateBox(polygon);
 }
 
-void Patch::turn(Local quad) {
+void LocalMesh::turn(Local quad) {
   auto& v = polygons_[quad].vertices;
   std::rotate(v.begin(), v.begin() + 1, v.end());
 }
 
-bool Patch::isFlat(Local polygon) const {
+bool LocalMesh::isFlat(Local polygon) const {
   std::array<Triangle, 2> triangles;
   const int count = intersect::trianglesOf(corners(polygon), triangles);
   for (int i = 0; i < count; ++i) {
@@ -66,7 +67,7 @@ bool Patch::isFlat(Local polygon) const {
   return false;
 }
 
-void Patch::fan(Local quad, const Position& centre) {
+void LocalMesh::fan(Local quad, const Position& centre) {
   const auto v = polygons_[quad].vertices;
   const auto middle = static_cast<Local>(points_.size());
   points_.push_back(centre);
@@ -86,7 +87,7 @@ void Patch::fan(Local quad, const Position& centre) {
   }
 }
 
-void Patch::unfan(Local quad, const Quad& was) {
+void LocalMesh::unfan(Local quad, const Quad& was) {
   for (int i = 3; i > 0; --i) {
     for (const Local vertex : {was.vertices[i], was.vertices[(i + 1) % 4]}) {
       around_[vertex].pop_back();

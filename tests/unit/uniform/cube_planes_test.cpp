@@ -1,4 +1,4 @@
-#include "uniform/patch_planes.h"
+#include "uniform/cube_planes.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
 /// Calls body(cube's middle, plane or null) for the cubes around the block.
 template <class Body>
 void forPlanes(const test::BlockField& field, const Body& body) {
-  const auto planes = std::make_unique<PatchPlanes>(field.samples(), field.scale());
+  const auto planes = std::make_unique<CubePlanes>(field.samples(), field.scale());
   for (int x = -1; x <= 8; ++x) {
     for (int y = -1; y <= 8; ++y) {
       for (int z = -1; z <= 8; ++z) body(Vec3(x + 0.5, y + 0.5, z + 0.5), planes->at(x, y, z));
@@ -27,12 +27,12 @@ void forPlanes(const test::BlockField& field, const Body& body) {
   }
 }
 
-TEST(PatchPlanes, OfAPlaneAreThatPlaneWhereverTheBandReaches) {
+TEST(CubePlanes, OfAPlaneAreThatPlaneWhereverTheBandReaches) {
   const Vec3 normal = Vec3(1, -2, 3).unitOrX();
   const test::PlaneDistance plane{normal, normal.dot(Vec3(4, 3.6, 4.1))};
   const auto field = distanceAroundBlock(plane, 3);
   int found = 0;
-  forPlanes(field, [&](const Vec3& middle, const PatchPlane* patch) {
+  forPlanes(field, [&](const Vec3& middle, const CubePlane* patch) {
     double farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3 offset((corner >> 2) - 0.5, ((corner >> 1) & 1) - 0.5, (corner & 1) - 0.5);
@@ -49,11 +49,11 @@ TEST(PatchPlanes, OfAPlaneAreThatPlaneWhereverTheBandReaches) {
   EXPECT_GT(found, 200);
 }
 
-TEST(PatchPlanes, NearACreaseAreOfOneSideOrNone) {
+TEST(CubePlanes, NearACreaseAreOfOneSideOrNone) {
   const test::TurnedBoxDistance box = test::boxWithCornerInBlock();
   const auto field = distanceAroundBlock(box);
   int planes = 0, none = 0;
-  forPlanes(field, [&](const Vec3& middle, const PatchPlane* patch) {
+  forPlanes(field, [&](const Vec3& middle, const CubePlane* patch) {
     if (box(middle) > -0.9) return;  // beyond the edges the distance is round, not kinked
     if (box(middle) < -2.5) return;
     if (patch == nullptr) {

@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "reduce/reduction.h"
+
+// Reduction to a number of triangles.
+
+namespace tufa::reduce {
+namespace {
+
+// The first tolerance, and the factor by which it grows.
+constexpr float kFirstTolerance = 0.025f;
+constexpr float kStep = 4;
+// The least tolerance that reaches the number may be smaller by so much than one at which two
+// phases do not; it is found to 3%.
+constexpr float kReserve = 1.5f;
+constexpr int kHalvings = 6;
+// A mesh above the number by less than one triangle in so many gets more phases: in other parts
+// they may find what is missing.
+constexpr Index kNearly = 8;
+// A certificate up to so many times the tolerance that was found is left at that.
+constexpr float kNearTolerance = 1.02f;
+// Where tolerances remove nothing so often in turn, the topology is in the way.
+constexpr int kMostStuck = 2;
+
+}  // namespace
+
+Reduction::State Reduction::state() const {
+  return {surface_, tolerance_, phaseNumber_, isReference_};
+}
+
+void Reduction::restore(const State& state) {
+  surface_ = state.surface;
+  tolerance_ = state.tolerance;
+  phaseNumber_ = state.phaseNumber;
+  isReference_ = state.isReference;
+}
+
+float Reduction::toCount(Index count, float mostTolerance) {
+  return toCountWithin(count, mostTolerance * largestScale_) / largestScale_;
+}
+
+// Where the certificate is beyond the tolerance that was found, the mesh is left as it was around
+// there, and the search begins again, as in toTolerance(). The mesh of the least error is taken.
+float Reduction::toCountWithin(Index count, float mostTolerance) {
+  if (triangleCount() <= count) {
+    measureWithin(tolerance_);
+    return tolerance_;
+  }
+  const State start = state();
+  std::optional<State> best;
+  Certificate certificate;
+  for (attempt_ = 0;; ++attempt_) {
+    const bool isReached = findCount(count, mostTolerance);
+    if (best && !isReached) break;
+    measureWithin(tolerance_);
+    if (!best || certificate_.largest < certificate.largest) {
+      best = state(), certificate = certificate_;
+    }
+    if (!isReached || certificate_.mostOver <= kNearTolerance || attempt_ == options_.attempts) {
+      break;
+    }
+    hold(certificate_.beyond, tolerance_);
+    restore(start);
+  }
+  restore(*best);
+  certificate_ = std::move(certificate);
+  reference_.releaseAll();
+  return triangleCount() <= count ? tolerance_ : mostTolerance;
+}
+
+// Growing tolerances to the first that reaches the count, and between that one and the one before
+// by halves, each from the mesh of two tolerances ago: as toTolerance() goes. So the error at the
+// count is that of the tolerance that gives as many triangles. Whether the count is reached.
+bool Reduction::findCount(Index count, float mostTolerance) {
+  keepsShape_ = true;
+  const auto isReached = [&] { return triangleCount() <= count; };
+  const auto reduceTo = [&](float tolerance, int phases) {
+    trees_.clear(), nextTree_ = 0;
+    reduce(tolerance, count, phases);
+  };
+  State start = state(), last = start;
+  float low = tolerance_,
+        high = std::min(std::max(tolerance_ * kStep, kFirstTolerance), mostTolerance);
+  for (int stuck = 0;;) {
+    const Index before = triangleCount();
+    State next = state();
+    reduceTo(high, kRampPhases);
+    stuck = triangleCount() == before ? stuck + 1 : 0;
+    if (keepsShape_ && high > kStuckTolerance && hasRemovedLittle(before)) {
+      keepsShape_ = false, stuck = 0;
+    }
+    const bool isLast = high >= mostTolerance || (stuck == kMostStuck && high > kStuckTolerance);
+    if (isLast) reduceTo(high, kPhases);
+    start = std::move(last), last = std::move(next);
+    if (isReached()) break;
+    if (isLast) return false;
+    low = high / kReserve, high = std::min(high * kStep, mostTolerance);
+  }
+  low = std::max({low, start.tolerance, high / (kStep * kReserve)});
+  State best = state();
+  for (int i = 0; i < kHalvings && low < high; ++i) {
+    const float middle = std::sqrt(low * high);
+    restore(start);
+    trees_.clear(), nextTree_ = 0;
+    descendTo(middle, count);
+    const bool isNear = triangleCount() <= count + count / kNearly;
+    if (!isReached() && isNear) reduceTo(middle, kPhases);
+    if (!isReached()) {
+      low = middle;
+      continue;
+    }
+    best = state(), high = middle;
+  }
+  restore(best);
+  return true;
+}
+
+// The collapses that a phase may still make, shared among parts by their inner vertices.
+std::vector<Index> Reduction::quotas(Index count) const {
+  std::vector<Index> quota(partition_.size(), kNone);
+  if (count == 0) return quota;
+  std::vector<double> inner(partition_.size(), 0);
+  double all = 0;
+  for (Index p = 0; p < quota.size(); ++p) {
+    for (const Index v : partition_.vertices(p)) inner[p] += partition_.isInner(v) ? 1 : 0;
+    all += inner[p];
+  }
+  const double allowed = static_cast<double>((triangleCount() - count + 1) / 2);
+  double sum = 0;
+  for (Index p = 0; p < quota.size(); ++p) {
+    const double before = std::floor(sum);
+    sum += all > 0 ? allowed * inner[p] / all : 0;
+    quota[p] = static_cast<Index>(std::floor(sum + 1e-6) - before);
+  }
+  return quota;
+}
+
+}  // namespace tufa::reduce
