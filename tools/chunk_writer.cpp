@@ -9,6 +9,8 @@
 namespace tufa::tools {
 namespace {
 
+// Chunks that wait to be written: enough that threads end at about the same time, and few beside
+// the levels that they come from.
 constexpr std::size_t kAtOnce = 128;
 
 }  // namespace

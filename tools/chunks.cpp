@@ -168,6 +168,31 @@ std::vector<double> callShares(const ChunksArguments& arguments) {
   return {kFilterShare, kContourShare};
 }
 
+/// Puts down in the index which files hold the levels.
+void nameFiles(const ChunkWriter& writer, ChunkIndex& index) {
+  for (ChunkEntry& chunk : index.chunks) {
+    const std::vector<ChunkFile>& made = writer.files(chunk.index);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      chunk.levels[i].file = made[i].name;
+      chunk.levels[i].checksum = made[i].checksum;
+    }
+  }
+}
+
+/// Writes the index, moves all into the folder, and removes what an earlier run left there.
+void commit(const ChunksArguments& arguments, ChunkIndex index, StagedFolder& staged) {
+  const bool isWhole = arguments.only.empty();
+  if (!isWhole) keepOthers(index, arguments.output);
+  writeChunkIndex(index, staged.path());
+  std::vector<std::filesystem::path> old;
+  if (isWhole) old = filesLeftOver(arguments.output, index);
+  staged.commit("chunks.json");
+  for (const std::filesystem::path& file : old) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
+}
+
 ChunksRun build(const ChunksArguments& arguments) {
   ProgressBar bar(arguments.quiet, callShares(arguments));
   ChunksRun run;
@@ -206,27 +231,12 @@ ChunksRun build(const ChunksArguments& arguments) {
   }
   noteMissing(run.index, options.only);
   if (options.compression != run.index.compression) noteFloats("every level");
-  for (ChunkEntry& chunk : run.index.chunks) {
-    const std::vector<ChunkFile>& made = writer.files(chunk.index);
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      chunk.levels[i].file = made[i].name;
-      chunk.levels[i].checksum = made[i].checksum;
-    }
-  }
   if (options.only.empty() && run.index.chunks.empty()) {
     requireSurface({}, run.contour.isovalue, *grid, arguments.input);
   }
-  ChunkIndex all = run.index;
-  if (!options.only.empty()) keepOthers(all, arguments.output);
+  nameFiles(writer, run.index);
   if (!staged) staged.emplace(arguments.output);
-  writeChunkIndex(all, staged->path());
-  std::vector<std::filesystem::path> old;
-  if (options.only.empty()) old = filesLeftOver(arguments.output, all);
-  staged->commit("chunks.json");
-  for (const std::filesystem::path& file : old) {
-    std::error_code ignored;
-    std::filesystem::remove(file, ignored);
-  }
+  commit(arguments, run.index, *staged);
   return run;
 }
 

@@ -66,10 +66,10 @@ Json toJson(const LodRun& run, const LodArguments& arguments) {
   }
   json["stopped"] = run.chain.stopped;
   json["float_levels"] = run.written.floatLevels;
-  json["seconds"] = {{"read", run.readSeconds},          {"filter", run.filters.seconds},
-                     {"chain", run.chainSeconds},        {"attributes", run.attributeSeconds},
-                     {"check", run.checkSeconds},        {"write", run.writeSeconds},
-                     {"shared", run.chain.sharedSeconds}};
+  json["seconds"] = {{"read", run.readSeconds},     {"filter", run.filters.seconds},
+                     {"chain", run.chainSeconds},   {"attributes", run.attributeSeconds},
+                     {"check", run.checkSeconds},   {"write", run.writeSeconds},
+                     {"report", run.reportSeconds}, {"shared", run.chain.sharedSeconds}};
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["threads"] = resolveThreads(arguments.lod.contour.threads);
   return json;
@@ -111,6 +111,7 @@ std::string describe(const LodRun& run, const LodArguments& arguments) {
             shortNumber(run.attributeSeconds) + " s";
   }
   if (!run.checks.empty()) text += ", check " + shortNumber(run.checkSeconds) + " s";
+  if (arguments.report) text += ", report " + shortNumber(run.reportSeconds) + " s";
   std::vector<std::filesystem::path> files = run.written.files;
   if (arguments.report) files.emplace_back(*arguments.report);
   return text + "\n" + describeWritten(files, run.writeSeconds);

@@ -30,8 +30,8 @@ LodOptions chainOptions(const LodArguments& arguments, const ContourOptions& mes
   return options;
 }
 
-LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
-  LodRun run;
+/// The levels, and the uniform mesh where there is to be a report.
+void buildChain(const LodArguments& arguments, ProgressBar& bar, LodRun& run) {
   std::shared_ptr<openvdb::GridBase> grid;
   run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
   run.gridName = nameOf(*grid);
@@ -40,7 +40,6 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
   meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
   grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run.filters);
   if (!arguments.allowEmpty) requireLeft(*grid, arguments.input, run.filters);
-  const AttributeGrids attributes(arguments.input, arguments.attributes);
   const LodOptions options = chainOptions(arguments, meshing, *grid, bar);
   run.dropping = options.allowTopologyChange;
   run.chainSeconds = timed([&] { run.chain = buildLods(*grid, options, &run.contour); });
@@ -56,48 +55,52 @@ LodRun runStages(const LodArguments& arguments, ProgressBar& bar) {
     requireSurface(run.chain.levels.empty() ? Mesh() : run.chain.levels[0].mesh,
                    run.contour.isovalue, *grid, arguments.input);
   }
-  if (arguments.report) {
-    ContourOptions uniform = options.contour;
-    uniform.uniform = true;
-    uniform.progress = bar.callback();
-    run.reference = contour(*grid, uniform);
-  }
-  grid.reset();
-  if (!arguments.attributes.empty()) {
-    run.attributeSeconds = timed([&] {
-      for (Lod& lod : run.chain.levels) {
-        lod.mesh.attributes = attributes.sample(lod.mesh.positions, options.contour.threads);
-      }
-    });
-  }
+  if (!arguments.report) return;
+  ContourOptions uniform = options.contour;
+  uniform.uniform = true;
+  uniform.progress = bar.callback();
+  run.reportSeconds = timed([&] { run.reference = contour(*grid, uniform); });
+}
 
-  if (arguments.check) {
-    CheckOptions checkOptions;
-    checkOptions.threads = options.contour.threads;
-    run.checkSeconds = timed([&] {
-      const Progress progress = bar.callback();
-      const auto count = static_cast<double>(run.chain.levels.size());
-      for (std::size_t level = 0; level < run.chain.levels.size(); ++level) {
-        checkOptions.progress = [&](std::string_view stage, double fraction) {
-          return progress(stage, (static_cast<double>(level) + fraction) / count);
-        };
-        run.checks.push_back(check(run.chain.levels[level].mesh, checkOptions));
-      }
-    });
-  }
-  LodWriteOptions writing = arguments.writing;
-  writing.threads = options.contour.threads;
-  writing.progress = bar.callback();
+void sampleAttributes(const LodArguments& arguments, const AttributeGrids& attributes,
+                      LodRun& run) {
+  if (arguments.attributes.empty()) return;
+  run.attributeSeconds = timed([&] {
+    for (Lod& lod : run.chain.levels) {
+      lod.mesh.attributes = attributes.sample(lod.mesh.positions, arguments.lod.contour.threads);
+    }
+  });
+}
+
+void checkLevels(const LodArguments& arguments, ProgressBar& bar, LodRun& run) {
+  if (!arguments.check) return;
+  CheckOptions options;
+  options.threads = arguments.lod.contour.threads;
+  run.checkSeconds = timed([&] {
+    const Progress progress = bar.callback();
+    const auto count = static_cast<double>(run.chain.levels.size());
+    for (std::size_t level = 0; level < run.chain.levels.size(); ++level) {
+      options.progress = [&](std::string_view stage, double fraction) {
+        return progress(stage, (static_cast<double>(level) + fraction) / count);
+      };
+      run.checks.push_back(check(run.chain.levels[level].mesh, options));
+    }
+  });
+}
+
+void writeLevels(const LodArguments& arguments, ProgressBar& bar, LodRun& run) {
+  LodWriteOptions options = arguments.writing;
+  options.threads = arguments.lod.contour.threads;
+  options.progress = bar.callback();
   run.writeSeconds = timed([&] {
     if (isStandard(arguments.output)) {
-      writeLods(run.chain, standardOutput(), meshFormat("-", arguments.format), writing,
+      writeLods(run.chain, standardOutput(), meshFormat("-", arguments.format), options,
                 &run.written);
       run.written.files.emplace_back(arguments.output);
     } else {
-      writeLods(run.chain, arguments.output, writing, &run.written);
+      writeLods(run.chain, arguments.output, options, &run.written);
     }
   });
-  return run;
 }
 
 /// Of the calls that a run makes: how long each is likely to take.
@@ -134,8 +137,15 @@ void writeReport(const LodRun& run, const LodArguments& arguments, ProgressBar& 
 
 LodRun makeLods(const LodArguments& arguments) {
   ProgressBar bar(arguments.quiet, callShares(arguments));
-  LodRun run = runStages(arguments, bar);
-  if (arguments.report) writeReport(run, arguments, bar);
+  LodRun run;
+  const AttributeGrids attributes(arguments.input, arguments.attributes);
+  buildChain(arguments, bar, run);
+  sampleAttributes(arguments, attributes, run);
+  checkLevels(arguments, bar, run);
+  writeLevels(arguments, bar, run);
+  if (arguments.report) {
+    run.reportSeconds += timed([&] { writeReport(run, arguments, bar); });
+  }
   return run;
 }
 

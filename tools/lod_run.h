@@ -50,7 +50,8 @@ struct LodRun {
   double attributeSeconds = 0;
   double checkSeconds = 0;
   double writeSeconds = 0;
-  Mesh reference;  ///< the uniform mesh, if there is to be a report
+  double reportSeconds = 0;  ///< of the uniform mesh and the page
+  Mesh reference;            ///< the uniform mesh, if there is to be a report
 };
 
 /// Reads, makes the levels, checks and writes them, and the page.

@@ -184,6 +184,43 @@ void requireOneKindOfMesh(const CLI::App& app, const ContourOptions& options) {
   }
 }
 
+void addGridOptions(CLI::App& app, MeshArguments& arguments) {
+  app.add_option("--grid", arguments.grids,
+                 "names of grids, or patterns with * and ?: .glb, .obj, .usda and .3mf hold "
+                 "several meshes, and "
+                 "{} in the output's name makes a file for each; default: the first level set")
+      ->allow_extra_args(false);
+  app.add_option_function<std::string>(
+         "--join",
+         [&arguments](const std::string& word) {
+           arguments.join = word == "union" ? Join::Union : Join::Separate;
+         },
+         "of several grids: separate, a mesh each (the default), or union, one mesh of the union "
+         "of "
+         "level sets; without --grid of all that can be meshed")
+      ->check(CLI::IsMember({"separate", "union"}));
+  app.add_option("--labels", arguments.labels,
+                 "all, or numbers with commas between them: mesh each label of a grid of integers "
+                 "apart, as label_1 and so on");
+  app.add_flag("--share-interfaces", arguments.shareInterfaces,
+               "--labels: where labels meet, their meshes have the same vertices and faces, to "
+               "the bit; by --method surface-nets");
+}
+
+int run(const CLI::App& mesh, MeshArguments& arguments, const SequenceArguments& sequence) {
+  orderFilters(mesh, arguments.filters);
+  if (arguments.shareInterfaces && mesh.get_option("--method")->count() == 0) {
+    arguments.method = Method::SurfaceNets;
+  }
+  requireMeaning(mesh, arguments.method);
+  arguments.mergeCells = arguments.method == Method::CubicalMarchingSquares &&
+                         mesh.get_option("--tolerance")->count() > 0;
+  requireOneKindOfMesh(mesh, arguments.contour);
+  if (isSequence(arguments, sequence)) return runSequence(arguments, sequence);
+  requireSequence(mesh, arguments);
+  return runMesh(arguments);
+}
+
 }  // namespace
 
 void addMeshCommand(CLI::App& app, Command& chosen) {
@@ -199,27 +236,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
                    "for standard output; of a sequence a name with ####, or a .usda of all frames")
       ->required();
   addFormatOption(*mesh, arguments->format, "of the mesh in standard output");
-  mesh->add_option("--grid", arguments->grids,
-                   "names of grids, or patterns with * and ?: .glb, .obj, .usda and .3mf hold "
-                   "several meshes, and "
-                   "{} in the output's name makes a file for each; default: the first level set")
-      ->allow_extra_args(false);
-  mesh->add_option_function<std::string>(
-          "--join",
-          [arguments](const std::string& word) {
-            arguments->join = word == "union" ? Join::Union : Join::Separate;
-          },
-          "of several grids: separate, a mesh each (the default), or union, one mesh of the union "
-          "of "
-          "level sets; without --grid of all that can be meshed")
-      ->check(CLI::IsMember({"separate", "union"}));
-  mesh->add_option(
-      "--labels", arguments->labels,
-      "all, or numbers with commas between them: mesh each label of a grid of integers "
-      "apart, as label_1 and so on");
-  mesh->add_flag("--share-interfaces", arguments->shareInterfaces,
-                 "--labels: where labels meet, their meshes have the same vertices and faces, to "
-                 "the bit; by --method surface-nets");
+  addGridOptions(*mesh, *arguments);
   addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);
   addFilterOptions(*mesh, arguments->filters);
@@ -240,19 +257,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
   mesh->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");
   addSequenceOptions(*mesh, *sequence);
   mesh->callback([mesh, arguments, sequence, &chosen] {
-    chosen = [mesh, arguments, sequence] {
-      orderFilters(*mesh, arguments->filters);
-      if (arguments->shareInterfaces && mesh->get_option("--method")->count() == 0) {
-        arguments->method = Method::SurfaceNets;
-      }
-      requireMeaning(*mesh, arguments->method);
-      arguments->mergeCells = arguments->method == Method::CubicalMarchingSquares &&
-                              mesh->get_option("--tolerance")->count() > 0;
-      requireOneKindOfMesh(*mesh, arguments->contour);
-      if (isSequence(*arguments, *sequence)) return runSequence(*arguments, *sequence);
-      requireSequence(*mesh, *arguments);
-      return runMesh(*arguments);
-    };
+    chosen = [mesh, arguments, sequence] { return run(*mesh, *arguments, *sequence); };
   });
 }
 

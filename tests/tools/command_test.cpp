@@ -176,6 +176,8 @@ TEST_F(Command, LodDrawsAPageThatNeedsNoOther) {
   EXPECT_EQ(pictures, 6u);
   // Encoded pictures hold any letters, but no colon.
   EXPECT_EQ(page.find("://"), std::string::npos);
+  const Outcome told = run("lod s.vdb -o s.glb --levels 2 --json --report page.html");
+  EXPECT_GT(test::parseJson(told.out)["seconds"]["report"], 0);
 }
 
 /// What stands beside the report, under whatever name, is none of its business.
