@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <tufa/check.h>
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/error.h>
 #include <tufa/io.h>

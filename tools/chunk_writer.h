@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tufa/chunks.h>
+#include <tufa/chunk_files.h>
 #include <tufa/coord.h>
 #include <cstddef>
 #include <map>

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
-#include <tufa/chunks.h>
+#include <tufa/chunk_files.h>
 #include <tufa/io.h>
 #include <tufa/shapes.h>
 

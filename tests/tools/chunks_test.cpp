@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <algorithm>
 #include <filesystem>

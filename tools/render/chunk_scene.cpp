@@ -1,5 +1,6 @@
 #include "chunk_scene.h"
 
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 
 #include <algorithm>

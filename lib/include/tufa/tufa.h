@@ -3,13 +3,17 @@
 // The whole of Tufa::tufa. The checker, <tufa/check.h>, is apart: it links CGAL under the GPL.
 #include <tufa/advise.h>
 #include <tufa/attributes.h>
+#include <tufa/chunk.h>
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/contour.h>
+#include <tufa/contour_report.h>
 #include <tufa/error.h>
 #include <tufa/extract.h>
 #include <tufa/filter.h>
 #include <tufa/float_mesh.h>
 #include <tufa/fwd.h>
+#include <tufa/grid_files.h>
 #include <tufa/implicit.h>
 #include <tufa/import.h>
 #include <tufa/io.h>

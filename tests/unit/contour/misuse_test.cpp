@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/contour.h>
 #include <tufa/lod.h>

@@ -1,5 +1,6 @@
 // Writes the meshes of a chunk.
 
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/error.h>
 

@@ -1,5 +1,6 @@
 // chunks.json: what is known of all chunks without their meshes.
 
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/error.h>
 

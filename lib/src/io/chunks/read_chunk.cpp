@@ -1,5 +1,6 @@
 // Reads the meshes of a chunk back.
 
+#include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/error.h>
 

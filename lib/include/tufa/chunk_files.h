@@ -1,0 +1,42 @@
+#pragma once
+
+#include <tufa/chunk.h>
+#include <tufa/export.h>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace tufa {
+
+/// How chunks are stored.
+enum class ChunkFormat {
+  Glb,  ///< a primitive for the interior and for each strip, one vertex buffer
+  Ply,  ///< a face property `part`: 0 the interior, 1 to 6 regular strips, 7 to 12 transition ones
+};
+
+/// A file of a chunk.
+struct ChunkFile {
+  std::string name;      ///< relative to the folder; empty if the LOD has no triangles
+  std::string checksum;  ///< of its bytes, FNV-1a of 64 bits, in hexadecimal digits
+};
+
+/// Writes the meshes of a chunk into a folder and returns the files, one for each LOD. Each appears
+/// whole or not at all. The index says how a .glb is stored; a .ply is in world units,
+/// uncompressed. May be called from several threads for different chunks. Throws Error:
+/// UnwritableFile, InvalidArgument for compressed chunks off the index's lattice, LimitExceeded for
+/// a .glb above 4 GiB.
+TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
+                                           const std::string& folder, ChunkFormat format);
+
+/// Writes chunks.json. Throws Error(UnwritableFile).
+TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
+
+/// Reads chunks.json. Throws Error(UnreadableFile).
+[[nodiscard]] TUFA_API ChunkIndex readChunkIndex(const std::string& folder);
+
+/// Reads the meshes of a chunk back, without seams and attributes. Throws Error(UnreadableFile),
+/// also for a file that is another one than chunks.json lists.
+[[nodiscard]] TUFA_API Chunk readChunk(const ChunkIndex& index, std::size_t chunk,
+                                       const std::string& folder);
+
+}  // namespace tufa

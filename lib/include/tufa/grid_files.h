@@ -1,0 +1,67 @@
+#pragma once
+
+#include <tufa/export.h>
+#include <tufa/openvdb_fwd.h>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tufa {
+
+/// What a .vdb file tells about one grid.
+struct GridInfo {
+  std::string name;                 ///< empty if it has none
+  std::string valueType;            ///< "float", "double", "vec3s", ...
+  std::string gridClass;            ///< "level set", "fog volume", "unknown", ...
+  std::string transform;            ///< "uniform scale", "affine", "frustum", ...
+  double voxelSize[3] = {0, 0, 0};  ///< world length of a voxel's edges
+  std::size_t activeVoxels = 0;     ///< those of active tiles included
+  std::size_t leaves = 0;           ///< leaf nodes of 8^3 voxels
+  std::size_t tiles = 0;            ///< active tiles
+  std::size_t memoryBytes = 0;      ///< of the grid's tree
+  int boundsMin[3] = {0, 0, 0};     ///< first index of the active voxels' bounding box
+  int boundsMax[3] = {0, 0, 0};     ///< last index of it
+  double background = 0;            ///< value where the tree holds none
+  std::optional<double> minValue;   ///< of the active values that are finite
+  std::optional<double> maxValue;   ///< of the active values that are finite
+  std::size_t nonFiniteValues = 0;  ///< NaN or infinite active values
+  bool meshable = false;            ///< contour() takes it
+  std::string whyNot;               ///< if not, the reason
+  /// What else its maker has noted, as names and values, sorted by name. Without what is told above
+  /// and what OpenVDB counts when it writes a file.
+  std::vector<std::pair<std::string, std::string>> metadata;
+};
+
+/// Describes a grid.
+[[nodiscard]] TUFA_API GridInfo describeGrid(const openvdb::GridBase& grid);
+
+/// Describes every grid of a .vdb file. Throws Error(UnreadableFile).
+[[nodiscard]] TUFA_API std::vector<GridInfo> describeGrids(const std::filesystem::path& path);
+
+/// A grid of a .vdb file.
+struct GridName {
+  std::string name;       ///< grids of the same name are told apart as "name[0]", "name[1]", ...
+  bool meshable = false;  ///< contour() takes it; whether it has active voxels is not known yet
+};
+
+/// Lists every grid of a .vdb file, in the order of the file, without reading any values. Throws
+/// Error(UnreadableFile).
+[[nodiscard]] TUFA_API std::vector<GridName> listGrids(const std::filesystem::path& path);
+
+/// Reads one grid of a .vdb file: by name, or, without one, the first level set that can be meshed,
+/// else the first grid that can be meshed. Throws Error: UnreadableFile, UnknownGrid (the message
+/// lists the names there are), UnsupportedGrid (nothing in the file can be meshed, or the transform
+/// of the grid of that name is out of range). Grids of points, which cannot be meshed, come with
+/// their active voxels but without the points.
+[[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> readGrid(
+    const std::filesystem::path& path, const std::optional<std::string>& name = {});
+
+/// Writes grids to a .vdb file, whole or not at all. Throws Error(UnwritableFile).
+TUFA_API void writeGrids(const std::vector<std::shared_ptr<const openvdb::GridBase>>& grids,
+                         const std::filesystem::path& path);
+
+}  // namespace tufa
