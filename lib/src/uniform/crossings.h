@@ -86,7 +86,9 @@ class CrossingFinder {
       scales[lane] = smooth.squared;
       kinked[lane] = smooth.kinked;
     }
-    for (float& scale : scales) scale = normalizer(scale);
+    for (int lane = 0; lane < CrossingBatch::kSize; ++lane) {
+      scales[lane] = normalizer(scales[lane], arrays.at[1][lane] - arrays.at[0][lane]);
+    }
     for (auto& numbers : batch.normals) {
       for (int lane = 0; lane < CrossingBatch::kSize; ++lane) numbers[lane] *= scales[lane];
     }
@@ -229,12 +231,15 @@ class CrossingFinder {
     return sum;
   }
 
-  // The factor that normalizes a vector of this squared length; 0 if it vanishes.
-  static float normalizer(float squared) { return squared > 1e-12F ? 1 / std::sqrt(squared) : 0; }
+  // The factor that normalizes a gradient of this squared length; 0 if it vanishes beside the rise
+  // along the edge: values may be of any size.
+  static float normalizer(float squared, float rise) {
+    return squared > 1e-12F * rise * rise ? 1 / std::sqrt(squared) : 0;
+  }
 
   // The unit vector along g; along the edge if g vanishes.
   static Vector direction(const Vector& g, int axis, float rise) {
-    const float scale = normalizer(dot(g, g));
+    const float scale = normalizer(dot(g, g), rise);
     Vector normal = {g[0] * scale, g[1] * scale, g[2] * scale};
     if (scale == 0) normal = alongEdge(axis, rise);
     return normal;

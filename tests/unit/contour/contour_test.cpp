@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "base/vec3.h"
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
@@ -89,6 +90,33 @@ TEST(Contour, MeshesAnyIsovalue) {
     expectSolid(mesh);
     const double truth = 4 * kPi / 3 * std::pow(10 + isovalue, 3);
     EXPECT_NEAR(test::volume(mesh) / truth, 1, 0.01) << isovalue;
+  }
+}
+
+// Densities are of any size: permeabilities are of 1e-12.
+TEST(Contour, GradientsOfAnySizeCount) {
+  const auto meshOf = [](double size, bool uniform) {
+    const auto grid = FloatGrid::create(0);
+    for (const Coord& at : CoordBBox(Coord(-15), Coord(15))) {
+      const double away = (at.asVec3d() - Vec3d(0.3, 0.2, 0.1)).length() - 10;
+      grid->tree().setValue(at, static_cast<float>(size / (1 + std::exp(away / 1.5))));
+    }
+    ContourOptions options;
+    options.isovalue = 0.5 * size;
+    options.uniform = uniform;
+    return contour(*grid, options);
+  };
+  const Mesh one = meshOf(1, true);
+  for (const double size : {1e-6, 1e-12, 1e-17, 1e12}) {
+    const Mesh mesh = meshOf(size, true);
+    ASSERT_EQ(mesh.positions.size(), one.positions.size()) << size;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      ASSERT_LT((Vec3(mesh.positions[v]) - Vec3(one.positions[v])).length(), 1e-3) << size;
+      ASSERT_GT(Vec3(mesh.normals[v]).dot(Vec3(one.normals[v])), 0.9999) << size;
+    }
+    EXPECT_NEAR(static_cast<double>(meshOf(size, false).triangleCount()),
+                static_cast<double>(meshOf(1, false).triangleCount()), 30)
+        << size;
   }
 }
 
