@@ -111,7 +111,8 @@ struct DistanceReport {
 /// Options of checkAgainst().
 struct DistanceOptions {
   std::optional<double> isovalue = {};  ///< unset: as contour() chooses
-  int samplesPerEdge = 3;  ///< each triangle is sampled on a lattice with that many along an edge
+  int samplesPerEdge =
+      3;  ///< each triangle is sampled on a lattice with that many along an edge: 2 to 1000
   int threads = 0;         ///< as in CheckOptions
   Progress progress = {};  ///< called from the calling thread; may cancel
 };

@@ -57,8 +57,8 @@ struct ChunkLevelEntry {
   std::size_t interiorTriangles = 0;    ///< of ChunkLevel::interior
   std::size_t regularTriangles = 0;     ///< of all six regular strips
   std::size_t transitionTriangles = 0;  ///< of all six transition strips
-  Position least;                       ///< corner of the bounding box, world space
-  Position greatest;                    ///< corner of the bounding box, world space
+  Position least{0, 0, 0};              ///< corner of the bounding box, world space
+  Position greatest{0, 0, 0};           ///< corner of the bounding box, world space
   double maxErrorVoxels = 0;            ///< as ChunkLevel has it
   double transitionErrorVoxels = 0;     ///< as ChunkLevel has it
   std::size_t intersectionsLeft = 0;    ///< pairs of its triangles that intersect

@@ -28,7 +28,10 @@ struct ChunkFile {
 TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
                                            const std::string& folder, ChunkFormat format);
 
-/// Writes chunks.json. Throws Error(UnwritableFile).
+/// Writes chunks.json. The index is that of buildChunks(), with the ChunkFile that writeChunk()
+/// gave for each LOD put into its ChunkLevelEntry: readChunk() needs them. Throws Error:
+/// UnwritableFile, InvalidArgument for an index without levels, which readChunkIndex() would
+/// refuse.
 TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
 
 /// Reads chunks.json. Throws Error(UnreadableFile).

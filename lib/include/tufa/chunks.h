@@ -65,12 +65,12 @@ TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOption
                                                const std::vector<std::size_t>& lods);
 
 /// Makes LODs finer until neighbours differ by at most one. Throws Error(InvalidArgument) if `lods`
-/// does not fit the index.
+/// does not fit the index, or a chunk has no such LOD.
 TUFA_API void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods);
 
 /// For each chunk the coarsest LOD whose certified error covers at most `pixelError` pixels, made
 /// finer where neighbours would differ by more than one LOD. Throws Error(InvalidArgument) if a
-/// chunk of the index has no levels.
+/// chunk of the index has no levels, and as selectLod().
 [[nodiscard]] TUFA_API std::vector<std::size_t> selectLods(const ChunkIndex& index,
                                                            const Camera& camera,
                                                            double pixelError = 1);

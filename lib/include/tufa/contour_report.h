@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tufa/export.h>
 #include <tufa/octree.h>
 #include <cstddef>
 #include <cstdint>

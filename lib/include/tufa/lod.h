@@ -37,8 +37,8 @@ struct LodOptions {
 
 /// A connected component of the surface that an LOD was made without.
 struct DroppedComponent {
-  Position centre;        ///< of its bounding box, world space
-  double sizeVoxels = 0;  ///< diagonal of that box
+  Position centre{0, 0, 0};  ///< of its bounding box, world space
+  double sizeVoxels = 0;     ///< diagonal of that box
 };
 
 /// One level of detail.
@@ -60,7 +60,7 @@ struct Lod {
 struct LodChain {
   std::vector<Lod> levels;   ///< the finest first; none without a surface
   double voxelSize = 1;      ///< world units: the cube root of a voxel's volume
-  Position centre;           ///< of the bounding sphere of LOD 0
+  Position centre{0, 0, 0};  ///< of the bounding sphere of LOD 0
   double radius = 0;         ///< of that sphere, world units
   double sharedSeconds = 0;  ///< wall clock of what all LODs share: reading, uniform mesh, clusters
   /// Why there are fewer LODs than asked for; empty if there are not. A number of triangles that is
@@ -70,9 +70,9 @@ struct LodChain {
 
 /// A camera that looks at a model.
 struct Camera {
-  Position eye;                     ///< world space
-  double verticalAngle = 0.785398;  ///< of view, radians
-  int screenHeight = 1080;          ///< pixels
+  Position eye{0, 0, 0};            ///< world space
+  double verticalAngle = 0.785398;  ///< of view, radians, above 0 and below pi
+  int screenHeight = 1080;          ///< pixels, above 0
 };
 
 /// Makes levels of detail of the surface of `grid`, which is read once: the first is the mesh of
@@ -85,6 +85,7 @@ struct Camera {
                                           ContourReport* report = nullptr);
 
 /// The coarsest LOD whose certified error covers at most `pixelError` pixels; 0 if there is none.
+/// Throws Error(InvalidArgument) for a camera or a number of pixels that cannot be.
 [[nodiscard]] TUFA_API std::size_t selectLod(const LodChain& chain, const Camera& camera,
                                              double pixelError = 1);
 

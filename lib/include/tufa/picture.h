@@ -16,7 +16,7 @@ struct PictureView {
   double azimuth = 35;    ///< of the eye about the axis that points up, degrees from the next one
   double elevation = 25;  ///< of the eye over the plane at right angles to it, degrees
   bool yUp = false;       ///< y points up, not z
-  /// Angle between the left and the right side of the picture, degrees below 180; 0: parallel rays.
+  /// Angle between the left and the right side of the picture, degrees up to 170; 0: parallel rays.
   double fieldOfView = 0;
   /// World units from left to right, through the centre; 0: so that all is seen.
   double width = 0;

@@ -16,7 +16,7 @@ namespace tufa {
 /// A half line in world space, or a part of it.
 struct Ray {
   Position origin{0, 0, 0};     ///< where distances are counted from
-  Position direction{0, 0, 1};  ///< of any length but 0
+  Position direction{0, 0, 1};  ///< of any length whose square is neither 0 nor infinite
   double least = 0;             ///< what is nearer is passed over: world units, 0 or more
   double greatest = std::numeric_limits<double>::infinity();  ///< what is further is, too
 };

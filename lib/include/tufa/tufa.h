@@ -11,6 +11,7 @@
 #include <tufa/error.h>
 #include <tufa/extract.h>
 #include <tufa/filter.h>
+#include <tufa/fit.h>
 #include <tufa/float_mesh.h>
 #include <tufa/fwd.h>
 #include <tufa/grid_files.h>

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -215,7 +216,9 @@ class Comparer {
       const checks::TriangleSoup soup(result.mesh, frame_, job);
       const auto newMeasure = [&] {
         return [&](const Vec3& point) {
-          return std::abs(options_.truth(frame_.toWorld(point))) / frame_.voxelSize();
+          const double distance = std::abs(options_.truth(frame_.toWorld(point)));
+          constexpr double kFarthest = std::numeric_limits<double>::infinity();
+          return std::isnan(distance) ? kFarthest : distance / frame_.voxelSize();
         };
       };
       job.beginStage("vertices to truth", 0.4);

@@ -16,11 +16,13 @@ namespace tufa::checks {
 
 inline constexpr std::size_t kSampleGrain = 1024;
 
-/// Throws Error(InvalidArgument) for fewer samples along an edge than its ends.
+/// Throws Error(InvalidArgument) for fewer samples along an edge than its ends, and for so many
+/// that a triangle has half a million.
 inline void requireSamples(int perEdge) {
-  if (perEdge >= 2) return;
-  throw Error(ErrorCode::InvalidArgument,
-              "samplesPerEdge is " + std::to_string(perEdge) + "; it must be 2 or more");
+  constexpr int kMost = 1000;
+  if (perEdge >= 2 && perEdge <= kMost) return;
+  throw Error(ErrorCode::InvalidArgument, "samplesPerEdge is " + std::to_string(perEdge) +
+                                              "; it must be from 2 to " + std::to_string(kMost));
 }
 
 /// Running totals over samples.

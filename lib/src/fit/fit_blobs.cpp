@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/require_mesh.h"
 #include "fit/blob_field.h"
 #include "fit/sample_mesh.h"
 #include "fit/solve_blobs.h"
@@ -244,6 +245,7 @@ class Fitter {
 };
 
 BlobFit fitIn(const Mesh& mesh, const FitOptions& options, base::Job& job) {
+  base::requireFaces(mesh);
   const std::vector<Triangle> triangles = triangulate(mesh);
   const Frame frame = fit::frameOf(mesh, triangles);
   const auto count =

@@ -2,10 +2,13 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/error.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <string>
 
 #include "grid/openvdb_templates.h"
 #include "grid/vdb_coord.h"
@@ -148,18 +151,19 @@ class VdbField final : public TrilinearField {
   bool isLoaded_ = false;
 };
 
-/// Finds the samples of one part of a grid. For one thread.
+/// Finds the samples of one part of a grid, at most so many. For one thread.
 template <class GridT>
 class Sampler {
  public:
   Sampler(const GridT& grid, const VoxelFrame& frame, const IsoChoice& iso,
-          std::vector<Vec3>& points)
+          std::vector<Vec3>& points, std::size_t most = std::numeric_limits<std::size_t>::max())
       : frame_(frame),
         iso_(iso),
         narrowBand_(grid.getGridClass() == openvdb::GRID_LEVEL_SET),
         field_(grid, frame, iso),
         accessor_(grid.getConstAccessor()),
-        points_(points) {}
+        points_(points),
+        most_(most) {}
 
   /// The samples of an active voxel: of the cell that it is the lowest corner of, of the three
   /// edges that start there, and of those that end there and that no active voxel owns.
@@ -202,6 +206,11 @@ class Sampler {
     if (!std::isfinite(a) || !std::isfinite(b)) return;
     Vec3 index = Vec3(lower);
     index[axis] += (iso_.isovalue - a) / (b - a);
+    if (points_.size() >= most_) {
+      throw Error(ErrorCode::LimitExceeded,
+                  "the surface passes more than " + std::to_string(most_) +
+                      " edges of voxels between tiles; resample the grid");
+    }
     points_.push_back(frame_.fromIndex(index));
   }
 
@@ -245,6 +254,7 @@ class Sampler {
   VdbField<GridT> field_;
   typename GridT::ConstAccessor accessor_;
   std::vector<Vec3>& points_;
+  std::size_t most_;
 };
 
 /// Calls body(tile's box) for each active tile of the tree.
@@ -277,7 +287,9 @@ class VdbIsosurface final : public Isosurface {
         }
       }
     });
-    Sampler<GridT> tiles(grid_, frame_, iso_, parts.back());
+    // A tile is a few bytes, and its faces may be millions: no more than contour() takes.
+    constexpr std::size_t kMostAtTiles = std::size_t{1} << 25;
+    Sampler<GridT> tiles(grid_, frame_, iso_, parts.back(), kMostAtTiles);
     forActiveTiles(grid_.tree(), [&](const openvdb::CoordBBox& tile) { tiles.addTile(tile); });
 
     std::size_t count = 0;

@@ -76,9 +76,9 @@ IsoChoice chooseIsovalue(const openvdb::GridBase& grid, std::optional<double> is
   if (grid.isType<openvdb::DoubleGrid>()) {
     return choose(static_cast<const openvdb::DoubleGrid&>(grid), isovalue, inside);
   }
-  throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() + "\" holds values of type " +
-                                              grid.valueType() +
-                                              "; only float and double grids have an isosurface");
+  throw Error(ErrorCode::UnsupportedGrid,
+              "grid \"" + grid.getName() + "\" holds values of type " + grid.valueType() +
+                  "; only float and double grids of OpenVDB's standard tree have an isosurface");
 }
 
 }  // namespace tufa::grid

@@ -17,9 +17,9 @@ void requireScalar(const openvdb::GridBase& grid) {
                     " transform; only linear ones can be meshed; resample the grid first");
   }
   if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>()) {
-    throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() +
-                                                "\" holds values of type " + grid.valueType() +
-                                                "; only float and double grids have an isosurface");
+    throw Error(ErrorCode::UnsupportedGrid,
+                "grid \"" + grid.getName() + "\" holds values of type " + grid.valueType() +
+                    "; only float and double grids of OpenVDB's standard tree have an isosurface");
   }
 }
 
@@ -68,13 +68,14 @@ void requireCoordinates(const openvdb::GridBase& grid) {
   }
 }
 
-void requireFewTileFaces(std::uint64_t faces, const ContourOptions& options,
-                         const std::string& name) {
-  if (faces <= options.tileFaces) return;
+void requireFewTileFaces(const Tree& tree, const IsoChoice& iso, std::uint64_t most,
+                         const std::string& name, base::Job& job) {
+  const std::uint64_t faces = tree.tileSurface(iso, job);
+  if (faces <= most) return;
   throw Error(ErrorCode::LimitExceeded,
               "grid \"" + name + "\" has about " + std::to_string(faces) +
                   " faces of voxels on its surface between tiles, more than " +
-                  std::to_string(options.tileFaces) +
+                  std::to_string(most) +
                   "; resample it, or raise the limit (--tile-faces) if there is memory for " +
                   std::to_string(faces / 5'000'000 + 1) + " GB");
 }
@@ -102,7 +103,7 @@ std::string nameOf(const openvdb::GridBase& grid) { return grid.getName(); }
 Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options, base::Job& job) {
   const IsoChoice iso = chooseIsovalue(grid, options.isovalue, options.inside);
   const std::shared_ptr<const Tree> tree = treeOf(grid, job);
-  requireFewTileFaces(tree->tileSurface(iso, job), options, grid.getName());
+  requireFewTileFaces(*tree, iso, options.tileFaces, grid.getName(), job);
   Blocks blocks(tree, iso, options.nonFinite, job);
   const FieldScale scale = readFieldScale(grid, iso);
   const Transform transform = transformOf(grid);

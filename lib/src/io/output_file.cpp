@@ -223,6 +223,7 @@ void writeFile(std::string_view bytes, const std::filesystem::path& path) {
 
 void writeFile(const std::function<void(std::ostream&)>& writeTo,
                const std::filesystem::path& path) {
+  if (!writeTo) throw Error(ErrorCode::InvalidArgument, "there is nothing that writes the file");
   io::OutputFile file(path);
   io::OutputFileBuffer buffer(file);
   std::ostream stream(&buffer);

@@ -10,6 +10,7 @@
 #include "base/job.h"
 #include "base/number_text.h"
 #include "base/run_call.h"
+#include "lod/require_camera.h"
 #include "octree/cut_rule.h"
 #include "refine/adapt.h"
 #include "refine/finish.h"
@@ -248,6 +249,7 @@ LodChain buildLods(const openvdb::GridBase& grid, const LodOptions& options,
 }
 
 std::size_t selectLod(const LodChain& chain, const Camera& camera, double pixelError) {
+  lod::requireCamera(camera, pixelError);
   const double distance = (Vec3(camera.eye) - chain.centre).length() - chain.radius;
   if (!(distance > 0)) return 0;
   const double pixelsPerUnit =

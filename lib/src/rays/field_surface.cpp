@@ -199,6 +199,7 @@ std::unique_ptr<Caster> FieldSurface::caster() const {
 
 std::shared_ptr<const RaySurface> makeRaySurface(std::shared_ptr<const implicit::Field> field,
                                                  const RaySurfaceOptions& options) {
+  if (!field) throw Error(ErrorCode::InvalidArgument, "there is no field to cast rays at");
   const implicit::Box extent = field->extent();
   if (!implicit::isFinite(extent)) {
     throw Error(ErrorCode::InvalidArgument,

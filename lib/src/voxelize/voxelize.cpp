@@ -12,6 +12,7 @@
 #include "base/job.h"
 #include "base/lattice_range.h"
 #include "base/number_text.h"
+#include "base/require_mesh.h"
 #include "base/vec3.h"
 #include "grid/progress_interrupter.h"
 #include "voxelize/fog.h"
@@ -45,28 +46,14 @@ class IndexSpaceMesh {
   double voxelSize_;
 };
 
-void requireUsableFaces(const Mesh& mesh) {
-  const auto requireInside = [&](const auto& face) {
-    for (const VertexIndex vertex : face.vertices) {
-      if (vertex < mesh.positions.size()) continue;
-      throw Error(ErrorCode::InvalidArgument, "a face names vertex " + std::to_string(vertex) +
-                                                  " of " + std::to_string(mesh.positions.size()));
-    }
-  };
-  std::for_each(mesh.triangles.begin(), mesh.triangles.end(), requireInside);
-  std::for_each(mesh.quads.begin(), mesh.quads.end(), requireInside);
-}
-
-/// Throws for meshes that are not finite, and for voxels too small for the lattice's coordinates.
+/// Throws for voxels too small for the lattice's coordinates.
 void requireUsableExtent(const Mesh& mesh, const VoxelizeOptions& options) {
   double largest = 0;
   for (const Position& p : mesh.positions) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      throw Error(ErrorCode::InvalidArgument, "the mesh has a vertex that is not finite");
-    }
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
-  constexpr double kLimit = 1 << 30;
+  // OpenVDB's mesher computes in single precision: beyond that it loses the faces.
+  constexpr double kLimit = 1 << 24;
   const double voxels = largest / options.voxelSize + options.halfWidth;
   if (voxels < kLimit) return;
   throw Error(ErrorCode::InvalidArgument,
@@ -121,7 +108,8 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   if (mesh.triangleCount() == 0) {
     throw Error(ErrorCode::InvalidArgument, "the mesh has no faces to voxelize");
   }
-  requireUsableFaces(mesh);
+  base::requireFaces(mesh);
+  base::requireFinite(mesh);
   requireUsableExtent(mesh, options);
   requireUsableBand(mesh, options);
   openvdb::initialize();

@@ -146,6 +146,12 @@ class Sampler {
     if (samples > 0) counts_.add(voxelize_field::findHiddenParts(block), block.origin);
   }
 
+  // Where there is no distance, as beside a gradient that is not a number, the value tells the
+  // side: -1 inside, else 1.
+  [[nodiscard]] float sideOf(const Position& point) const {
+    return field_->value(point) < 0 ? -1.0F : 1.0F;
+  }
+
   std::size_t fillPart(Leaf& leaf, SampledBlock& block, int x0, int y0, int z0) const {
     const openvdb::Coord part = leaf.origin() + openvdb::Coord(x0, y0, z0);
     const int sign = signOf(part, kPart);
@@ -159,7 +165,7 @@ class Sampler {
             block.sampled[x] |= bit;
             const auto distance =
                 static_cast<float>(field_->distance(block.point(x, y, z), band()));
-            value = std::isnan(distance) ? background : distance;
+            value = std::isnan(distance) ? sideOf(block.point(x, y, z)) * background : distance;
           }
           if (value < 0) block.inside[x] |= bit;
           const openvdb::Index place = Leaf::coordToOffset(openvdb::Coord(x, y, z));

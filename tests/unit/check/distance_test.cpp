@@ -172,7 +172,12 @@ TEST(CheckDistance, RefusesWhatHasNoIsosurface) {
   frustum.setTransform(openvdb::math::Transform::createFrustumTransform(
       openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(10)), 0.5, 10));
   EXPECT_EQ(codeOf(frustum, {}), ErrorCode::UnsupportedGrid);
-  EXPECT_EQ(codeOf(*sphereGrid(), {.samplesPerEdge = 1}), ErrorCode::InvalidArgument);
+  for (const int samples : {1, 1001}) {
+    EXPECT_EQ(codeOf(*sphereGrid(), {.samplesPerEdge = samples}), ErrorCode::InvalidArgument);
+  }
+  openvdb::FloatGrid tile;
+  tile.tree().addTile(3, openvdb::Coord(0), 1, true);
+  EXPECT_EQ(codeOf(tile, {}), ErrorCode::LimitExceeded);
   EXPECT_EQ(codeOf(*sphereGrid(), {.threads = -2}), ErrorCode::InvalidArgument);
   EXPECT_EQ(codeOf(*sphereGrid(), {.isovalue = std::nan("")}), ErrorCode::InvalidArgument);
   EXPECT_EQ(codeOf(*sphereGrid(), {.progress = [](auto, double) { return false; }}),

@@ -311,6 +311,11 @@ TEST_F(ChunkFiles, HaveNoChunkBeyondTheLast) {
                     [&] { (void)readChunk(index, 2, name); });
 }
 
+TEST_F(ChunkFiles, IndexThatCannotBeReadIsNotWritten) {
+  test::expectError(ErrorCode::InvalidArgument, "has no levels",
+                    [&] { writeChunkIndex(ChunkIndex(), name); });
+}
+
 TEST_F(ChunkFiles, IndexTellsTheNeighbours) {
   writeChunkIndex(index, name);
   const auto json = test::parseJson(readBytes(folder / "chunks.json"));

@@ -158,6 +158,15 @@ TEST(SelectLods, DoesNotLookAtTheBoundsOfEmptyLevels) {
   EXPECT_EQ(selectLods(index, camera, 1), lods);
 }
 
+TEST(RestrictLods, RefusesLevelsThatThereAreNot) {
+  ChunkIndex index;
+  index.chunks.resize(2);
+  for (ChunkEntry& chunk : index.chunks) chunk.levels.resize(3);
+  std::vector<std::size_t> lods{2, 3};
+  test::expectError(ErrorCode::InvalidArgument, "no level 3 of chunk 1, which has 3",
+                    [&] { restrictLods(index, lods); });
+}
+
 TEST(SelectLods, RefusesLevelsOfAnotherIndex) {
   const ChunkIndex index = makeIndex(2, 2);
   std::vector<std::size_t> lods(3);

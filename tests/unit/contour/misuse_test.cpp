@@ -6,10 +6,16 @@
 #include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/contour.h>
+#include <tufa/fit.h>
+#include <tufa/import.h>
 #include <tufa/lod.h>
+#include <tufa/rays.h>
 #include <tufa/shapes.h>
 #include <tufa/voxelize.h>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 
 #include "support/expect_error.h"
 #include "support/scratch_folder.h"
@@ -71,6 +77,60 @@ TEST_F(Misuse, OfLevelsOfLeaves) {
 
 TEST_F(Misuse, OfTheSink) {
   expectRefused("no sink", [&] { (void)buildChunks(*ball, {}, nullptr); });
+}
+
+TEST_F(Misuse, OfNothing) {
+  expectRefused("no grid", [] { (void)makeRaySurface(std::shared_ptr<openvdb::GridBase>()); });
+  expectRefused("no field", [] { (void)makeRaySurface(std::shared_ptr<implicit::Field>()); });
+  const test::ScratchFolder folder;
+  expectRefused("null", [&] { writeGrids({ball, nullptr}, folder / "g.vdb"); });
+  expectRefused("nothing that writes",
+                [&] { writeFile(std::function<void(std::ostream&)>(), folder / "f.txt"); });
+  ImageSlices image;
+  image.size = {2, 2, 2};
+  expectRefused("no function that reads", [&] { (void)importSlices(image); });
+  EXPECT_EQ(folder.fileCount(), 0);
+}
+
+// Writers of some formats aborted, or wrote files that cannot be read.
+TEST_F(Misuse, OfFacesAndPositions) {
+  const test::ScratchFolder folder;
+  const auto expectRefusedByWriters = [&](const std::string& part, const Mesh& wrong) {
+    for (const char* name : {"m.ply", "m.obj", "m.stl", "m.off", "m.glb", "m.usda"}) {
+      for (const GlbCompression compression : {GlbCompression::None, GlbCompression::Meshopt}) {
+        WriteOptions options;
+        options.compression = compression;
+        expectRefused(part, [&] { write(wrong, folder / name, options); });
+      }
+    }
+    EXPECT_EQ(folder.fileCount(), 0);
+  };
+  Mesh wrong = mesh;
+  wrong.triangles.emplace_back(0, 1, 4000000000U);
+  expectRefusedByWriters("vertex 4000000000 of", wrong);
+  expectRefused("vertex 4000000000 of", [&] { (void)fitBlobs(wrong, {}); });
+  VoxelizeOptions voxels;
+  voxels.voxelSize = 0.1;
+  expectRefused("vertex 4000000000 of", [&] { (void)voxelize(wrong, voxels); });
+  wrong = mesh;
+  wrong.positions[3].y = std::numeric_limits<double>::quiet_NaN();
+  expectRefusedByWriters("vertex 3 of the mesh is not finite", wrong);
+}
+
+TEST_F(Misuse, OfCameras) {
+  const LodChain chain = buildLods(*ball);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto refused = [&](const std::string& part, const Camera& camera, double pixels) {
+    expectRefused(part, [&] { (void)selectLod(chain, camera, pixels); });
+    expectRefused(part, [&] { (void)selectLods(ChunkIndex(), camera, pixels); });
+  };
+  refused("eye", {.eye = {infinity, 0, 0}}, 1);
+  for (const double angle : {0.0, -1.0, 3.2, std::nan("")}) {
+    refused("angle of view", {.verticalAngle = angle}, 1);
+  }
+  refused("height", {.screenHeight = 0}, 1);
+  for (const double pixels : {0.0, -1.0, infinity, std::nan("")}) refused("pixels", {}, pixels);
+  EXPECT_EQ(selectLod(chain, Camera()), 0u) << "the eye is in the ball";
 }
 
 TEST_F(Misuse, OfNumbersOfLevels) {

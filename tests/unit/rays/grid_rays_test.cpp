@@ -13,6 +13,7 @@
 #include "base/vec3.h"
 #include "implicit/fields.h"
 #include "support/expect_error.h"
+#include "support/fields.h"
 
 namespace tufa {
 namespace {
@@ -105,6 +106,24 @@ TEST(GridRays, FogInSlantedVoxelsIsWhereItsMeshIs) {
   EXPECT_LT(same.share(), 0.0005);
   picture.view.fieldOfView = 50;
   EXPECT_LT(compareSurfaces(*fog, *mesh, 0.03, picture).share(), 0.0005);
+}
+
+// OpenVDB's intersector was off by most of a voxel, and missed.
+TEST(GridRays, HitLevelSetsFarFromTheirIndexOrigin) {
+  for (const int far : {0, 10000, 10000000, 100000000}) {
+    const openvdb::Coord centre(far, -far, far);
+    const auto grid = test::levelSet<openvdb::FloatGrid>(
+        {centre.offsetBy(-15), centre.offsetBy(15)}, 3,
+        [&](const openvdb::Coord& at) { return (at - centre).asVec3d().length() - 10; });
+    const auto surface = makeRaySurface(grid);
+    const Vec3 middle(far, -far, far);
+    for (const Vec3& offset : {Vec3(0), Vec3(0.3, 0.2, 0), Vec3(4, -5, 1)}) {
+      const Vec3 direction = Vec3(0.2, 0.3, 1).unitOrX();
+      const auto hit = castRay(*surface, {middle + offset - direction * 40, direction});
+      ASSERT_TRUE(hit) << far;
+      EXPECT_NEAR((Vec3(hit->point) - middle).length(), 10, 0.06) << far;
+    }
+  }
 }
 
 // OpenVDB's intersector walked a box without bounds.

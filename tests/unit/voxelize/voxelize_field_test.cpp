@@ -164,7 +164,7 @@ TEST(VoxelizeField, SteepFieldsHaveNoHoles) {
 }
 
 /// Inside or outside, and no slope that tells how far.
-class Step final : public Field {
+class Step : public Field {
  public:
   [[nodiscard]] double value(const Position& p) const override {
     return Vec3(p).length() < 1 ? -1 : 1;
@@ -185,6 +185,23 @@ class Step final : public Field {
 
 TEST(VoxelizeField, FieldsWithoutSlopesHaveNoHoles) {
   const auto grid = voxelize(Step(), voxelsOf(0.1));
+  ContourReport report;
+  const Mesh mesh = contour(*grid, {}, &report);
+  EXPECT_EQ(report.openEdges, 0u);
+  EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({0, 0, 0}, 1)), 0.1);
+}
+
+class StepWithoutGradient final : public Step {
+ public:
+  [[nodiscard]] Position gradient(const Position&) const override {
+    const double nan = std::nan("");
+    return {nan, nan, nan};
+  }
+};
+
+// The inside leaked out of the extent.
+TEST(VoxelizeField, ValuesTellTheSideWhereGradientsAreNoNumbers) {
+  const auto grid = voxelize(StepWithoutGradient(), voxelsOf(0.1));
   ContourReport report;
   const Mesh mesh = contour(*grid, {}, &report);
   EXPECT_EQ(report.openEdges, 0u);

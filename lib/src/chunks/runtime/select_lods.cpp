@@ -4,13 +4,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lod/require_camera.h"
+
 namespace tufa {
 namespace {
 
 void requireFit(const ChunkIndex& index, const std::vector<std::size_t>& lods) {
-  if (lods.size() == index.chunks.size()) return;
-  throw Error(ErrorCode::InvalidArgument, std::to_string(lods.size()) + " levels for " +
-                                              std::to_string(index.chunks.size()) + " chunks");
+  if (lods.size() != index.chunks.size()) {
+    throw Error(ErrorCode::InvalidArgument, std::to_string(lods.size()) + " levels for " +
+                                                std::to_string(index.chunks.size()) + " chunks");
+  }
+  for (std::size_t chunk = 0; chunk < lods.size(); ++chunk) {
+    const std::size_t levels = index.chunks[chunk].levels.size();
+    if (lods[chunk] < levels) continue;
+    throw Error(ErrorCode::InvalidArgument, "there is no level " + std::to_string(lods[chunk]) +
+                                                " of chunk " + std::to_string(chunk) +
+                                                ", which has " + std::to_string(levels));
+  }
 }
 
 /// The distance from a point to the box around all LODs of a chunk; 0 inside.
@@ -72,6 +82,7 @@ void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods) {
 
 std::vector<std::size_t> selectLods(const ChunkIndex& index, const Camera& camera,
                                     double pixelError) {
+  lod::requireCamera(camera, pixelError);
   // World units that one pixel covers at a distance of 1.
   const double pixel = 2 * std::tan(camera.verticalAngle / 2) / camera.screenHeight;
   std::vector<std::size_t> lods;

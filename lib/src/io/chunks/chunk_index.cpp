@@ -231,6 +231,9 @@ class IndexReader {
 }  // namespace
 
 void writeChunkIndex(const ChunkIndex& index, const std::string& folder) {
+  if (index.tolerances.empty()) {
+    throw Error(ErrorCode::InvalidArgument, "the index of chunks has no levels");
+  }
   std::string text = textOf(headOf(index));
   text.back() = ',';
   text += "\"chunks\":[";

@@ -79,6 +79,11 @@ openvdb::GridBase::Ptr readFrom(io::VdbReader& reader, const std::optional<std::
   return reader.readGrid(index);
 }
 
+void requireGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids) {
+  if (std::find(grids.begin(), grids.end(), nullptr) == grids.end()) return;
+  throw Error(ErrorCode::InvalidArgument, "one of the grids to write is null");
+}
+
 void writeTo(io::OutputFile& file, const std::vector<openvdb::GridBase::ConstPtr>& grids) {
   openvdb::initialize();
   io::OutputFileBuffer buffer(file);
@@ -126,6 +131,7 @@ openvdb::GridBase::Ptr readGrid(const FileBytes& file, const std::optional<std::
 
 void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
                 const std::filesystem::path& path) {
+  requireGrids(grids);
   namingErrors(path.string(), [&] {
     io::OutputFile file(path);
     writeTo(file, grids);
@@ -133,6 +139,7 @@ void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,
 }
 
 void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids, std::ostream& stream) {
+  requireGrids(grids);
   namingErrors("the stream", [&] {
     io::OutputFile file(stream);
     writeTo(file, grids);

@@ -30,6 +30,9 @@ void requireUsable(const ImageSlices& image, const SliceOptions& options) {
     throw Error(ErrorCode::InvalidArgument, what);
   };
   io::requireImageSize(image.size);
+  if (!image.read) {
+    throw Error(ErrorCode::InvalidArgument, "the image has no function that reads its slices");
+  }
   constexpr double kShortest = 1e-4;
   constexpr double kLongest = 1e20;
   double volume = 1;

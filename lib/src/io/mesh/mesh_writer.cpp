@@ -10,6 +10,7 @@
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "base/parallel.h"
+#include "base/require_mesh.h"
 #include "base/single_precision.h"
 #include "io/input_bytes.h"
 #include "io/mesh/file_attributes.h"
@@ -72,6 +73,8 @@ constexpr double kShadingEnd = 0.4;
 
 void requireSound(const MeshPart& part, MeshFormat format) {
   const Mesh& mesh = *part.mesh;
+  base::requireFaces(mesh);
+  base::requireFinite(mesh);
   requireSoundAttributes(mesh.attributes, mesh.positions.size(), format == MeshFormat::Glb);
   if (mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) return;
   throw Error(ErrorCode::InvalidArgument, "the mesh has " + std::to_string(mesh.normals.size()) +

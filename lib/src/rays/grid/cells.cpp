@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/error.h>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -269,6 +270,7 @@ namespace tufa {
 
 std::shared_ptr<const RaySurface> makeRaySurface(std::shared_ptr<const openvdb::GridBase> grid,
                                                  const RaySurfaceOptions& options) {
+  if (!grid) throw Error(ErrorCode::InvalidArgument, "there is no grid to cast rays at");
   grid::requireMeshable(*grid);
   if (auto surface = rays::makeLevelSetSurface(grid, options)) return surface;
   base::Job job(options.threads, options.progress);

@@ -2,6 +2,7 @@
 #include <openvdb/tools/RayIntersector.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "base/box.h"
@@ -88,12 +89,25 @@ std::shared_ptr<const RaySurface> surfaceOf(const std::shared_ptr<const openvdb:
   return std::make_shared<LevelSetSurface<GridT>>(grid, bounds);
 }
 
+/// Whether voxels are so near to the index origin that the intersector, which counts from there,
+/// finds places to a hundredth of a voxel. Ten million voxels away it is off by most of one.
+bool isNear(const openvdb::GridBase& grid) {
+  constexpr std::int32_t kFarthest = 1 << 18;
+  openvdb::CoordBBox box;
+  if (!grid.constBaseTree().evalLeafBoundingBox(box)) return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min()[axis] < -kFarthest || box.max()[axis] > kFarthest) return false;
+  }
+  return true;
+}
+
 /// Whether the intersector can be asked: it takes active tiles for empty, and does not come to an
 /// end where no voxel is active.
 bool isSuited(const openvdb::GridBase& grid, const RaySurfaceOptions& options) {
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET || !grid.hasUniformVoxels()) return false;
   if (options.isovalue.value_or(0) != 0 || options.inside == Inside::Above) return false;
-  return grid.constBaseTree().activeVoxelCount() > 0 && grid.constBaseTree().activeTileCount() == 0;
+  return isNear(grid) && grid.constBaseTree().activeVoxelCount() > 0 &&
+         grid.constBaseTree().activeTileCount() == 0;
 }
 
 }  // namespace

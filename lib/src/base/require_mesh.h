@@ -1,0 +1,13 @@
+#pragma once
+
+#include <tufa/mesh.h>
+
+namespace tufa::base {
+
+/// Throws Error(InvalidArgument) if a face names a vertex that there is not.
+void requireFaces(const Mesh& mesh);
+
+/// Throws Error(InvalidArgument) for a position that is not finite.
+void requireFinite(const Mesh& mesh);
+
+}  // namespace tufa::base
