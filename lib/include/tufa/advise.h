@@ -53,6 +53,7 @@ struct SamplingReport {
   /// measured. World units.
   double voxelSizeNeeded = 0;
 
+  /// Whether all was found the same.
   bool operator==(const SamplingReport&) const = default;
 
   /// Whether the grid is fine enough.
