@@ -38,7 +38,8 @@ enum class Normals {
   None,      ///< no normals
 };
 
-/// What to do with NaN and infinite samples.
+/// What to do with NaN and infinite samples. A grid whose background is not finite is refused
+/// whatever this says.
 enum class NonFinite {
   Refuse,   ///< throw Error with their count and the first coordinate
   Outside,  ///< treat them as outside

@@ -26,22 +26,24 @@ enum class RawType {
 
 /// What a raw stack does not say of itself, and options of importRaw().
 struct RawImport {
-  std::array<std::int64_t, 3> size{};      ///< voxels along x, y and z: 1 to a million each
-  RawType type = RawType::U8;              ///< of all values
-  bool bigEndian = false;                  ///< which byte of a value comes first
-  std::uint64_t headerBytes = 0;           ///< at the beginning of each file, left out
-  std::array<double, 3> spacing{1, 1, 1};  ///< world units between voxels along x, y and z
-  Position origin{0, 0, 0};                ///< of the first voxel, world units
-  std::optional<double> threshold;         ///< values up to it are background; none: the least one
-  bool labels = false;                     ///< as SliceOptions::labels
-  int threads = 0;                         ///< most threads; 0: all. Never changes the result.
-  Progress progress;                       ///< called from the calling thread; may cancel
+  std::array<std::int64_t, 3> size{};  ///< voxels along x, y and z: 1 to a million each
+  RawType type = RawType::U8;          ///< of all values
+  bool bigEndian = false;              ///< which byte of a value comes first
+  std::uint64_t headerBytes = 0;       ///< at the beginning of each file, left out
+  /// World units between voxels along x, y and z: 10^-4 to 10^20.
+  std::array<double, 3> spacing{1, 1, 1};
+  Position origin{0, 0, 0};         ///< of the first voxel, world units
+  std::optional<double> threshold;  ///< values up to it are background; none: the least one
+  bool labels = false;              ///< as SliceOptions::labels
+  int threads = 0;                  ///< most threads; 0: all. Never changes the result.
+  Progress progress;                ///< called from the calling thread; may cancel
 };
 
 /// An image of three dimensions, slice by slice, from whatever reads it.
 struct ImageSlices {
   std::array<std::int64_t, 3> size{};  ///< voxels along x, y and z: 1 to a million each
-  /// From a voxel to the next along x, y and z, world units: spacing times direction.
+  /// From a voxel to the next along x, y and z, world units: spacing, 10^-4 to 10^20, times
+  /// direction.
   std::array<Position, 3> steps{Position(1, 0, 0), Position(0, 1, 0), Position(0, 0, 1)};
   Position origin{0, 0, 0};  ///< of the first voxel, world units
   /// Fills in the values of `count` slices from `first` on, x running fastest, then y: the vector

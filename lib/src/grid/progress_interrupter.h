@@ -23,7 +23,7 @@ class ProgressInterrupter final : public openvdb::util::NullInterrupter {
       : progress_(progress), stage_(std::move(stage)), begin_(begin), end_(end) {}
 
   bool wasInterrupted(int percent = -1) override {
-    if (progress_ && std::this_thread::get_id() == caller_) {
+    if (progress_ && !cancelled_ && std::this_thread::get_id() == caller_) {
       fraction_ = std::max(fraction_, std::clamp(percent / 100.0, 0.0, 1.0));
       bool goOn = true;
       base::runIsolated([&] { goOn = progress_(stage_, begin_ + (end_ - begin_) * fraction_); });

@@ -355,6 +355,7 @@ TEST(Filters, CanBeCancelled) {
     calls = 0;
     expectError(ErrorCode::Cancelled, "cancelled",
                 [&] { static_cast<void>(applyFilters(*grid, {filter}, options)); });
+    EXPECT_EQ(calls, 4) << "who has said no is not asked again";
   }
 }
 
