@@ -12,6 +12,7 @@
 #include "base/box_ray.h"
 #include "base/bvh.h"
 #include "base/job.h"
+#include "base/require_mesh.h"
 #include "base/sheared_ray.h"
 #include "rays/surface.h"
 
@@ -20,14 +21,10 @@ namespace rays {
 namespace {
 
 base::Box boundsOfAll(const Mesh& mesh, const std::vector<Triangle>& triangles) {
+  base::requireFaces(mesh);
   base::Box all = base::Box::empty();
   for (const Triangle& triangle : triangles) {
     for (const VertexIndex vertex : triangle.vertices) {
-      if (vertex >= mesh.positions.size()) {
-        throw Error(ErrorCode::InvalidArgument,
-                    "the mesh has " + std::to_string(mesh.positions.size()) +
-                        " vertices, but a face names vertex " + std::to_string(vertex));
-      }
       const Vec3 point = mesh.positions[vertex];
       if (!point.isFinite()) {
         throw Error(ErrorCode::InvalidArgument,
