@@ -18,6 +18,9 @@ namespace {
 
 // From this size on.
 constexpr int kLargeBytes = 8 << 20;
+// What the allocator may hold back at the end of its heap. With less, phases give back the same
+// pages and fault them in again thousands of times: a tenth of the time of ten million voxels.
+constexpr int kKeptBytes = 16 << 20;
 constexpr std::size_t kReserveBytes = std::size_t{16} << 20;
 
 std::atomic<void*> reserve = nullptr;
@@ -61,6 +64,7 @@ bool isMemoryAtItsEnd() {
 void giveLargeMemoryBack() {
 #ifdef M_MMAP_THRESHOLD
   static_cast<void>(mallopt(M_MMAP_THRESHOLD, kLargeBytes));
+  static_cast<void>(mallopt(M_TRIM_THRESHOLD, kKeptBytes));
 #endif
 }
 

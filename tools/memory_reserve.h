@@ -9,7 +9,8 @@ namespace tufa::tools {
 void keepMemoryInReserve();
 
 /// Has large arrays given back to the system as soon as they are freed, where the allocator would
-/// keep those up to 32 MB for later ones of other sizes.
+/// keep those up to 32 MB for later ones of other sizes; of what smaller ones leave, all but some
+/// megabytes.
 void giveLargeMemoryBack();
 
 /// Whether there is no room for a thread's stack. Safe in a signal handler.
