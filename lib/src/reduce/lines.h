@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/shared_array.h"
 #include "reduce/corners.h"
 #include "reduce/triangles.h"
 
@@ -17,35 +18,43 @@ enum class LineKind : std::uint8_t {
   End,  ///< where lines end or meet, or on several planes: stays
 };
 
-/// A vertex as lines see it.
-struct LineVertex {
-  LineKind kind = LineKind::Off;
-  bool isBeside = false;  ///< off a line, and beside one when a step of LineMode::Alone began
-  /// In a step of LineMode::Alone: the plane whose vertices' going has changed a triangle at this
-  /// vertex, kNone for none, kSeveral if it may not go any more.
+/// The planes of lines that a vertex lies on, kNone where there are fewer than three.
+using LinePlanes = std::array<Index, 3>;
+inline constexpr LinePlanes kNoPlanes = {kNone, kNone, kNone};
+
+[[nodiscard]] inline int commonPlanes(const LinePlanes& some, const LinePlanes& others) {
+  int count = 0;
+  for (const Index plane : some) {
+    for (const Index other : others) count += plane != kNone && plane == other;
+  }
+  return count;
+}
+
+/// A vertex in a step of LineMode::Alone.
+struct LineStep {
+  /// The plane whose vertices' going has changed a triangle at this vertex, kNone for none,
+  /// kSeveral if it may not go any more.
   Index change = kNone;
-  Index name = kNone;  ///< its number when the last step of LineMode::Alone began
-  /// The planes of lines that it lies on, kNone where there are fewer than three.
-  std::array<Index, 3> planes{kNone, kNone, kNone};
+  Index name = kNone;     ///< its number when the last such step began
+  bool isBeside = false;  ///< off a line, and beside one then
 
   static constexpr Index kSeveral = kNone - 1;
 
   void addChange(Index plane) { change = change == kNone || change == plane ? plane : kSeveral; }
   /// Whether it may go without changing triangles in a second plane.
   [[nodiscard]] bool mayChange(Index plane) const { return change == kNone || change == plane; }
-  [[nodiscard]] int commonPlanes(const LineVertex& other) const {
-    int count = 0;
-    for (const Index plane : planes) {
-      for (const Index p : other.planes) count += plane != kNone && plane == p;
-    }
-    return count;
-  }
+};
+
+/// A vertex as lines see it.
+struct LineVertex : LineStep {
+  LineKind kind = LineKind::Off;
+  LinePlanes planes = kNoPlanes;
 };
 
 /// A triangle in a step of LineMode::Alone, as it was when that began or as it is.
 struct Form {
   std::array<Vec3f, 3> corners;
-  std::array<Index, 3> names;  ///< of its vertices, see LineVertex
+  std::array<Index, 3> names;  ///< of its vertices, see LineStep
   Index region;
   Index plane;  ///< for whose sake it changes
 };
@@ -65,10 +74,9 @@ enum class LineMode : std::uint8_t {
 /// in one plane. So a region touches the planes around it in its lines alone, and is apart from its
 /// neighbours whatever is done inside.
 struct Regions {
-  std::vector<Index> ofTriangle;
-  Index count = 0;
-  /// For each vertex the planes of LineVertex; to be given for vertices on lines only.
-  std::vector<std::array<Index, 3>> planes;
+  base::SharedArray<Index> ofTriangle;
+  /// Of a vertex of the input that is on a line. Called from several threads.
+  std::function<LinePlanes(Index vertex)> planesOf;
   /// Of planes by their numbers, unit. Given, vertices of lines may move in their plane as they
   /// take in others; where lines are reduced alone, others of their line only.
   std::vector<Vec3f> normals;

@@ -93,8 +93,12 @@ void Part::loadSamples(const Surface& surface) {
   firstSample_.assign(triangleCount_, kNone);
   wasFar_.assign(triangleCount_, 0);
   sampleIds_ = surface.isWhole ? partition_->vertices(number_) : partition_->samples(number_);
-  samples_.resize(sampleIds_.size()), isRough_.resize(sampleIds_.size());
-  owners_.assign(sampleIds_.size(), kNone);
+  const auto renew = [&](auto& vector) {
+    if (vector.capacity() < sampleIds_.size()) base::release(vector);
+    vector.resize(sampleIds_.size());
+  };
+  renew(samples_), renew(isRough_), renew(owners_);
+  std::fill(owners_.begin(), owners_.end(), kNone);
   base::release(takers_);
   if (surface.isWhole) {
     findOwnersAtVertices(surface);

@@ -97,7 +97,7 @@ void Part::loadForms(const Surface& surface) {
     Form form{{}, {}, surface.region[t], surface.changeOf[t]};
     for (std::size_t i = 0; i < 3; ++i) {
       form.corners[i] = surface.corner(t, i);
-      form.names[i] = surface.line[surface.triangles[t].vertices[i]].name;
+      form.names[i] = surface.lineStep[surface.triangles[t].vertices[i]].name;
     }
     formsOf_[form.region].foreign.push_back(form);
   }

@@ -16,18 +16,22 @@ void Part::loadLines(const Surface& surface) {
   const auto vertices = partition_->vertices(number_);
   const auto triangles = partition_->triangles(number_);
   line_.resize(vertexCount_), region_.resize(triangleCount_);
-  for (Index i = 0; i < vertexCount_; ++i) line_[i] = surface.line[vertices[i]];
+  for (Index i = 0; i < vertexCount_; ++i) {
+    const Index v = vertices[i];
+    LineVertex& line = line_[i];
+    line = {surface.lineStep.empty() ? LineStep() : surface.lineStep[v], surface.lineKind[v]};
+    if (line.kind != LineKind::Off) line.planes = surface.planesOf(surface.sourceOf(v));
+  }
   for (Index t = 0; t < triangleCount_; ++t) region_[t] = surface.region[triangles[t]];
   wentInto_.clear();
   if (isAlone()) loadForms(surface);
 }
 
 void Part::storeLines(Surface& surface) const {
-  if (!hasLines_) return;
+  if (!hasLines_ || !isAlone()) return;
   for (const auto& [from, to, plane] : wentInto_) {
     surface.into[from] = to, surface.intoPlane[from] = plane;
   }
-  if (!isAlone()) return;
   const auto triangles = partition_->triangles(number_);
   for (const auto& [region, forms] : formsOf_) {
     for (const Index t : forms.changed) surface.changeOf[triangles[t]] = changeOf_[t];
@@ -121,7 +125,7 @@ Outcome Part::tryCollapseAtLine(Index a, Index b) {
     outcome = tryInto(k, gone, place);
     if (outcome != Outcome::Done) continue;
     sum_.moveBy(place_ - exact);
-    if (isOnLine(gone) || limits_.lines == LineMode::Alone) noteGone(k, gone);
+    if (isAlone()) noteGone(k, gone);
     apply(k, gone);
     for (int i = 0; i < size_; ++i) propose(k, ring_[i]);
     return outcome;
@@ -184,10 +188,10 @@ bool Part::makesChord() const {
     if (isOnLine(ring_[i]) && surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) return true;
   }
   for (int i = split_ + 1; i < size_; ++i) {
-    if (!isOnLine(ring_[i]) || line_[kept_].commonPlanes(line_[ring_[i]]) == 0) continue;
+    const int common = commonPlanes(line_[kept_].planes, line_[ring_[i]].planes);
+    if (!isOnLine(ring_[i]) || common == 0) continue;
     if (region_[at_[i] / 3] == region_[at_[i - 1] / 3]) return true;
-    if (line_[kept_].commonPlanes(line_[ring_[i]]) > 1 ||
-        surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) {
+    if (common > 1 || surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) {
       return true;
     }
   }
@@ -199,7 +203,6 @@ bool Part::makesChord() const {
 void Part::noteGone(Index kept, Index gone) {
   const Index plane = planeOfGoing(gone);
   wentInto_.push_back({line_[gone].name, line_[kept].name, plane});
-  if (limits_.lines != LineMode::Alone) return;
   const bool isMoving = isMovingKept();
   if (isMoving) wentInto_.push_back({line_[kept].name, line_[kept].name, plane});
   noteForms(plane);
@@ -223,7 +226,8 @@ bool Part::mayHold(Index a, Index b) const {
 }
 
 bool Part::mayFlipAtLine(const Index* v) const {
-  return !isOnLine(v[0]) || !isOnLine(v[3]) || line_[v[0]].commonPlanes(line_[v[3]]) == 0;
+  return !isOnLine(v[0]) || !isOnLine(v[3]) ||
+         commonPlanes(line_[v[0]].planes, line_[v[3]].planes) == 0;
 }
 
 }  // namespace tufa::reduce

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <utility>
 
+#include "base/collect.h"
 #include "base/parallel.h"
 #include "base/shrink.h"
 
@@ -70,11 +70,9 @@ void Partition::begin(const Surface& surface, base::Job& job) {
 
 void Partition::finish(const Surface& surface, base::Job& job) {
   numberVertices(job);
-  base::release(items_);
   shareTriangles(surface, job);
   shareForms(surface, job);
   if (!surface.isWhole) shareSamples(surface, job);
-  base::release(partOfTriangle_);
 }
 
 // Items below a plane go first; the end of them. Those on it are the upper side's, but may not
@@ -150,20 +148,27 @@ void Partition::splitAlong(Index node, Index begin, Index end, const Box3f& box)
       [&] { splitAlong(n.high, cut, end, high); });
 }
 
+// Items, the largest array here, are gone before the others are made.
 void Partition::numberVertices(base::Job& job) {
   const std::size_t count = items_.size();
+  const auto forParts = [&](const auto& body) {
+    job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p)
+        body(static_cast<Index>(p), ranges_[p], ranges_[p + 1]);
+    });
+  };
   base::shrinkTo(vertices_, count, job);
+  forParts([&](Index, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) vertices_[i] = items_[i].vertex;
+    std::sort(vertices_.begin() + begin, vertices_.begin() + end);
+  });
+  base::release(items_);
   base::shrinkTo(partOf_, count, job);
   base::shrinkTo(localVertex_, count, job);
-  job.forRanges(size(), 1, [&](std::size_t firstPart, std::size_t endPart) {
-    for (std::size_t p = firstPart; p < endPart; ++p) {
-      const Index begin = ranges_[p], end = ranges_[p + 1];
-      for (Index i = begin; i < end; ++i) vertices_[i] = items_[i].vertex;
-      std::sort(vertices_.begin() + begin, vertices_.begin() + end);
-      for (Index i = begin; i < end; ++i) {
-        partOf_[vertices_[i]] = static_cast<Index>(p);
-        localVertex_[vertices_[i]] = i - begin;
-      }
+  forParts([&](Index part, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) {
+      partOf_[vertices_[i]] = part;
+      localVertex_[vertices_[i]] = i - begin;
     }
   });
 }
@@ -174,31 +179,20 @@ void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   job.forRanges(inner_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
   });
-  base::resizeLarge(partOfTriangle_, count, job);
   base::shrinkTo(localTriangle_, surface.isWhole ? 0 : count, job);
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& v = surface.triangles[t].vertices;
-      const Index part = partOf_[v[0]];
-      const bool isOwned = part == partOf_[v[1]] && part == partOf_[v[2]];
-      partOfTriangle_[t] = isOwned ? part : kNone;
-      if (isOwned) continue;
-      for (const Index i : v) {  // some are of several such triangles
-        std::atomic_ref<std::uint8_t>(inner_[i]).store(0, std::memory_order_relaxed);
-      }
-    }
-  });
+  const auto partOf = [&](Index t) { return partOfTriangle(surface.triangles[t]); };
+  across_ = base::collectIf(job, count, kGrain, [&](Index t) { return partOf(t) == kNone; });
+  for (const Index t : across_) {
+    for (const Index v : surface.triangles[t].vertices) inner_[v] = 0;
+  }
   triangles_ = base::groupBy(
-      count, parts, [&](Index t) { return partOfTriangle_[t]; },
+      count, parts, partOf,
       [&](Index t, Index at) {
         if (!surface.isWhole) localTriangle_[t] = at;
       },
       job);
-  across_.clear();
   std::vector<std::array<Index, 2>> reached;
-  for (Index t = 0; t < count; ++t) {
-    if (partOfTriangle_[t] != kNone) continue;
-    across_.push_back(t);
+  for (const Index t : across_) {
     Box3f box;
     for (const Index i : surface.triangles[t].vertices) box.add(surface.position[i]);
     forPartsAt(box, [&](Index part) { reached.push_back({part, t}); });
@@ -221,7 +215,8 @@ void Partition::shareSamples(const Surface& surface, base::Job& job) {
   samples_ = base::groupBy(
       surface.owner.size(), size(),
       [&](Index r) {
-        return surface.owner[r] == kNone ? kNone : partOfTriangle_[surface.owner[r]];
+        const Index owner = surface.owner[r];
+        return owner == kNone ? kNone : partOfTriangle(surface.triangles[owner]);
       },
       [&](Index r, Index at) { localSample_[r] = at; }, job);
   job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {

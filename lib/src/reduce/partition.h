@@ -98,6 +98,12 @@ class Partition {
   [[nodiscard]] Tree split(Index begin, Index end, const Box3f& box, Index most, float share);
   void splitAlong(Index node, Index begin, Index end, const Box3f& box);
   void numberVertices(base::Job& job);
+  /// That of all its corners, or kNone.
+  [[nodiscard]] Index partOfTriangle(const Triangle& triangle) const {
+    const auto& v = triangle.vertices;
+    const Index part = partOf_[v[0]];
+    return part == partOf_[v[1]] && part == partOf_[v[2]] ? part : kNone;
+  }
   void shareTriangles(const Surface& surface, base::Job& job);
   void shareForms(const Surface& surface, base::Job& job);
   void shareSamples(const Surface& surface, base::Job& job);
@@ -108,7 +114,7 @@ class Partition {
   std::vector<Node> nodes_;
   std::vector<Box3f> boxes_;
   std::vector<Index> vertices_, ranges_, partOf_, localVertex_;
-  std::vector<Index> partOfTriangle_, localTriangle_, localSample_;
+  std::vector<Index> localTriangle_, localSample_;
   base::Groups triangles_, foreign_, forms_, samples_;
   std::vector<Index> across_;
   std::vector<std::uint8_t> inner_;

@@ -148,7 +148,7 @@ void Reduction::hold(const std::vector<Index>& faces, float tolerance) {
 }
 
 // The surface as it was while the mesh was the reference. Made again where it is asked for, which
-// is seldom: a copy would take 57 bytes a vertex, with regions, at the time of the most memory.
+// is seldom: a copy would take 18 bytes a vertex at the time of the most memory.
 Surface Reduction::wholeSurface() const {
   Surface surface = makeSurface(reference_.positions(), reference_.faces(), job_);
   locateAll(surface, reference_, {}, job_);
@@ -173,21 +173,20 @@ void Reduction::setRegions(std::function<Regions()> regions) {
 
 // Names all vertices, and forgets what went where in the step before.
 void Reduction::beginLines() {
-  const auto count = static_cast<Index>(surface_.line.size());
+  const auto count = static_cast<Index>(surface_.lineKind.size());
+  surface_.lineStep.resize(count);
   surface_.into.resize(count);
   surface_.intoPlane.assign(count, kNone);
   surface_.changeOf.assign(surface_.triangles.size(), kNone);
   surface_.oldForms.clear();
   for (Index v = 0; v < count; ++v) {
-    LineVertex& line = surface_.line[v];
-    line.name = surface_.into[v] = v;
-    line.change = kNone;
-    line.isBeside = false;
+    surface_.lineStep[v] = {kNone, v, false};
+    surface_.into[v] = v;
   }
   for (const Triangle& t : surface_.triangles) {
     const bool isBeside = std::any_of(t.vertices.begin(), t.vertices.end(),
                                       [&](Index v) { return surface_.isOnLine(v); });
-    for (const Index v : t.vertices) surface_.line[v].isBeside |= isBeside;
+    for (const Index v : t.vertices) surface_.lineStep[v].isBeside |= isBeside;
   }
 }
 
@@ -311,11 +310,12 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
     returnPart(std::move(part));
   });
   counts_ += lastCounts_;
-  for (const auto& [vertex, plane] : lastChanges_) surface_.line[vertex].addChange(plane);
+  for (const auto& [vertex, plane] : lastChanges_) surface_.lineStep[vertex].addChange(plane);
   lastChanges_.clear();
   surface_.oldForms.insert(surface_.oldForms.end(), lastForms_.begin(), lastForms_.end());
   lastForms_.clear();
   isReference_ = false;
+  if (surface_.isWhole) partition_ = {};  // at the time of the most memory
   apply(surface_, reference_, lastStored_, dead, job_);
   lastStored_.clear();
   ++phaseNumber_;
@@ -331,7 +331,7 @@ ReducedMesh Reduction::mesh() const {
                    {s.triangles.begin(), s.triangles.end()},
                    s.source,
                    s.face,
-                   s.region};
+                   {s.region.begin(), s.region.end()}};
   if (!s.isWhole) return mesh;
   for (Index v = 0; v < s.position.size(); ++v) {
     mesh.sources.push_back(v);

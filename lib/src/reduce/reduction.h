@@ -108,8 +108,8 @@ class Reduction {
   [[nodiscard]] int attempts() const { return attempt_ + 1; }
   [[nodiscard]] ReducedMesh mesh() const;
   /// For each vertex, by its number when the last step of LineMode::Alone began, where it has gone
-  /// in that step, at once: a vertex that may have gone on in turn. Itself if it has not. Before
-  /// there is such a step: for vertices of the input that went along lines.
+  /// in that step, at once: a vertex that may have gone on in turn. Itself if it has not. Empty
+  /// before there is such a step.
   [[nodiscard]] const std::vector<Index>& wentInto() const { return surface_.into; }
   /// For those that have gone the plane of the line that they were on, or beside.
   [[nodiscard]] const std::vector<Index>& wentFor() const { return surface_.intoPlane; }

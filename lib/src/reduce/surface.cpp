@@ -88,7 +88,7 @@ void findChords(Surface& s) {
     const auto& v = s.triangles[t].vertices;
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = v[i], b = v[(i + 1) % 3];
-      if (s.isOnLine(a) && s.isOnLine(b) && s.line[a].commonPlanes(s.line[b]) > 0) {
+      if (s.isOnLine(a) && s.isOnLine(b) && commonPlanes(s.planesOf(a), s.planesOf(b)) > 0) {
         edges.emplace_back(Surface::chordKey(a, b), s.region[t]);
       }
     }
@@ -99,16 +99,39 @@ void findChords(Surface& s) {
   }
 }
 
+// A vertex, and a corner at it.
+using CornerAt = std::pair<Index, Index>;
+
+// The vertices at triangles of several regions, rising, with all their corners.
+std::vector<CornerAt> cornersOnLines(const Surface& s, base::Job& job) {
+  std::vector<Index> regionAt(s.position.size(), kNone);
+  base::RankedBits several(s.position.size());
+  const auto count = static_cast<Index>(s.triangles.size());
+  for (Index t = 0; t < count; ++t) {
+    job.pollCancelled(t);
+    for (const Index v : s.triangles[t].vertices) {
+      if (regionAt[v] == kNone) regionAt[v] = s.region[t];
+      if (regionAt[v] != s.region[t]) several.add(v);
+    }
+  }
+  std::vector<CornerAt> corners;
+  for (Index c = 0; c < 3 * count; ++c) {
+    job.pollCancelled(c);
+    const Index v = s.triangles[c / 3].vertices[c % 3];
+    if (several.has(v)) corners.emplace_back(v, c);
+  }
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
 // How many edges of lines there are at a vertex, given its corners. Each is met twice, once in each
 // of its triangles, where its region is not that of the other one: so the changes of region around
 // the vertex are counted, by neighbours.
-int linesAt(const Surface& s, std::span<const Index> around) {
-  const auto hasRegion = [&](Index c) { return s.region[c / 3] == s.region[around.front() / 3]; };
-  if (std::all_of(around.begin(), around.end(), hasRegion)) return 0;
+int linesAt(const Surface& s, std::span<const CornerAt> around) {
   int lines = 0;
-  for (const Index c : around) {
+  for (const auto& [v, c] : around) {
     const Index next = s.triangles[c / 3].vertices[nextCorner(c) % 3];
-    for (const Index d : around) {
+    for (const auto& [w, d] : around) {
       const Index before = s.triangles[d / 3].vertices[previousCorner(d) % 3];
       lines += before == next && s.region[c / 3] != s.region[d / 3];
     }
@@ -172,24 +195,20 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
 }
 
 void setRegions(Surface& s, Regions regions, base::Job& job) {
-  const Index count = static_cast<Index>(s.position.size());
   s.region = std::move(regions.ofTriangle);
-  s.mayHold = std::move(regions.mayHold), s.planeNormals = std::move(regions.normals);
-  s.line.assign(count, {});
-  s.into.resize(count);
-  for (Index v = 0; v < count; ++v) s.into[v] = s.line[v].name = v;
-  s.intoPlane.assign(count, kNone);
-  const CornersOfVertices corners(count, s.triangles, job);
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Index v = static_cast<Index>(begin); v < end; ++v) {
-      const int lines = linesAt(s, corners.of(v));
-      if (lines == 0) continue;
-      LineVertex& line = s.line[v];
-      line.planes = regions.planes[v];
-      const bool isSimple = lines == 2 && line.planes[1] == kNone && (s.flags[v] & kBorder) == 0;
-      line.kind = isSimple ? LineKind::On : LineKind::End;
-    }
-  });
+  s.mayHold = std::move(regions.mayHold), s.planesOf = std::move(regions.planesOf);
+  s.planeNormals = std::move(regions.normals);
+  s.lineKind.assign(s.position.size(), LineKind::Off);
+  s.lineStep.clear(), s.into.clear(), s.intoPlane.clear();
+  const std::vector<CornerAt> corners = cornersOnLines(s, job);
+  for (auto begin = corners.begin(); begin != corners.end();) {
+    const Index v = begin->first;
+    const auto end = std::find_if(begin, corners.end(), [&](auto& c) { return c.first != v; });
+    const int lines = linesAt(s, {begin, end});
+    const bool isSimple = lines == 2 && s.planesOf(v)[1] == kNone && (s.flags[v] & kBorder) == 0;
+    if (lines > 0) s.lineKind[v] = isSimple ? LineKind::On : LineKind::End;
+    begin = end;
+  }
   findChords(s);
 }
 
@@ -201,10 +220,12 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
   }
   leftTriangles.count();
   std::vector<Triangle> triangles;
+  std::vector<Index> regions;
   triangles.reserve(leftTriangles.size());
+  regions.reserve(s.hasLines() ? leftTriangles.size() : 0);
   leftTriangles.forAll([&](std::size_t t) {
     const std::size_t n = triangles.size();
-    if (s.hasLines()) s.region[n] = s.region[t];
+    if (s.hasLines()) regions.push_back(s.region[t]);
     if (!s.changeOf.empty()) s.changeOf[n] = s.changeOf[t];
     triangles.push_back(s.triangles[t]);
   });
@@ -223,7 +244,8 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
     const auto v = static_cast<Index>(at);
     positions[n] = s.position[v], sources[n] = s.sourceOf(v), faces[n] = faceOf(s, reference, v);
     s.axis[n] = s.axis[v], s.flags[n] = s.flags[v];
-    if (s.hasLines()) s.line[n] = s.line[v];
+    if (s.hasLines()) s.lineKind[n] = s.lineKind[v];
+    if (!s.lineStep.empty()) s.lineStep[n] = s.lineStep[v];
     ++n;
   });
   for (const SurfaceChanges& some : changes) {
@@ -243,9 +265,11 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
     }
   });
   base::shrinkTo(s.axis, count), base::shrinkTo(s.flags, count);
-  if (s.hasLines()) base::shrinkTo(s.region, triangles.size()), base::shrinkTo(s.line, count);
+  if (s.hasLines()) base::shrinkTo(s.lineKind, count);
+  if (!s.lineStep.empty()) base::shrinkTo(s.lineStep, count);
   if (!s.changeOf.empty()) base::shrinkTo(s.changeOf, triangles.size());
   s.position = std::move(positions), s.triangles = std::move(triangles);
+  s.region = std::move(regions);
   s.source = std::move(sources), s.face = std::move(faces);
   s.isWhole = false;
 }

@@ -41,20 +41,24 @@ struct Surface {
   /// faces.
   std::vector<Index> owner;
 
-  // Empty without regions: for each triangle, for each vertex, and for each name of a vertex where
-  // it has gone, else itself.
-  std::vector<Index> region;
-  std::vector<LineVertex> line;
+  // Empty without regions.
+  base::SharedArray<Index> region;  ///< of each triangle
+  std::vector<LineKind> lineKind;   ///< of each vertex
+  // Empty before the first step of LineMode::Alone: for each vertex, and for each name of a vertex
+  // where it has gone, else itself, and the plane of the line that it went for.
+  std::vector<LineStep> lineStep;
   std::vector<Index> into;
-  std::vector<Index> intoPlane;  ///< for each name the plane of the line that it went for
-  // In a step of LineMode::Alone: for each triangle the plane for whose sake it has changed, kNone
-  // for none; and all that have changed, as they were.
+  std::vector<Index> intoPlane;
+  // In such a step: for each triangle the plane for whose sake it has changed, kNone for none; and
+  // all that have changed, as they were.
   std::vector<Index> changeOf;
   std::vector<Form> oldForms;
   /// Edges of the input inside a region between vertices of lines in one plane, as keys of
   /// chordKey(), sorted: they may never become edges of lines.
   std::vector<std::uint64_t> chords;
-  std::vector<Vec3f> planeNormals;  ///< see Regions
+  // See Regions.
+  std::vector<Vec3f> planeNormals;
+  std::function<LinePlanes(Index source)> planesOf;
   std::function<bool(Index region, Index plane, Vec3f place, Vec3f a, Vec3f b)> mayHold;
 
   [[nodiscard]] static std::uint64_t chordKey(Index a, Index b) {
@@ -64,8 +68,8 @@ struct Surface {
     return std::binary_search(chords.begin(), chords.end(), chordKey(a, b));
   }
   [[nodiscard]] Index sourceOf(Index v) const { return isWhole ? v : source[v]; }
-  [[nodiscard]] bool hasLines() const { return !line.empty(); }
-  [[nodiscard]] bool isOnLine(Index v) const { return hasLines() && line[v].kind != LineKind::Off; }
+  [[nodiscard]] bool hasLines() const { return !lineKind.empty(); }
+  [[nodiscard]] bool isOnLine(Index v) const { return hasLines() && lineKind[v] != LineKind::Off; }
   [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis[v]) != 0; }
   [[nodiscard]] const Vec3f& corner(Index triangle, std::size_t i) const {
     return position[triangles[triangle].vertices[i]];

@@ -57,8 +57,8 @@ void expectDivided(const Cut& cut, double uniformArea) {
   }
   for (VertexIndex v = 0; v < chunksAt.size(); ++v) {
     if (chunksAt[v].size() < 2) continue;
-    ASSERT_NE(mesh.planesOf[v][0], ChunkPlane::kNone);
-    const ChunkPlane& plane = mesh.planes[mesh.planesOf[v][0]];
+    ASSERT_NE(mesh.planesAt(v)[0], ChunkPlane::kNone);
+    const ChunkPlane& plane = mesh.planes[mesh.planesAt(v)[0]];
     EXPECT_NEAR(cut.latticeOf(v)[plane.axis], kSize * plane.at, 1e-9);
   }
   EXPECT_TRUE(std::is_sorted(mesh.chunks.begin(), mesh.chunks.end()));
@@ -98,7 +98,7 @@ TEST(CutMesh, IsTheSameForAnyNumberOfThreads) {
   };
   const CutMesh one = make(1), two = make(2);
   EXPECT_TRUE(test::sameBytes(one.mesh, two.mesh));
-  EXPECT_EQ(one.chunkOf, two.chunkOf);
+  EXPECT_TRUE(std::ranges::equal(one.chunkOf, two.chunkOf));
 }
 
 // A fan around the origin, of which one vertex is near its neighbour.

@@ -25,15 +25,16 @@ test::FineMesh wavingBox(float height) {
 
 Regions halvesOf(const test::FineMesh& mesh) {
   Regions regions;
-  regions.count = 2;
+  std::vector<Index> sides;
   for (const Triangle& t : mesh.triangles) {
     float sum = 0;
     for (const VertexIndex v : t.vertices) sum += mesh.positions[v].x;
-    regions.ofTriangle.push_back(sum < 3 * kMiddle ? 0 : 1);
+    sides.push_back(sum < 3 * kMiddle ? 0 : 1);
   }
-  for (const Vec3f& p : mesh.positions) {
-    regions.planes.push_back({p.x == kMiddle ? 0 : kNone, kNone, kNone});
-  }
+  regions.ofTriangle = std::move(sides);
+  regions.planesOf = [positions = mesh.positions](Index v) {
+    return LinePlanes{positions[v].x == kMiddle ? 0 : kNone, kNone, kNone};
+  };
   regions.mayHold = [](Index region, Index plane, Vec3f place, Vec3f, Vec3f) {
     if (plane == 0) return place.x == kMiddle;
     return region == 0 ? place.x < kMiddle : place.x > kMiddle;
@@ -56,8 +57,8 @@ struct Reducer {
   [[nodiscard]] std::set<Index> lineSources() const {
     const Surface surface = reduction.surface();
     std::set<Index> sources;
-    for (Index v = 0; v < surface.line.size(); ++v) {
-      if (surface.line[v].kind != LineKind::Off) sources.insert(surface.sourceOf(v));
+    for (Index v = 0; v < surface.lineKind.size(); ++v) {
+      if (surface.lineKind[v] != LineKind::Off) sources.insert(surface.sourceOf(v));
     }
     return sources;
   }
@@ -129,8 +130,8 @@ TEST(Lines, MayMoveInTheirPlaneWithTheRest) {
   EXPECT_LE(moving.reduction.triangleCount(), kept.reduction.triangleCount());
   std::size_t moved = 0;
   const Surface surface = moving.reduction.surface();
-  for (Index v = 0; v < surface.line.size(); ++v) {
-    if (surface.line[v].kind == LineKind::Off) continue;
+  for (Index v = 0; v < surface.lineKind.size(); ++v) {
+    if (surface.lineKind[v] == LineKind::Off) continue;
     EXPECT_EQ(surface.position[v].x, kMiddle);
     moved += surface.position[v] == moving.input.positions[surface.sourceOf(v)] ? 0 : 1;
   }
@@ -192,8 +193,8 @@ TEST(Lines, MayMoveInTheirPlaneAlone) {
       expectApart(*box);
       std::size_t moved = 0;
       const Surface surface = box->reduction.surface();
-      for (Index v = 0; v < surface.line.size(); ++v) {
-        const Index name = surface.line[v].name;
+      for (Index v = 0; v < surface.lineKind.size(); ++v) {
+        const Index name = surface.lineStep[v].name;
         const bool isMoved = !(surface.position[v] == before.positions[name]);
         EXPECT_EQ(box->reduction.wentInto()[name], name);
         EXPECT_EQ(isMoved, box->reduction.wentFor()[name] != kNone);
@@ -225,13 +226,14 @@ TEST(Lines, NeverVanishWithTheirRegion) {
   test::FineMesh ball = test::subdivided(test::octahedron(8), 4);
   for (Vec3f& p : ball.positions) p = unit(p) * 8;
   Regions regions;
-  regions.count = 2;
-  regions.planes.assign(ball.positions.size(), {kNone, kNone, kNone});
+  regions.planesOf = [](Index) { return kNoPlanes; };
+  std::vector<Index> caps;
   for (const Triangle& t : ball.triangles) {
     float sum = 0;
     for (const VertexIndex v : t.vertices) sum += ball.positions[v].z;
-    regions.ofTriangle.push_back(sum > 3 * 7.2f ? 1 : 0);
+    caps.push_back(sum > 3 * 7.2f ? 1 : 0);
   }
+  regions.ofTriangle = std::move(caps);
   base::Job job(1, {});
   Reduction reduction(ball.input(), ball.input(), {}, {}, {}, job);
   reduction.setRegions([&] { return regions; });

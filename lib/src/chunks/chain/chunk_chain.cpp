@@ -47,15 +47,13 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
                      refine::scalesOf(cut_.mesh, affine, rule, job),
                      reduce::optionsForAngle(rule.minAngle), job);
   reduction_->setRegions([this] { return regionsOf(); });
-  const reduce::Surface& surface = reduction_->surface();
-  kinds_.reserve(input.positions.size());
-  for (const reduce::LineVertex& line : surface.line) kinds_.push_back(line.kind);
+  kinds_ = reduction_->surface().lineKind;
 }
 
 reduce::Regions ChunkChain::regionsOf() const {
   reduce::Regions regions;
   regions.ofTriangle = cut_.chunkOf;
-  regions.planes = cut_.planesOf;
+  regions.planesOf = [this](reduce::Index v) { return cut_.planesAt(v); };
   for (const ChunkPlane& plane : cut_.planes) {
     float gradient[3] = {};
     gradient[plane.axis] = 1;
@@ -119,7 +117,7 @@ void ChunkChain::setInto(ChainLevel& level) {
   const std::vector<reduce::Index>& went = reduction_->wentInto();
   level.intoPlane = reduction_->wentFor();
   const reduce::ReducedMesh reduced = reduction_->mesh();
-  const std::vector<reduce::LineVertex>& lines = reduction_->surface().line;
+  const std::vector<reduce::LineStep>& lines = reduction_->surface().lineStep;
   std::vector<VertexIndex> now(level.own);
   std::iota(now.begin(), now.end(), 0);
   for (VertexIndex v = 0; v < lines.size(); ++v) {
@@ -168,7 +166,7 @@ ChainLevel ChunkChain::extract(const ChainLevel* before) const {
   reduce::ReducedMesh reduced = reduction_->mesh();
   ChainLevel level;
   level.own = reduced.positions.size();
-  const std::vector<reduce::LineVertex>& lines = reduction_->surface().line;
+  const std::vector<reduce::LineStep>& lines = reduction_->surface().lineStep;
   for (VertexIndex v = 0; v < level.own; ++v) {
     add(level, reduced, v);
     const VertexIndex onCurve = level.cutVertex[v];

@@ -74,8 +74,8 @@ class Splitter {
   [[nodiscard]] std::uint32_t commonPlane(VertexIndex a, VertexIndex b) const {
     std::uint32_t plane = ChunkPlane::kNone;
     int count = 0;
-    for (const std::uint32_t p : cut_.planesOf[level_.cutVertex[a]]) {
-      for (const std::uint32_t q : cut_.planesOf[level_.cutVertex[b]]) {
+    for (const std::uint32_t p : cut_.planesAt(level_.cutVertex[a])) {
+      for (const std::uint32_t q : cut_.planesAt(level_.cutVertex[b])) {
         if (p != ChunkPlane::kNone && p == q) plane = p, ++count;
       }
     }

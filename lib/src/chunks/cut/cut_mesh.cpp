@@ -38,7 +38,8 @@ constexpr std::size_t kGrain = 16384;
 class Cutter {
  public:
   Cutter(Mesh uniform, const grid::Affine& affine, int size, bool singlePrecision, base::Job& job)
-      : uniform_(std::move(uniform.positions)),
+      : size_(static_cast<std::size_t>(size)),
+        uniform_(std::move(uniform.positions)),
         hasNormals_(!uniform.normals.empty()),
         affine_(affine),
         planes_(affine.origin(), size),
@@ -46,6 +47,7 @@ class Cutter {
         job_(job) {
     out_.mesh.triangles = triangulate(uniform);
     out_.mesh.normals = std::move(uniform.normals);
+    base::release(uniform.quads);  // which may live as long as what is made of it here
   }
 
   CutMesh run() {
@@ -104,9 +106,9 @@ class Cutter {
   }
 
   void load() {
-    // For the vertices that cuts make, at chunks that are not small: else all would be moved when
-    // the first one is made.
-    const std::size_t room = uniform_.size() + uniform_.size() / 4;
+    // For the vertices that cuts make, or all would be moved when the first one is made: three cuts
+    // across some three edges a vertex, which are half a voxel long along an axis.
+    const std::size_t room = uniform_.size() + 5 * uniform_.size() / size_;
     at_.reserve(room), place_.reserve(room), moved_.reserve(room);
     out_.mesh.normals.reserve(hasNormals_ ? room : 0), out_.isNew.reserve(room);
     at_.resize(uniform_.size());
@@ -179,7 +181,8 @@ class Cutter {
       std::vector<std::uint8_t> isChanged(at_.size(), 0);
       for (const VertexIndex v : changed) isChanged[v] = 1;
       isAny = false;
-      for (const intersect::PolygonPair& pair : pairsAt(at_, isChanged)) {
+      const auto placeOf = [&](VertexIndex v) { return at_[v]; };
+      for (const intersect::PolygonPair& pair : pairsAt(placeOf, isChanged)) {
         for (const std::uint32_t t : {pair.a, pair.b}) {
           for (const VertexIndex v : out_.mesh.triangles[t].vertices) {
             if (isChanged[v] != 0 && stays[v] == 0) stays[v] = 1, isAny = true;
@@ -195,13 +198,10 @@ class Cutter {
   // Where triangles that were cut intersect once they are rounded, collapses their short edges.
   // Those of the uniform mesh are known not to. Whether none is known to intersect at the end.
   bool joinWhereRounded() {
-    std::vector<Vec3> rounded(at_.size());
-    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        const Position world = affine_.toWorld(positionOf(static_cast<VertexIndex>(v)));
-        rounded[v] = Vec3(singlePrecision_ ? base::toSingle(world) : world);
-      }
-    });
+    const auto rounded = [&](VertexIndex v) {
+      const Position world = affine_.toWorld(positionOf(v));
+      return Vec3(singlePrecision_ ? base::toSingle(world) : world);
+    };
     std::vector<std::uint8_t> marks = out_.isNew;
     for (const double least : kRoundedEdges) {
       const std::vector<intersect::PolygonPair> pairs = pairsAt(rounded, marks);
@@ -220,8 +220,8 @@ class Cutter {
 
   // Pairs of which one triangle has a marked vertex.
   [[nodiscard]] std::vector<intersect::PolygonPair> pairsAt(
-      const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marks) const {
-    return findPairsAt(out_.mesh.triangles, at_, points, marks, job_);
+      const PlaceOfVertex& placeOf, const std::vector<std::uint8_t>& marks) const {
+    return findPairsAt(out_.mesh.triangles, at_, placeOf, marks, job_);
   }
 
   [[nodiscard]] Place placeAt(VertexIndex v, int axis) const {
@@ -345,14 +345,16 @@ class Cutter {
     std::unique_copy(chunkOf.begin(), chunkOf.end(), std::back_inserter(out_.chunks));
     std::sort(out_.chunks.begin(), out_.chunks.end());
     out_.chunks.erase(std::unique(out_.chunks.begin(), out_.chunks.end()), out_.chunks.end());
-    out_.chunkOf.resize(chunkOf.size());
+    std::vector<std::uint32_t> placeOf(chunkOf.size());
     job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto found = std::lower_bound(out_.chunks.begin(), out_.chunks.end(), chunkOf[t]);
-        out_.chunkOf[t] = static_cast<std::uint32_t>(found - out_.chunks.begin());
+        placeOf[t] = static_cast<std::uint32_t>(found - out_.chunks.begin());
       }
     });
+    out_.chunkOf = std::move(placeOf);
     base::release(chunkOf), base::release(at_);
+    mesh.normals.shrink_to_fit(), out_.isNew.shrink_to_fit();
     namePlanes(place_, out_);
   }
 
@@ -371,6 +373,7 @@ class Cutter {
     return chunk;
   }
 
+  std::size_t size_;  ///< of chunks, voxels
   std::vector<Position> uniform_;
   bool hasNormals_;
   const grid::Affine& affine_;

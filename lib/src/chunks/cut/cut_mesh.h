@@ -2,11 +2,13 @@
 
 #include <tufa/coord.h>
 #include <tufa/mesh.h>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "base/job.h"
+#include "base/shared_array.h"
 #include "grid/affine.h"
 
 namespace tufa::chunks {
@@ -24,10 +26,12 @@ struct ChunkPlane {
 /// chunk on the solid's side.
 struct CutMesh {
   Mesh mesh;  ///< triangles; positions as the uniform mesh's, whose vertices come first
-  std::vector<Coord> chunks;           ///< that have triangles, sorted
-  std::vector<std::uint32_t> chunkOf;  ///< of each triangle, a place in `chunks`
-  std::vector<ChunkPlane> planes;      ///< by number
-  /// For each vertex the numbers of the planes that it lies on, if its triangles lie on both sides.
+  std::vector<Coord> chunks;                 ///< that have triangles, sorted
+  base::SharedArray<std::uint32_t> chunkOf;  ///< of each triangle, a place in `chunks`
+  std::vector<ChunkPlane> planes;            ///< by number
+  /// The vertices on planes on both sides of which they have triangles, rising, and the numbers of
+  /// these planes.
+  std::vector<VertexIndex> onPlanes;
   std::vector<std::array<std::uint32_t, 3>> planesOf;
   /// The positions that distances are measured to, where some are others than the mesh's.
   std::vector<Position> reference;
@@ -37,6 +41,15 @@ struct CutMesh {
   /// positions are rounded.
   bool isSeparated = false;
   double moved = 0;  ///< how far vertices were moved at most: to planes, and apart; voxels
+
+  /// The planes of a vertex, kNone where there are fewer than three.
+  [[nodiscard]] std::array<std::uint32_t, 3> planesAt(VertexIndex v) const {
+    const auto found = std::lower_bound(onPlanes.begin(), onPlanes.end(), v);
+    if (found == onPlanes.end() || *found != v) {
+      return {ChunkPlane::kNone, ChunkPlane::kNone, ChunkPlane::kNone};
+    }
+    return planesOf[static_cast<std::size_t>(found - onPlanes.begin())];
+  }
 };
 
 /// Cuts a mesh, positions counted from affine.origin(), into chunks of `size` voxels.

@@ -106,8 +106,8 @@ class PlaneMover {
     for (const VertexIndex v : near_) marks[v] = before_[v] == kStays ? 0 : 1;
     for (bool isAny = true; isAny;) {
       isAny = false;
-      const std::vector<intersect::PolygonPair> pairs =
-          findPairsAt(triangles_, points_, points_, marks, job_);
+      const std::vector<intersect::PolygonPair> pairs = findPairsAt(
+          triangles_, points_, [&](VertexIndex v) { return points_[v]; }, marks, job_);
       std::fill(marks.begin(), marks.end(), std::uint8_t{0});  // now of those that are put back
       for (const intersect::PolygonPair& pair : pairs) {
         for (const std::uint32_t t : {pair.a, pair.b}) {

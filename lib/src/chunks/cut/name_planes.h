@@ -7,9 +7,9 @@
 
 namespace tufa::chunks {
 
-/// Numbers the planes that vertices lie on with chunks on both sides, and sets CutMesh::planes and
-/// planesOf: a flat face in a plane is all on one side of it. `places`: of each vertex. Triangles
-/// must have their chunks.
+/// Numbers the planes that vertices lie on with chunks on both sides, and sets CutMesh::planes,
+/// onPlanes and planesOf: a flat face in a plane is all on one side of it. `places`: of each
+/// vertex. Triangles must have their chunks.
 void namePlanes(const std::vector<PlacesAmongPlanes>& places, CutMesh& cut);
 
 }  // namespace tufa::chunks

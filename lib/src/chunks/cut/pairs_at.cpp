@@ -7,14 +7,12 @@
 #include <numeric>
 
 #include "base/collect.h"
-#include "base/sort_unique.h"
+#include "base/ranked_bits.h"
 
 namespace tufa::chunks {
 namespace {
 
 constexpr std::size_t kGrain = 8192;
-// Where there are more vertices than so many a triangle, only those in use are copied.
-constexpr std::size_t kFew = 16;
 // Of more than one triangle in so many, others are mostly near.
 constexpr std::size_t kMany = 8;
 // Places in the table of cubes for each of some triangles. Many of these share a cube of some fifty
@@ -69,26 +67,22 @@ std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
   });
 }
 
-// Some triangles, with all vertices or only those that they use.
+// Some triangles, with the vertices that they use.
 Mesh meshOf(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& some,
-            const std::vector<Vec3>& places) {
+            std::size_t vertices, const PlaceOfVertex& placeOf) {
   Mesh mesh;
   mesh.triangles.reserve(some.size());
-  for (const std::uint32_t t : some) mesh.triangles.push_back(triangles[t]);
-  if (kFew * some.size() > places.size()) {
-    mesh.positions.assign(places.begin(), places.end());
-    return mesh;
+  base::RankedBits used(vertices);
+  for (const std::uint32_t t : some) {
+    mesh.triangles.push_back(triangles[t]);
+    for (const VertexIndex v : triangles[t].vertices) used.add(v);
   }
-  std::vector<VertexIndex> used;
-  for (const Triangle& t : mesh.triangles) {
-    used.insert(used.end(), t.vertices.begin(), t.vertices.end());
-  }
-  base::sortUnique(used);
-  for (const VertexIndex v : used) mesh.positions.emplace_back(places[v]);
+  used.count();
+  mesh.positions.reserve(used.size());
+  used.forAll(
+      [&](std::size_t v) { mesh.positions.emplace_back(placeOf(static_cast<VertexIndex>(v))); });
   for (Triangle& t : mesh.triangles) {
-    for (VertexIndex& v : t.vertices) {
-      v = static_cast<VertexIndex>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
-    }
+    for (VertexIndex& v : t.vertices) v = used.rank(v);
   }
   return mesh;
 }
@@ -97,7 +91,7 @@ Mesh meshOf(const std::vector<Triangle>& triangles, const std::vector<std::uint3
 
 std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& triangles,
                                                 const std::vector<Vec3>& at,
-                                                const std::vector<Vec3>& places,
+                                                const PlaceOfVertex& placeOf,
                                                 const std::vector<std::uint8_t>& marks,
                                                 base::Job& job) {
   const std::vector<std::uint32_t> touched =
@@ -113,7 +107,7 @@ std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& tri
     near.resize(triangles.size());
     std::iota(near.begin(), near.end(), 0);
   }
-  Mesh mesh = meshOf(triangles, near, places);
+  Mesh mesh = meshOf(triangles, near, at.size(), placeOf);
   std::vector<intersect::PolygonIndex> candidates;
   candidates.reserve(touched.size());
   for (std::size_t i = 0, next = 0; i < near.size(); ++i) {

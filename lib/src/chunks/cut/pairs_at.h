@@ -2,6 +2,7 @@
 
 #include <tufa/mesh.h>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "base/job.h"
@@ -10,11 +11,14 @@
 
 namespace tufa::chunks {
 
-/// The pairs of triangles that intersect, and of which one has a marked vertex. `places`: the
+/// Where a vertex is.
+using PlaceOfVertex = std::function<Vec3(VertexIndex)>;
+
+/// The pairs of triangles that intersect, and of which one has a marked vertex. `placeOf`: the
 /// vertices where they are tested; `at`: the same as lattice points, up to rounding. Cost: a pass
 /// over all triangles, and a search among those near marked ones.
 [[nodiscard]] std::vector<intersect::PolygonPair> findPairsAt(
     const std::vector<Triangle>& triangles, const std::vector<Vec3>& at,
-    const std::vector<Vec3>& places, const std::vector<std::uint8_t>& marks, base::Job& job);
+    const PlaceOfVertex& placeOf, const std::vector<std::uint8_t>& marks, base::Job& job);
 
 }  // namespace tufa::chunks

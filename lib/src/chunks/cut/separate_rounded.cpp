@@ -89,7 +89,7 @@ void separateRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecis
     for (const VertexIndex v : vertices) points.push_back(before[v]);
     return points;
   };
-  source.isFixed = [&](VertexIndex v) { return cut.planesOf[v][0] != ChunkPlane::kNone; };
+  source.isFixed = [&](VertexIndex v) { return cut.planesAt(v)[0] != ChunkPlane::kNone; };
   source.voxelSize = affine.voxelSize();
   source.singlePrecision = singlePrecision;
   source.lastResort = false;
