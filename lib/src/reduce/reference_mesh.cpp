@@ -1,5 +1,6 @@
 #include "reduce/reference_mesh.h"
 
+#include <atomic>
 #include <utility>
 
 #include "base/huge_pages.h"
@@ -15,16 +16,39 @@ ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, ba
 
 ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corners,
                              std::vector<float> scales, base::Job& job)
-    : positions_(input.position),
-      faces_(input.triangles),
-      opposite_(oppositeCorners(input.triangles, corners, job)),
-      scales_(std::move(scales)) {
+    : positions_(input.position), faces_(input.triangles), scales_(std::move(scales)) {
+  isPaired_ = areAllPaired(job);
+  findOpposite(corners, job);
   base::resizeLarge(cornerOf_, input.position.size(), job, kNone);
   base::resizeLarge(rough_, input.position.size(), job);
   job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) {
       if (!corners.of(v).empty()) cornerOf_[v] = corners.of(v).back();
       rough_[v] = (input.flags[v] & (kSteep | kBorder)) != 0 ? kRough : 0;
+    }
+  });
+}
+
+bool ReferenceMesh::areAllPaired(base::Job& job) const {
+  if (faces_.size() % 2 != 0) return false;
+  std::atomic<bool> all = true;
+  job.forRanges(faces_.size() / 2, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && all; ++i) {
+      const auto &a = faces_[2 * i].vertices, &b = faces_[2 * i + 1].vertices;
+      if (a[0] != b[0] || a[2] != b[1]) all = false;
+    }
+  });
+  return all;
+}
+
+void ReferenceMesh::findOpposite(const CornersOfVertices& corners, base::Job& job) {
+  base::resizeLarge(opposite_, isPaired_ ? 2 * faces_.size() : 3 * faces_.size(), job);
+  forOppositeCorners(faces_, corners, job, [&](Index c, Index other) {
+    const Index i = c % 6;
+    if (!isPaired_) {
+      opposite_[c] = other;
+    } else if (i != 1 && i != 5) {
+      opposite_[4 * (c / 6) + (i == 0 ? 0 : i - 1)] = other;
     }
   });
 }
@@ -76,7 +100,7 @@ Index ReferenceMesh::locate(Index start, Vec3f p, Vec3f axis, int steps) const {
       if (side < worst) worst = side, out = i;
     }
     if (out < 0) return dot(cross(q[1] - q[0], q[2] - q[0]), axis) > 0 ? face : kNone;
-    const Index c = opposite_[3 * face + static_cast<Index>(out)];
+    const Index c = opposite(3 * face + static_cast<Index>(out));
     face = c == kNone ? kNone : c / 3;
   }
   return kNone;

@@ -87,7 +87,7 @@ class ReferenceMesh {
   }
   /// The corner at the same vertex of the next face counter-clockwise, or kNone at a border.
   [[nodiscard]] Index around(Index c) const {
-    const Index across = opposite_[nextCorner(c)];
+    const Index across = opposite(nextCorner(c));
     return across == kNone ? kNone : nextCorner(across);
   }
 
@@ -163,7 +163,7 @@ class ReferenceMesh {
         if (isAt[i]) {
           (void)allAround(vertices(first)[i], [&](Index f) { return tryFace(f), out < 0; });
         } else if (isBeside[(i + 1) % 3] && isBeside[(i + 2) % 3]) {
-          const Index c = opposite_[3 * first + static_cast<Index>(i)];
+          const Index c = opposite(3 * first + static_cast<Index>(i));
           tryFace(c == kNone ? kNone : c / 3);
         }
       }
@@ -181,7 +181,7 @@ class ReferenceMesh {
       }
       if (!visit(face, m, right, left)) return {};
       before = m;
-      const Index c = opposite_[3 * face + static_cast<Index>(out)];
+      const Index c = opposite(3 * face + static_cast<Index>(out));
       if (c == kNone) return {};
       face = c / 3;
       const int at = static_cast<int>(c - 3 * face);
@@ -200,9 +200,21 @@ class ReferenceMesh {
   }
 
  private:
+  // The corner across the edge of a corner, or kNone. Of quads, the halves of which meet at corners
+  // 1 and 5 of their six, only those across the four other edges are stored.
+  [[nodiscard]] Index opposite(Index c) const {
+    if (!isPaired_) return opposite_[c];
+    const Index quad = c / 6, i = c - 6 * quad;
+    if (i == 1) return c + 4;
+    if (i == 5) return c - 4;
+    return opposite_[4 * quad + (i == 0 ? 0 : i - 1)];
+  }
+  [[nodiscard]] bool areAllPaired(base::Job& job) const;
+  void findOpposite(const CornersOfVertices& corners, base::Job& job);
+
   // Asks for a face that a walk may enter next while the position that decides it is read.
   void prefetchAcross(Index c) const {
-    const Index across = opposite_[c];
+    const Index across = opposite(c);
     __builtin_prefetch(faces_.data() + (across == kNone ? 0 : across / 3));
   }
 
@@ -212,7 +224,8 @@ class ReferenceMesh {
 
   base::SharedArray<Vec3f> positions_;
   base::SharedArray<Triangle> faces_;
-  std::vector<Index> opposite_;  ///< of each corner
+  bool isPaired_ = false;        ///< faces are the halves of quads, one behind the other
+  std::vector<Index> opposite_;  ///< of each corner, or of four of a quad's, see opposite()
   std::vector<Index> cornerOf_;
   std::vector<std::uint8_t> rough_;  ///< of kRough, kHeld and kFrozen
   std::vector<float> scales_;
