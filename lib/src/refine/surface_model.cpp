@@ -34,8 +34,11 @@ void SurfaceModel::settle(base::Job& job) {
 void SurfaceModel::releaseCells() {
   hasCells_ = false;
   surface_.topology = {};
+  surface_.sheets = uniform::VertexSheets();
   base::release(surface_.mesh.quads);
 }
+
+void SurfaceModel::releasePositions() { base::release(surface_.mesh.positions); }
 
 const uniform::UniformSurface& SurfaceModel::withCells(base::Job& job) {
   if (!std::exchange(hasCells_, true)) {

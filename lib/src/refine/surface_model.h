@@ -26,6 +26,8 @@ class SurfaceModel {
   /// Frees what is known of cells, and the quads once faces have been made of them: some thirty
   /// bytes a cell. Neither view() nor buildClusters() may be called from then on.
   void releaseCells();
+  /// Frees the positions of the mesh.
+  void releasePositions();
   /// The surface with what is known of its cells, which is made again if it was released; quads are
   /// not.
   [[nodiscard]] const uniform::UniformSurface& withCells(base::Job& job);

@@ -52,23 +52,43 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
       positions[i] = Vec3f((Vec3(mesh.positions[i]) - middle_) * perVoxel);
     }
   });
+  positions_ = std::move(positions);
   faces_ = facesOf(mesh, job);
+  std::vector<float> scales = scalesOf(mesh, model.affine(), rule, job);
   model.releaseCells();
-  const reduce::InputMesh input{std::move(positions), faces_};
+  keepsExact_ = model.report().openEdges > 0 ||
+                rule.tolerance < static_cast<double>(reduce::kLeastTolerance) ||
+                std::any_of(scales.begin(), scales.end(), [](float scale) { return scale == 0; });
+  if (!keepsExact_) model.releasePositions();
+  const reduce::InputMesh input{positions_, faces_};
   reduce::Options options = reduce::optionsForAngle(rule.minAngle);
   if (model.repairs()) {
     options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
   }
-  reduction_.emplace(input, input, std::span<const reduce::Index>(),
-                     scalesOf(mesh, model.affine(), rule, job), std::move(options), job);
+  reduction_.emplace(input, input, std::span<const reduce::Index>(), std::move(scales),
+                     std::move(options), job);
+}
+
+Position SurfaceReduction::positionAt(const Vec3f& local) const {
+  const Vec3 p = middle_ + Vec3(local) * model_.affine().voxelSize();
+  return {p[0], p[1], p[2]};
 }
 
 Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
                                       std::size_t vertex) const {
   const reduce::Index source = reduced.sources[vertex];
-  if (source != reduce::kNone) return model_.mesh().positions[source];
-  const Vec3 p = middle_ + Vec3(reduced.positions[vertex]) * model_.affine().voxelSize();
-  return {p[0], p[1], p[2]};
+  if (keepsExact_ && source != reduce::kNone) return model_.mesh().positions[source];
+  return positionAt(reduced.positions[vertex]);
+}
+
+Normal SurfaceReduction::normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const {
+  const std::vector<Normal>& normals = model_.mesh().normals;
+  const reduce::Index source = reduced.sources[vertex];
+  if (source != reduce::kNone) return normals[source];
+  const auto& [a, b, c] = faces_[reduced.faces[vertex]].vertices;
+  return base::interpolatedNormal({Vec3(positions_[a]), Vec3(positions_[b]), Vec3(positions_[c])},
+                                  {normals[a], normals[b], normals[c]},
+                                  Vec3(reduced.positions[vertex]));
 }
 
 // The triangles that intersect once the mesh is finished as finishMesh() does. Guards in single
@@ -133,7 +153,6 @@ AdaptiveMesh SurfaceReduction::toCount(std::size_t triangles, bool drops) {
 }
 
 reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
-  const Mesh& base = model_.mesh();
   const reduce::Certificate certificate = reduction_->certificate();
   adaptive.largestError = static_cast<double>(certificate.largest);
   adaptive.meanError = static_cast<double>(certificate.mean);
@@ -149,10 +168,7 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
     const reduce::Index source = reduced.sources[i];
     extracted.baseVertices[i] = source == reduce::kNone ? octree::kNone : source;
     mesh.positions[i] = positionOf(reduced, i);
-    mesh.normals[i] =
-        source != reduce::kNone
-            ? base.normals[source]
-            : base::interpolatedNormal(base, faces_[reduced.faces[i]], Vec3(mesh.positions[i]));
+    mesh.normals[i] = normalOf(reduced, i);
   }
   mesh.triangles = reduced.triangles;
   extracted.baseQuads.assign(mesh.triangles.size(), octree::kNone);
@@ -167,9 +183,8 @@ reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
 // vertices has none.
 void SurfaceReduction::findComponents() {
   if (!components_.empty()) return;
-  const Mesh& mesh = model_.mesh();
   const std::vector<VertexIndex> lowest =
-      base::connectedItems(mesh.positions.size(), [&](const auto& connect) {
+      base::connectedItems(positions_.size(), [&](const auto& connect) {
         for (const Triangle& face : faces_) {
           for (const VertexIndex other : face.vertices) connect(face.vertices[0], other);
         }
@@ -187,7 +202,7 @@ void SurfaceReduction::findComponents() {
       counts.push_back(0);
     }
     const std::uint32_t component = componentOf_[i] = componentOf_[lowest[i]];
-    const Vec3 point(mesh.positions[i]);
+    const Vec3 point(positionAt(positions_[i]));
     boxes[component].add(point);
     ++counts[component];
     double& scale = components_[component].scale;

@@ -19,10 +19,14 @@ namespace tufa::refine {
 /// The uniform mesh of a surface model, reduced to one tolerance after the other, see
 /// reduce/reduction.h. Rounding to single precision comes after it and moves vertices by
 /// kMostRounding at most; so the result is the same wherever in the world the grid lies.
+///
+/// Positions are kept in single precision, counted from the mesh's middle. Where vertices of the
+/// uniform mesh are to stay as they are, in double precision too: on open borders, beside which
+/// another mesh may go on, where the tolerance is 0, or may be in places.
 class SurfaceReduction {
  public:
   /// The rule's scale holds for all tolerances. All arguments must outlive this. Releases the
-  /// model's cells.
+  /// model's cells, and its positions.
   SurfaceReduction(SurfaceModel& model, const octree::CutRule& rule, base::Job& job);
 
   /// As few triangles as can be found within a tolerance, voxels. `drop`: leave out components
@@ -41,7 +45,9 @@ class SurfaceReduction {
     bool isTold = false;  ///< that it was left out
   };
 
+  [[nodiscard]] Position positionAt(const base::Vec3f& local) const;
   [[nodiscard]] Position positionOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
+  [[nodiscard]] Normal normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
   [[nodiscard]] reduce::ReducedMesh extract(AdaptiveMesh& adaptive) const;
   void findComponents();
@@ -55,9 +61,12 @@ class SurfaceReduction {
   const SurfaceModel& model_;
   const octree::CutRule& rule_;
   base::Job& job_;
-  Vec3 middle_{0.0};                   ///< of the mesh, counted like its positions
-  double size_ = 0;                    ///< diagonal of the mesh's box, voxels
-  base::SharedArray<Triangle> faces_;  ///< of the uniform mesh
+  Vec3 middle_{0.0};  ///< of the mesh, counted like its positions
+  double size_ = 0;   ///< diagonal of the mesh's box, voxels
+  // Of the uniform mesh; positions in voxels, from the middle.
+  base::SharedArray<base::Vec3f> positions_;
+  base::SharedArray<Triangle> faces_;
+  bool keepsExact_ = true;  ///< the model has positions still
   std::optional<reduce::Reduction> reduction_;
   bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
   std::vector<std::uint32_t> componentOf_;  ///< of each uniform vertex

@@ -156,7 +156,11 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
     level.normals.push_back(cut_.mesh.normals[source]);
   } else {
     p = positionOf(reduced.positions[v]);
-    level.normals.push_back(base::interpolatedNormal(cut_.mesh, faces_[reduced.faces[v]], Vec3(p)));
+    const auto& [a, b, c] = faces_[reduced.faces[v]].vertices;
+    const std::vector<Position>& at = cut_.mesh.positions;
+    const std::vector<Normal>& normals = cut_.mesh.normals;
+    level.normals.push_back(base::interpolatedNormal(
+        {Vec3(at[a]), Vec3(at[b]), Vec3(at[c])}, {normals[a], normals[b], normals[c]}, Vec3(p)));
   }
   p = affine_.toWorld(p);
   level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);
