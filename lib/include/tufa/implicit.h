@@ -45,7 +45,7 @@ class TUFA_API Field {
   Field(const Field&) = delete;
   Field& operator=(const Field&) = delete;
 
-  /// The value at a world point.
+  /// The value at a world point. A point where it is NaN is outside.
   [[nodiscard]] virtual double value(const Position& point) const = 0;
 
   /// The derivatives of value() there, in values by world unit. At creases, where there are none,
@@ -53,7 +53,8 @@ class TUFA_API Field {
   [[nodiscard]] virtual Position gradient(const Position& point) const = 0;
 
   /// Bounds of value() over a box. They must hold; what lies between two surfaces is left out
-  /// because of them. The tighter, the less is sampled.
+  /// because of them. The tighter, the less is sampled. Where value() may be NaN, the greatest must
+  /// not be below 0.
   [[nodiscard]] virtual Interval bound(const Box& box) const = 0;
 
   /// A bound of the length of gradient() over a box; infinite where there is none.
@@ -64,7 +65,7 @@ class TUFA_API Field {
   [[nodiscard]] virtual Box gradientBound(const Box& box) const;
 
   /// Whether gradient() has length 1 all but everywhere, as with distances and with unions and
-  /// intersections of them. Level sets take such values as they are. Default: no.
+  /// intersections of them. Level sets take such values as they are; none must be NaN. Default: no.
   [[nodiscard]] virtual bool hasUnitGradient() const;
 
   /// The distance to the surface as far as value and gradient around the point tell it, of the

@@ -49,8 +49,8 @@ struct VoxelizeReport {
 
 /// Samples a field as a narrow-band level set, in parallel and only where its bounds cannot leave
 /// the surface out. The values are those of implicit::Field::distance(). Samples that are NaN are
-/// outside. Throws Error: InvalidArgument (voxel size, half width, a field without finite extent),
-/// LimitExceeded (bandVoxels), Cancelled.
+/// outside, and the surface is closed around them. Throws Error: InvalidArgument (voxel size, half
+/// width, a field without finite extent), LimitExceeded (bandVoxels), Cancelled.
 [[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field,
                                                         const VoxelizeOptions& options,
                                                         VoxelizeReport* report = nullptr);

@@ -230,9 +230,38 @@ class Parser {
   std::map<std::tuple<Step, std::uint32_t, std::uint32_t, double>, std::uint32_t> places_;
 };
 
+bool mayBeInfinite(const Interval& a) { return !(a.least > -kInfinity && a.greatest < kInfinity); }
+
+/// Whether a step may make NaN of numbers of its operands' ranges.
+bool mayMakeNaN(Step step, const Interval& a, const Interval& b) {
+  switch (step) {
+    case Step::Add:
+    case Step::Subtract:
+      return mayBeInfinite(a) && mayBeInfinite(b);
+    case Step::Multiply:
+      return (holdsZero(a) && mayBeInfinite(b)) || (mayBeInfinite(a) && holdsZero(b));
+    case Step::Divide:
+      return (holdsZero(a) && holdsZero(b)) || (mayBeInfinite(a) && mayBeInfinite(b));
+    case Step::Sine:
+    case Step::Cosine:
+      return mayBeInfinite(a);
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 Expression::Expression(std::string_view text) : lines_(Parser(text).parse()) {}
+
+bool Expression::mayLackValues(const Interval& x, const Interval& y, const Interval& z) const {
+  return withRoom<Interval>([&](Interval* values) {
+    run(values, x, y, z);
+    return std::any_of(lines_.begin(), lines_.end(), [&](const Line& line) {
+      return mayMakeNaN(line.step, values[line.first], values[line.second]);
+    });
+  });
+}
 
 std::shared_ptr<const Field> makeExpression(std::string_view text) {
   return fieldOf(Expression(text));

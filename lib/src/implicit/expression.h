@@ -46,13 +46,12 @@ class Expression {
 
   template <class T>
   T operator()(const T& x, const T& y, const T& z) const {
-    if (lines_.size() <= kFew) {
-      std::array<T, kFew> values;
-      return run(values.data(), x, y, z);
-    }
-    std::vector<T> values(lines_.size());
-    return run(values.data(), x, y, z);
+    return withRoom<T>([&](T* values) { return run(values, x, y, z); });
   }
+
+  /// Whether there may be points in a box without a value, such as 0/0, or infinity without itself
+  /// where numbers overflow. Bounds of what is made of them, as atan(0/0), do not tell.
+  [[nodiscard]] bool mayLackValues(const Interval& x, const Interval& y, const Interval& z) const;
 
   [[nodiscard]] static Box extent() { return wholeSpace(); }
 
@@ -68,6 +67,17 @@ class Expression {
  private:
   /// Most expressions do with so many: no memory is asked for at each point.
   static constexpr std::size_t kFew = 64;
+
+  /// Calls use(values) with room for the value of each step.
+  template <class T, class Use>
+  auto withRoom(const Use& use) const {
+    if (lines_.size() <= kFew) {
+      std::array<T, kFew> values;
+      return use(values.data());
+    }
+    std::vector<T> values(lines_.size());
+    return use(values.data());
+  }
 
   template <class T>
   static T literal(double number) {

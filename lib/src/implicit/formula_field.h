@@ -23,6 +23,9 @@ std::array<Dual<T>, 3> variables(const T& x, const T& y, const T& z, const T& on
 /// * `operator()(x, y, z)`, a template, for numbers, intervals and duals of both;
 /// * `extent()`, a box that holds the inside;
 /// * `kUnitGradient`: whether it is a distance;
+/// * perhaps `mayLackValues(x, y, z)` of intervals: whether it may be NaN for some of their
+/// numbers,
+///   of which operator() bounds the values only;
 /// * perhaps `insideAlong(from, direction, spans)`, as Field::insideAlong().
 template <class Formula>
 class FormulaField final : public Field {
@@ -46,6 +49,7 @@ class FormulaField final : public Field {
     } else {
       // The mean value form beside the natural one (Moore 1966): better where the box is small.
       const Dual<Interval> over = overBox(box);
+      if (mayLackValues(box)) return {over.value.least, kInfinity};
       const double centre = value(centreOf(box));
       if (std::isinf(centre)) return over.value;
       const Vec3 half = halfOf(box);
@@ -89,6 +93,13 @@ class FormulaField final : public Field {
   static Position toPosition(const std::array<double, 3>& v) {
     const auto defined = [](double slope) { return std::isnan(slope) ? 0 : slope; };
     return {defined(v[0]), defined(v[1]), defined(v[2])};
+  }
+
+  [[nodiscard]] bool mayLackValues(const Box& box) const {
+    if constexpr (requires { formula_.mayLackValues(Interval(), Interval(), Interval()); }) {
+      return formula_.mayLackValues(sideOf(box, 0), sideOf(box, 1), sideOf(box, 2));
+    }
+    return false;
   }
 
   [[nodiscard]] Dual<double> dualAt(const Position& p) const {

@@ -10,7 +10,7 @@ using implicit::Box;
 using implicit::Field;
 using implicit::Interval;
 
-constexpr int kSide = 8;
+constexpr int kSide = SampledBlock::kSide;
 
 /// The samples of a mask and their neighbours in the block.
 BlockMask dilated(const BlockMask& mask) {
@@ -64,12 +64,11 @@ Answer search(const Field& field, const Vec3& centre, double half, bool inside, 
 
 /// Whether a neighbour beyond the block lies on the other side. Those in it do not.
 bool changesBeyond(const SampledBlock& block, int x, int y, int z, bool inside) {
-  const auto within = [](int c) { return c >= 0 && c < kSide; };
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dz = -1; dz <= 1; ++dz) {
-        if (within(x + dx) && within(y + dy) && within(z + dz)) continue;
-        if (isInside(block.field.value(block.point(x + dx, y + dy, z + dz))) != inside) return true;
+        if (SampledBlock::holds(x + dx, y + dy, z + dz)) continue;
+        if (block.isInside(x + dx, y + dy, z + dz) != inside) return true;
       }
     }
   }
@@ -99,7 +98,7 @@ HiddenParts findHiddenParts(const SampledBlock& block) {
       const Vec3 point = block.point(x, y, z);
       // What lies in the cube is at most half its diagonal away.
       if (std::abs(block.field.value(point)) > most) continue;
-      const bool inside = (block.inside[x] >> bit & 1) != 0;
+      const bool inside = block.isInside(x, y, z);
       if (!mayChange(block.field, cubeAround(point, half), inside)) continue;
       if (changesBeyond(block, x, y, z, inside)) continue;
       const Answer answer = search(block.field, point, half, inside, kHalvings, looks);

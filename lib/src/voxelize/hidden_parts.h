@@ -15,6 +15,8 @@ using BlockMask = std::array<std::uint64_t, 8>;
 
 /// The samples of one block of the lattice, and a field that holds around it.
 struct SampledBlock {
+  static constexpr int kSide = 8;
+
   const implicit::Field& field;
   std::array<int, 3> origin;  ///< of its first sample
   double voxelSize;
@@ -23,6 +25,18 @@ struct SampledBlock {
 
   [[nodiscard]] Vec3 point(int x, int y, int z) const {
     return Vec3(origin[0] + x, origin[1] + y, origin[2] + z) * voxelSize;
+  }
+  [[nodiscard]] static bool holds(int x, int y, int z) {
+    const auto within = [](int c) { return c >= 0 && c < kSide; };
+    return within(x) && within(y) && within(z);
+  }
+  [[nodiscard]] bool isSampled(int x, int y, int z) const {
+    return (sampled[x] >> (kSide * y + z) & 1) != 0;
+  }
+  /// Whether a sample is inside. Beyond the block the field is asked.
+  [[nodiscard]] bool isInside(int x, int y, int z) const {
+    if (!holds(x, y, z)) return field.value(point(x, y, z)) < 0;
+    return (inside[x] >> (kSide * y + z) & 1) != 0;
   }
 };
 

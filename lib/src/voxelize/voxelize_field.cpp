@@ -56,6 +56,11 @@ struct Counts {
   }
 };
 
+/// A value just within the band, for one of that sign beyond it.
+float justWithin(float background, float value) {
+  return std::copysign(0.999F * background, value);
+}
+
 /// Samples the blocks of a lattice, with counts in common.
 class Sampler {
  public:
@@ -142,6 +147,7 @@ class Sampler {
     }
     counts_.samples.fetch_add(samples, std::memory_order_relaxed);
     counts_.blocks.fetch_add(1, std::memory_order_relaxed);
+    if (samples > 0 && leaf.isEmpty()) keepCrossing(leaf, block);
     counts_.activeVoxels.fetch_add(leaf.onVoxelCount(), std::memory_order_relaxed);
     if (samples > 0) counts_.add(voxelize_field::findHiddenParts(block), block.origin);
   }
@@ -178,6 +184,25 @@ class Sampler {
     return sign == 0 ? std::size_t{kPart} * kPart * kPart : 0;
   }
 
+  /// Without active values a block would be dropped, and with it a crossing both of whose ends lie
+  /// beyond the band, as at the edge of where a field has a value: an end in the block is made
+  /// active, and activateCrossings() does the rest. Between distances there is no such crossing.
+  void keepCrossing(Leaf& leaf, const SampledBlock& block) const {
+    if (field_->hasUnitGradient()) return;
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+      const openvdb::Coord at = Leaf::offsetToLocalCoord(n);
+      if (!block.isSampled(at.x(), at.y(), at.z())) continue;
+      const bool inside = block.isInside(at.x(), at.y(), at.z());
+      for (int way = 0; way < 6; ++way) {
+        openvdb::Coord next = at;
+        next[way / 2] += way % 2 == 0 ? 1 : -1;
+        if (block.isInside(next.x(), next.y(), next.z()) == inside) continue;
+        leaf.setValueOn(n, justWithin(static_cast<float>(band()), leaf.getValue(n)));
+        return;
+      }
+    }
+  }
+
   const Field* field_;
   std::shared_ptr<const Field> own_;      ///< the field, if it is a restricted one
   std::shared_ptr<const Sampler> whole_;  ///< keeps what that one may refer to
@@ -191,7 +216,6 @@ class Sampler {
 /// makes them active: the surface would have a hole there.
 void activateCrossings(openvdb::FloatGrid& grid, base::Job& job) {
   const auto& tree = grid.tree();
-  const float nearly = grid.background() * 0.999F;
   std::vector<openvdb::Coord> crossings;
   const auto accessor = grid.getConstAccessor();
   std::size_t done = 0;
@@ -211,7 +235,7 @@ void activateCrossings(openvdb::FloatGrid& grid, base::Job& job) {
     }
   }
   for (const openvdb::Coord& at : crossings) {
-    grid.tree().setValueOn(at, std::copysign(nearly, grid.tree().getValue(at)));
+    grid.tree().setValueOn(at, justWithin(grid.background(), grid.tree().getValue(at)));
   }
 }
 

@@ -188,6 +188,7 @@ TEST(VoxelizeField, FieldsWithoutSlopesHaveNoHoles) {
   ContourReport report;
   const Mesh mesh = contour(*grid, {}, &report);
   EXPECT_EQ(report.openEdges, 0u);
+  EXPECT_GT(mesh.triangleCount(), 100u);
   EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({0, 0, 0}, 1)), 0.1);
 }
 
@@ -205,7 +206,49 @@ TEST(VoxelizeField, ValuesTellTheSideWhereGradientsAreNoNumbers) {
   ContourReport report;
   const Mesh mesh = contour(*grid, {}, &report);
   EXPECT_EQ(report.openEdges, 0u);
+  EXPECT_GT(mesh.triangleCount(), 100u);
   EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({0, 0, 0}, 1)), 0.1);
+}
+
+/// That a solid cut by the half space where an expression is below 0 has no open edge, and that of
+/// the points where there are samples those are inside that are below 0.
+void expectClosed(const std::string& text) {
+  const auto field =
+      combine(Operation::Intersection,
+              {implicit::makeExpression(text), implicit::makeBox({0.5, 0.25, 0}, Vec3(2.5), 0)}, 0);
+  constexpr double kVoxel = 0.125;
+  const auto grid = voxelize(*field, voxelsOf(kVoxel));
+  for (int x = -30; x <= 30; ++x) {
+    for (int y = -30; y <= 30; ++y) {
+      for (int z = -30; z <= 30; ++z) {
+        const double truth = field->value({x * kVoxel, y * kVoxel, z * kVoxel});
+        ASSERT_EQ(grid->tree().getValue(openvdb::Coord(x, y, z)) < 0, truth < 0)
+            << text << " at " << x << " " << y << " " << z;
+      }
+    }
+  }
+  for (const bool uniform : {true, false}) {
+    ContourOptions options;
+    options.uniform = uniform;
+    ContourReport report;
+    const Mesh mesh = contour(*grid, options, &report);
+    EXPECT_EQ(report.openEdges, 0u) << text;
+    EXPECT_GT(mesh.triangleCount(), uniform ? 1000u : 11u) << text;
+  }
+}
+
+// Bounds took tiles for inside in which points have no value, and crossings between values beyond
+// the band were dropped with their blocks: the inside leaked out of the solid.
+TEST(VoxelizeField, LevelSetsAreClosedWhereFieldsHaveNoValue) {
+  expectClosed("sqrt(x) - 2");              // a root of what is below 0 is that of 0
+  expectClosed("x^0.3 - 1");                // the same
+  expectClosed("-(x*x)/x - 1");             // 0/0 in a plane
+  expectClosed("atan((x*x)/x) - 2");        // the same, of numbers that are all below 0
+  expectClosed("0*ln(x) - 1");              // 0 times infinity in half of space
+  expectClosed("sin(1/(x*y*z)) - 2");       // the sine of infinity in three planes
+  expectClosed("min(ln(x) - ln(x), 0)-1");  // infinity without itself
+  expectClosed("exp(900*x) - exp(901*x)");  // the same, by overflow
+  expectClosed("z - (x*x + y*y)/(x + y)");  // along a plane through voxels
 }
 
 /// Creases of max and min stay where they are: the box's edges, and the rims of a bore.
