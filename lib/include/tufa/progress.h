@@ -39,9 +39,9 @@ class RestEstimate {
 
 /// A function that is called at times during long work, on the calling thread only, never by two
 /// calls at once. It takes a ProgressState, or a stage and a fraction; see there. The fraction
-/// never falls in a call. If it returns false, the call throws Error with ErrorCode::Cancelled and
-/// frees everything it holds. It is the only way to stop a call: one inside a group of TBB's tasks
-/// goes on to its end when that group is cancelled.
+/// never falls in a call, and is 1 at the end of one that succeeds. If it returns false, the call
+/// throws Error with ErrorCode::Cancelled and frees everything it holds. It is the only way to stop
+/// a call: one inside a group of TBB's tasks goes on to its end when that group is cancelled.
 class Progress {
  public:
   /// None: nobody is asked.

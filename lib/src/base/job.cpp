@@ -36,7 +36,8 @@ void Job::beginStage(std::string name, double endFraction, Length length) {
 
 std::vector<StageTime> Job::finish() {
   closeStage();
-  stageBegin_ = stageEnd_;
+  // Stages that were not needed are done, too.
+  stageBegin_ = stageEnd_ = 1;
   length_ = Length::Known;
   report(1, 1);
   return std::exchange(times_, {});

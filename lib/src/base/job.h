@@ -36,7 +36,7 @@ class Job {
   /// Ends the stage before and begins one that reaches to `endFraction` of the whole call.
   void beginStage(std::string name, double endFraction, Length length = Length::Known);
 
-  /// Ends the last stage and returns the times of all.
+  /// Ends the last stage, tells that the whole call is done and returns the times of all stages.
   std::vector<StageTime> finish();
 
   /// Calls body(begin, end) over disjoint ranges that cover [0, count), in parallel, each of at

@@ -146,18 +146,17 @@ class Comparer {
     return check(mesh, options);
   }
 
-  Mesh meshBy(const std::string& name) {
-    const double end = begin_ + share_ * kMeshEnd;
+  Mesh meshBy(const std::string& name, double begin, double end) {
     if (name == kPeer || name == kAdaptivePeer) {
       Mesh mesh;
-      runPart(begin_, end, [&](base::Job& job) {
+      runPart(begin, end, [&](base::Job& job) {
         job.beginStage("volumeToMesh", 1);
         mesh = grid::volumeToMesh(finite_ ? *finite_ : grid_, iso_,
                                   name == kPeer ? 0 : kPeerAdaptivity);
       });
       return mesh;
     }
-    ExtractOptions options = extractOptions(begin_, end);
+    ExtractOptions options = extractOptions(begin, end);
     if (name == kUniform) options.contour.uniform = true;
     if (name == kOriginal) options.contour.ambiguity = Ambiguity::Original;
     options.mergeTolerance = name == kAdaptiveSquares ? options.contour.tolerance : 0;
@@ -170,6 +169,7 @@ class Comparer {
 
   MethodResult measured(const std::string& name) {
     using Clock = std::chrono::steady_clock;
+    const auto at = [&](double share) { return begin_ + share_ * share; };
     MethodResult result;
     result.name = name;
     for (int run = 0; run < options_.repeats; ++run) {
@@ -178,16 +178,16 @@ class Comparer {
       if (options_.memory && run == 0) memory = std::make_unique<base::PeakMemory>();
       const auto start = Clock::now();
       const std::clock_t processorStart = std::clock();
-      result.mesh = meshBy(name);
+      const double each = kMeshEnd / options_.repeats;
+      result.mesh = meshBy(name, at(each * run), at(each * (run + 1)));
       const double processor = static_cast<double>(std::clock() - processorStart) / CLOCKS_PER_SEC;
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       if (memory) result.extraBytes = memory->extraBytes();
       if (run == 0 || seconds < result.seconds) result.seconds = seconds;
       if (run == 0 || processor < result.cpuSeconds) result.cpuSeconds = processor;
     }
-    const auto at = [&](double share) { return begin_ + share_ * share; };
     result.check = checked(result.mesh, at(kMeshEnd), at(kCheckEnd), true);
-    measureDistance(result, at(kCheckEnd), at(kDistanceEnd));
+    measureDistance(result, at(kCheckEnd), at(options_.truth ? kDistanceEnd : 1));
     if (options_.truth) measureTruth(result, at(kDistanceEnd), at(1));
     if (!options_.keepMeshes) result.mesh = {};
     return result;

@@ -122,7 +122,8 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
     result = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
         interrupter, IndexSpaceMesh(mesh, options.voxelSize), *transform, halfWidth, halfWidth);
   });
-  if (interrupter.cancelled()) throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
+  if (interrupter.cancelled() || interrupter.wasInterrupted(100))
+    throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
   result->setGridClass(openvdb::GRID_LEVEL_SET);
   result->setName("surface");
   if (options.fog) base::runWithThreads(options.threads, [&] { voxelize_field::toFog(*result); });

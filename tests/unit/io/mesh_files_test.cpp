@@ -4,9 +4,12 @@
 #include <sys/stat.h>
 
 #include <tufa/io.h>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <string_view>
+#include <vector>
 
 #include "support/expect_error.h"
 #include "support/scratch_folder.h"
@@ -132,6 +135,43 @@ TEST_P(EveryFormat, LeavesNothingWhenCancelled) {
     write(makePyramid(), folder / (std::string("cancelled") + GetParam()), options);
   });
   EXPECT_EQ(folder.fileCount(), 0);
+}
+
+/// A flat square of quads, with normals where asked for.
+Mesh makeSquare(unsigned side, bool normals) {
+  Mesh mesh;
+  for (unsigned x = 0; x < side; ++x) {
+    for (unsigned y = 0; y < side; ++y) {
+      mesh.positions.emplace_back(x, y, 0);
+      if (normals) mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
+      if (x == 0 || y == 0) continue;
+      const VertexIndex here = x * side + y;
+      mesh.quads.emplace_back(here - side - 1, here - 1, here, here - side);
+    }
+  }
+  return mesh;
+}
+
+// It ended at 0.4 for .usda, at half for .stl and at three quarters for .ply.
+TEST(MeshFiles, ProgressRisesTo1) {
+  const ScratchFolder folder;
+  for (const std::string_view name : meshFormatNames()) {
+    const std::filesystem::path path = folder / std::string("m.").append(name);
+    if (!hasFormat(meshFormatOf(path))) continue;
+    for (const bool normals : {false, true}) {
+      std::vector<double> fractions;
+      WriteOptions options;
+      options.progress = [&](std::string_view, double fraction) {
+        fractions.push_back(fraction);
+        return true;
+      };
+      write(makeSquare(600, normals), path, options);
+      EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << name;
+      ASSERT_GE(fractions.size(), 2u) << name;
+      EXPECT_EQ(fractions.back(), 1) << name;
+      EXPECT_GT(fractions[fractions.size() - 2], 0.9) << name << normals;
+    }
+  }
 }
 
 TEST(MeshFiles, KeepQuadsWhereTheFormatHasThem) {

@@ -308,9 +308,15 @@ TEST(LodChain, LevelZeroIsTheMeshOfContour) {
 TEST(LodChain, StopsWhereTopologyAllowsNoCoarserMesh) {
   LodOptions options;
   options.tolerances = {0.1, 1000, 2000};
+  double last = 0;
+  options.contour.progress = [&](std::string_view, double fraction) {
+    last = fraction;
+    return true;
+  };
   const LodChain chain = buildLods(*shape(Shape::Sphere, 0.1), options);
   EXPECT_EQ(chain.levels.size(), 2u);
   EXPECT_NE(chain.stopped.find("level 2"), std::string::npos) << chain.stopped;
+  EXPECT_EQ(last, 1);
 }
 
 TEST(LodChain, IsEmptyWithoutASurface) {

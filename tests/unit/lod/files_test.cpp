@@ -159,13 +159,18 @@ TEST(LodFiles, CanBeCancelledWhileTheyAreWritten) {
   for (const char* name : {"one.usda", "many{}.obj"}) {
     std::size_t calls = 0;
     LodWriteOptions options;
-    options.progress = [&](std::string_view, double) { return ++calls > 0; };
+    double last = 0;
+    options.progress = [&](std::string_view, double fraction) {
+      last = fraction;
+      return ++calls > 0;
+    };
     const ScratchFolder whole;
     writeLods(chain, whole / name, options);
+    EXPECT_EQ(last, 1) << name;
     ASSERT_GT(calls, 4u) << name;
-    for (std::size_t last = 0; last < calls; ++last) {
+    for (std::size_t allowed = 0; allowed < calls; ++allowed) {
       const ScratchFolder folder;
-      std::size_t left = last;
+      std::size_t left = allowed;
       options.progress = [&](std::string_view, double) { return left-- > 0; };
       test::expectError(ErrorCode::Cancelled, "cancelled",
                         [&] { writeLods(chain, folder / name, options); });

@@ -119,6 +119,18 @@ TEST(Voxelize, CanBeCancelled) {
   expectError(ErrorCode::Cancelled, "cancelled", [&] { (void)voxelize(makeCube(), options); });
 }
 
+TEST(Voxelize, ProgressEndsAt1) {
+  double last = 0;
+  VoxelizeOptions options;
+  options.voxelSize = 0.02;
+  options.progress = [&](std::string_view, double fraction) {
+    last = fraction;
+    return true;
+  };
+  (void)voxelize(makeCube(), options);
+  EXPECT_EQ(last, 1);
+}
+
 /// One vertex far away took 2.3 GB.
 TEST(Voxelize, RefusesBandsOfTooManyVoxels) {
   Mesh mesh;

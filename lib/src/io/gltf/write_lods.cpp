@@ -149,6 +149,7 @@ class LodWriter {
   void writeNothing(const std::filesystem::path& path) {
     WriteOptions options;
     options.name = options_.name + "_LOD0";
+    options.progress = options_.progress;
     tufa::write(Mesh(), path, options);
     report_.files.push_back(path);
   }
@@ -202,10 +203,11 @@ class LodWriter {
       }
       job_.beginStage("writing", 1);
       std::size_t total = 0;
-      for (const MeshPart& part : parts) total += part.mesh->positions.size();
+      for (const MeshPart& part : parts) total += usdaItems(part);
       const Progress progress = writingProgress();
       MeshSink sink(file, total, 0, progress);
       writeUsdaLods(parts, {options_.name, options_.up, options_.scale}, sink);
+      sink.finish();
       file.commit();
     });
     job_.finish();

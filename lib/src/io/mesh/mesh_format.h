@@ -38,10 +38,15 @@ class MeshSink {
   /// Reports that `count` more positions, normals or faces are written. Throws Error(Cancelled).
   void advance(std::size_t count);
 
+  /// Reports that all is written, before the file takes its place. Throws Error(Cancelled).
+  void finish();
+
   /// Items to write between two calls of advance().
   static constexpr std::size_t kStride = 65536;
 
  private:
+  void report();
+
   OutputFile& file_;
   const Progress& progress_;
   double begin_ = 0;
@@ -91,6 +96,8 @@ void writeUsda(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink
 /// has3mf() says that there is no lib3mf.
 void write3mf(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink);
 [[nodiscard]] bool has3mf();
+/// The elements of arrays that a part has in .usda: what its writer tells MeshSink::advance().
+[[nodiscard]] std::size_t usdaItems(const MeshPart& part);
 /// As variants of one prim, the finest first.
 void writeUsdaLods(std::span<const MeshPart> levels, const FileFrame& frame, MeshSink& sink);
 

@@ -10,6 +10,7 @@
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "base/parallel.h"
+#include "base/part_of_progress.h"
 #include "base/require_mesh.h"
 #include "base/single_precision.h"
 #include "io/input_bytes.h"
@@ -59,6 +60,15 @@ MeshSink::MeshSink(OutputFile& file, std::size_t total, double begin, const Prog
 
 void MeshSink::advance(std::size_t count) {
   done_ = std::min(done_ + count, total_);
+  report();
+}
+
+void MeshSink::finish() {
+  done_ = total_;
+  report();
+}
+
+void MeshSink::report() {
   if (!progress_) return;
   const double share = static_cast<double>(done_) / static_cast<double>(total_);
   bool goesOn = true;
@@ -92,11 +102,11 @@ double splitNormals(std::span<MeshPart> parts, const WriteOptions& options) {
                    [&](const MeshPart& part) { return splits(part, options); })) {
     return 0;
   }
-  base::Job job(options.threads, options.progress);
+  base::Job job(options.threads, base::partOf(options.progress, 0, kShadingEnd));
   job.run([&] {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const auto done = static_cast<double>(i + 1) / static_cast<double>(parts.size());
-      job.beginStage("normals", kShadingEnd * done);
+      job.beginStage("normals", done);
       if (!splits(parts[i], options)) continue;
       parts[i].shaded = shading::splitAtCreases(*parts[i].mesh, options.creaseAngle, job);
     }
@@ -119,16 +129,22 @@ void requireFormat(MeshFormat format) {
               "this build of Tufa has no lib3mf, which writes .3mf; write .stl or another format");
 }
 
+/// What a format's writer tells MeshSink::advance() of a part.
+std::size_t itemsOf(const MeshPart& part, MeshFormat format) {
+  if (format == MeshFormat::Usda) return usdaItems(part);
+  const Mesh& mesh = *part.mesh;
+  const std::size_t faces = mesh.quads.size() + mesh.triangles.size();
+  if (format == MeshFormat::Stl) return faces;
+  if (hasNormalsAtCorners(format)) return mesh.positions.size() + mesh.normals.size() + faces;
+  return mesh.positions.size() + faces;
+}
+
 /// Writes to an open file. Returns what writeCompactGlb() reports.
 WriteReport writeTo(OutputFile& file, std::span<MeshPart> parts, MeshFormat format,
                     const WriteOptions& options) {
-  std::size_t total = 0;
-  for (const MeshPart& part : parts) {
-    const Mesh& mesh = *part.mesh;
-    total +=
-        mesh.positions.size() + mesh.normals.size() + mesh.quads.size() + mesh.triangles.size();
-  }
   const double begin = hasNormalsAtCorners(format) ? splitNormals(parts, options) : 0;
+  std::size_t total = 0;
+  for (const MeshPart& part : parts) total += itemsOf(part, format);
   const FileFrame frame{options.name, options.up, options.scale};
   MeshSink sink(file, total, begin, options.progress);
   WriteReport found;
@@ -159,6 +175,7 @@ WriteReport writeTo(OutputFile& file, std::span<MeshPart> parts, MeshFormat form
       write3mf(parts, frame, sink);
       break;
   }
+  sink.finish();
   file.commit();
   return found;
 }

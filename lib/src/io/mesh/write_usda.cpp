@@ -80,9 +80,9 @@ class Writer {
       if (i > 0) line_.text(", ");
       element(i, line_);
       line_.flush();
-      if (i % MeshSink::kStride == 0) sink_.advance(0);
+      if ((i + 1) % MeshSink::kStride == 0) sink_.advance(MeshSink::kStride);
     }
-    sink_.advance(0);
+    sink_.advance(count % MeshSink::kStride);
     std::string tail(1, ']');
     if (!metadata.empty()) tail.append(" (").append(metadata).append(1, ')');
     tail.append(1, '\n');
@@ -234,6 +234,17 @@ void writeHead(Writer& writer, const FileFrame& frame) {
 }
 
 }  // namespace
+
+std::size_t usdaItems(const MeshPart& part) {
+  const Mesh& mesh = *part.mesh;
+  const std::size_t points = (1 + mesh.attributes.size()) * mesh.positions.size();
+  if (part.shaded) {
+    const std::size_t corners = part.shaded->indices.size();
+    return corners / 3 + 2 * corners + points;
+  }
+  const std::size_t faces = mesh.quads.size() + mesh.triangles.size();
+  return 2 * faces + mesh.normals.size() + points;
+}
 
 void writeUsda(std::span<const MeshPart> parts, const FileFrame& frame, MeshSink& sink) {
   Writer writer(sink);
