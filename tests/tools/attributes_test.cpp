@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/points/PointDataGrid.h>
 
 #include <tufa/chunk_files.h>
 #include <tufa/io.h>
@@ -28,9 +29,9 @@ class AttributeOptions : public CommandTest {
     heat->setName("heat");
     const auto velocity = openvdb::Vec3SGrid::create({1, 2, 3});
     velocity->setName("vel");
-    const auto text = openvdb::MaskGrid::create();
-    text->setName("mask");
-    writeGrids({sphere, heat, velocity, text}, folder / "a.vdb");
+    const auto points = openvdb::points::PointDataGrid::create();
+    points->setName("points");
+    writeGrids({sphere, heat, velocity, points}, folder / "a.vdb");
   }
 };
 
@@ -121,7 +122,7 @@ TEST_F(AttributeOptions, SayWhatIsWrong) {
   expectFailure("mesh a.vdb -o m.ply --attribute heat --attribute heat=value", 2, "twice");
   expectFailure("mesh a.vdb -o m.ply --attribute heat=colour", 2, "vectors");
   expectFailure("mesh a.vdb -o m.ply --attribute none", 3, "no grid \"none\"");
-  expectFailure("mesh a.vdb -o m.ply --attribute mask", 3, "\"mask\"");
+  expectFailure("mesh a.vdb -o m.ply --attribute points", 3, "\"points\"");
 }
 
 }  // namespace

@@ -22,8 +22,9 @@ struct AttributeOptions {
 /// Samples a grid at the vertices of a mesh, trilinearly between its voxels, at their places in
 /// world space: one float each of a grid of numbers or booleans, three of a grid of vectors, as
 /// they are in the grid but for AttributeOptions::factor. The components of a staggered grid are
-/// those at the faces of voxels. Values that are not finite become 0. Add the result to
-/// Mesh::attributes to have it written.
+/// those at the faces of voxels. Values that are not finite become 0, finite ones beyond the range
+/// of float the largest float. Masks count as booleans. Add the result to Mesh::attributes to have
+/// it written.
 ///
 /// The grid needs neither the lattice nor the transform of the one that was meshed. Throws Error:
 /// UnsupportedGrid (values of another type, a transform that is not linear), InvalidArgument (no

@@ -2,9 +2,11 @@
 #include <tufa/attributes.h>
 
 #include <tufa/error.h>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "base/job.h"
 #include "base/known_enum.h"
@@ -18,7 +20,8 @@ using openvdb::Vec3d;
 constexpr std::size_t kGrain = 4096;
 
 using SampledTypes =
-    openvdb::NumericGridTypes::Append<openvdb::Vec3GridTypes>::Append<openvdb::BoolGrid>;
+    openvdb::NumericGridTypes::Append<openvdb::Vec3GridTypes>::Append<openvdb::BoolGrid,
+                                                                      openvdb::MaskGrid>;
 
 template <class Value>
 constexpr int widthOf() {
@@ -66,6 +69,13 @@ Vec3d nearestPlace(const Vec3d& place) {
   return nearest;
 }
 
+/// `factor` times a value, within the range of float; 0 where the value is not finite.
+float scaledToFloat(double value, double factor) {
+  if (!std::isfinite(value)) return 0;
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(factor * value, -kLargest, kLargest));
+}
+
 /// The values at a range of positions.
 template <class GridT>
 void sampleRange(const GridT& grid, std::span<const Position> positions, double factor,
@@ -79,8 +89,8 @@ void sampleRange(const GridT& grid, std::span<const Position> positions, double 
     for (int i = 0; i < attribute.width; ++i) {
       Vec3d at = place;
       if (staggered && attribute.width == 3) at[i] += 0.5;
-      const auto value = static_cast<float>(factor * sampleComponent(accessor, at, i));
-      attribute.values[v * width + static_cast<std::size_t>(i)] = std::isfinite(value) ? value : 0;
+      attribute.values[v * width + static_cast<std::size_t>(i)] =
+          scaledToFloat(sampleComponent(accessor, at, i), factor);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/points/PointDataGrid.h>
 #include <tufa/attributes.h>
 
 #include <tufa/contour.h>
@@ -131,6 +132,33 @@ TEST(Attributes, ValuesThatAreNotFiniteBecome0) {
   EXPECT_EQ(sampleAttribute(mesh, *grid).values, (std::vector<float>{0, 2, 2}));
 }
 
+// They became 0, as what is not finite does.
+TEST(Attributes, ValuesBeyondFloatBecomeTheLargest) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  const auto grid = openvdb::DoubleGrid::create(2);
+  grid->setName("f");
+  grid->getAccessor().setValue({1, 0, 0}, 1e300);
+  grid->getAccessor().setValue({2, 0, 0}, -1e300);
+  grid->getAccessor().setValue({3, 0, 0}, std::numeric_limits<double>::infinity());
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  EXPECT_EQ(sampleAttribute(mesh, *grid).values, (std::vector<float>{2, kLargest, -kLargest, 0}));
+  AttributeOptions options;
+  options.factor = -1e300;
+  EXPECT_EQ(sampleAttribute(mesh, *grid, options).values,
+            (std::vector<float>{-kLargest, -kLargest, kLargest, 0}));
+}
+
+TEST(Attributes, MasksAreSampledAsBooleans) {
+  Mesh mesh;
+  mesh.positions = {{0.25, 0, 0}, {1.5, 0, 0}, {20, 20, 20}};
+  const auto mask = openvdb::MaskGrid::create();
+  mask->setName("mask");
+  mask->getAccessor().setValueOn({1, 0, 0});
+  mask->fill(openvdb::CoordBBox({16, 16, 16}, {31, 31, 31}), true);
+  EXPECT_EQ(sampleAttribute(mesh, *mask).values, (std::vector<float>{0.25, 0.5, 1}));
+}
+
 TEST(Attributes, TheNumberOfThreadsDoesNotMatter) {
   const Mesh mesh = contour(*makeSphere());
   const auto grid =
@@ -151,10 +179,10 @@ TEST(Attributes, RefuseWhatCannotBeSampled) {
   colour.role = AttributeRole::Colour;
   expectError(ErrorCode::InvalidArgument, "colour",
               [&] { static_cast<void>(sampleAttribute(mesh, *grid, colour)); });
-  const auto text = openvdb::MaskGrid::create();
-  text->setName("mask");
-  expectError(ErrorCode::UnsupportedGrid, "mask",
-              [&] { static_cast<void>(sampleAttribute(mesh, *text)); });
+  const auto points = openvdb::points::PointDataGrid::create();
+  points->setName("points");
+  expectError(ErrorCode::UnsupportedGrid, "numbers, booleans or vectors",
+              [&] { static_cast<void>(sampleAttribute(mesh, *points)); });
 }
 
 /// A sphere with a temperature, a velocity and a colour.
