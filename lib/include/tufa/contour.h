@@ -87,7 +87,8 @@ struct ContourOptions {
   /// Fill Mesh::cells.
   bool keepCells = false;
   /// Multiplies the tolerance in space: its value at the nearest voxel to the surface, in world
-  /// space. Values of 0 and less keep the surface at the finest level. Null: 1 everywhere.
+  /// space. Values of 0 and less, and NaN, keep the surface at the finest level; infinity stands
+  /// for the largest float. Null: 1 everywhere.
   std::shared_ptr<const openvdb::GridBase> toleranceGrid;
   /// Most faces of voxels, in estimate, on the surface between tiles, of which a few bytes make
   /// millions: more are refused as LimitExceeded.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "grid/vdb_coord.h"
 
@@ -37,7 +38,10 @@ std::function<double(const Vec3&)> toleranceScale(
         std::abs(place[0]) < kMost && std::abs(place[1]) < kMost && std::abs(place[2]) < kMost;
     const float value =
         isOnLattice ? grid->tree().getValue(openvdb::Coord::round(place)) : grid->background();
-    return std::isfinite(value) ? std::max(0.0, static_cast<double>(value)) : 0.0;
+    if (std::isnan(value)) return 0.0;
+    // Products with infinity might be no numbers.
+    constexpr float kLargest = std::numeric_limits<float>::max();
+    return static_cast<double>(std::clamp(value, 0.0F, kLargest));
   };
 }
 

@@ -7,6 +7,7 @@
 #include <tufa/lod.h>
 #include <tufa/shapes.h>
 #include <algorithm>
+#include <limits>
 
 #include "support/mesh_oracle.h"
 
@@ -108,6 +109,24 @@ TEST(ToleranceGrids, MayHaveAnyValues) {
     EXPECT_TRUE(topology.manifold() && topology.closed()) << most << " " << topology;
     EXPECT_EQ(report.intersectionsLeft, 0U) << most;
   }
+}
+
+// Infinity was taken for the finest level.
+TEST(ToleranceGrids, TakeInfinityForTheLargestValue) {
+  const auto grid = bracket();
+  const auto meshWith = [&](float value) {
+    ContourOptions options;
+    options.toleranceGrid =
+        scalesFor(*grid, [&](const Coord& at) { return at[0] < 0 ? 1 : value; });
+    return contour(*grid, options);
+  };
+  using Limits = std::numeric_limits<float>;
+  const Mesh coarse = meshWith(Limits::infinity());
+  const Mesh fine = meshWith(Limits::quiet_NaN());
+  EXPECT_TRUE(test::sameBytes(coarse, meshWith(Limits::max())));
+  EXPECT_TRUE(test::sameBytes(fine, meshWith(0)));
+  EXPECT_TRUE(test::sameBytes(fine, meshWith(-Limits::infinity())));
+  EXPECT_LT(coarse.triangleCount(), fine.triangleCount() / 2);
 }
 
 TEST(ToleranceGrids, HoldForBudgets) {

@@ -29,11 +29,13 @@ TEST(ToleranceScale, IsTheNearestValue) {
 TEST(ToleranceScale, IsZeroWhereTheValueSaysNothing) {
   const auto scales = FloatGrid::create(1);
   const float values[] = {-2, std::numeric_limits<float>::quiet_NaN(),
-                          std::numeric_limits<float>::infinity()};
+                          -std::numeric_limits<float>::infinity()};
   for (int i = 0; i < 3; ++i) scales->tree().setValue(Coord(i, 0, 0), values[i]);
   const auto scale = toleranceScale(scales, kIdentity);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(scale(Vec3(i, 0, 0)), 0) << values[i];
   EXPECT_EQ(scale(Vec3(3, 0, 0)), 1);
+  scales->tree().setValue(Coord(3, 0, 0), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(scale(Vec3(3, 0, 0)), double{std::numeric_limits<float>::max()});
 }
 
 TEST(ToleranceScale, LooksAtTheSamePlaceOfTheWorld) {
