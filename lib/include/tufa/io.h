@@ -93,8 +93,8 @@ struct NamedMesh {
 /// written to as it is, as .ply if it has no ending.
 ///
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending, an option out of its range),
-/// LimitExceeded (more than the format can hold; an .stl whose single precision turns triangles
-/// over), Cancelled.
+/// LimitExceeded (more than the format can hold; positions that no float is near, but for .ply,
+/// .obj and .off; an .stl whose single precision turns triangles over), Cancelled.
 TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options = {}, WriteReport* report = nullptr);
 

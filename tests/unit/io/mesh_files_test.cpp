@@ -211,6 +211,25 @@ TEST(MeshFiles, StlIsRefusedWhereSinglePrecisionMovesFaces) {
   EXPECT_EQ(folder.fileCount(), 1);
 }
 
+// .glb had null for the bounds of its positions, .usda inf.
+TEST(MeshFiles, RefusePositionsThatNoFloatIsNear) {
+  const ScratchFolder folder;
+  for (const double size : {1e39, 1e308}) {
+    Mesh mesh = makePyramid();
+    for (Position& p : mesh.positions) p = {p.x * size, p.y * size, p.z * size};
+    for (const char* name : {"m.glb", "m.usda", "m.stl"}) {
+      expectError(ErrorCode::LimitExceeded, "single precision",
+                  [&] { write(mesh, folder / name); });
+    }
+    EXPECT_EQ(folder.fileCount(), 0);
+    for (const char* name : {"m.ply", "m.obj", "m.off"}) {
+      write(mesh, folder / name);
+      EXPECT_EQ(readMesh(folder / name).positions, mesh.positions) << name;
+      std::filesystem::remove(folder / name);
+    }
+  }
+}
+
 TEST(MeshFiles, AreReadFromFormatsThatAreRead) {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder / "d.ply");

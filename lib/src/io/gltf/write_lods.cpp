@@ -193,6 +193,7 @@ class LodWriter {
     job_.run([&] {
       for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
         const Mesh& mesh = chain_.levels[level].mesh;
+        requireFloatRange(mesh);
         requireSoundAttributes(mesh.attributes, mesh.positions.size(), false);
         job_.beginStage("encoding", 0.5 * shareUpTo(level + 1));
         parts.push_back({&mesh, options_.name, {}});
@@ -226,6 +227,7 @@ class LodWriter {
   void addLevel(LodDocument& document, std::size_t level) {
     const Mesh& mesh = chain_.levels[level].mesh;
     job_.beginStage("encoding", shareUpTo(level + 1));
+    requireFloatRange(mesh);
     requireSoundAttributes(mesh.attributes, mesh.positions.size(), true);
     if (mesh.triangleCount() == 0) {
       report_.vertices.push_back(0);

@@ -9,6 +9,7 @@
 
 #include "base/job.h"
 #include "base/known_enum.h"
+#include "base/number_text.h"
 #include "base/parallel.h"
 #include "base/part_of_progress.h"
 #include "base/require_mesh.h"
@@ -49,6 +50,20 @@ bool needsDoublePrecision(const Mesh& mesh) {
                       [](const Position& p) { return p == base::toSingle(p); });
 }
 
+void requireFloatRange(const Mesh& mesh) {
+  // Of half the range, so that differences are in it.
+  constexpr double kFarthest = std::numeric_limits<float>::max() / 2;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Position& p = mesh.positions[v];
+    const double farthest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    if (farthest <= kFarthest) continue;
+    throw Error(ErrorCode::LimitExceeded,
+                "vertex " + std::to_string(v) + " lies " + base::numberText(farthest) +
+                    " from the origin, farther than single precision reaches; write .ply, .obj or "
+                    ".off, which have double precision");
+  }
+}
+
 void requireSoundFrame(const FileFrame& frame) {
   base::requireKnown(frame.up, UpAxis::Z, "the axis that points up");
   if (frame.scale > 0 && std::isfinite(frame.scale)) return;
@@ -81,10 +96,16 @@ namespace {
 /// The share of a call that splitting at creases takes; the rest goes into bytes.
 constexpr double kShadingEnd = 0.4;
 
+/// .3mf has bounds of its own.
+bool hasFloatsOnly(MeshFormat format) {
+  return format == MeshFormat::Stl || format == MeshFormat::Glb || format == MeshFormat::Usda;
+}
+
 void requireSound(const MeshPart& part, MeshFormat format) {
   const Mesh& mesh = *part.mesh;
   base::requireFaces(mesh);
   base::requireFinite(mesh);
+  if (hasFloatsOnly(format)) requireFloatRange(mesh);
   requireSoundAttributes(mesh.attributes, mesh.positions.size(), format == MeshFormat::Glb);
   if (mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) return;
   throw Error(ErrorCode::InvalidArgument, "the mesh has " + std::to_string(mesh.normals.size()) +
