@@ -79,12 +79,13 @@ class VdbField final : public TrilinearField {
 
   [[nodiscard]] std::optional<Vec3> project(const Vec3& start) override {
     if (!isWithinLattice(start)) return std::nullopt;
+    const double tolerance = toleranceAt(start);
     Vec3 point = start;
     Sample sample = at(point);
     for (int step = 0; step < kMostSteps; ++step) {
       if (!samples_.isData) return std::nullopt;
       const double slope = sample.slope();
-      if (std::abs(sample.value) <= kTolerance * slope) {
+      if (std::abs(sample.value) <= tolerance * slope) {
         // On a plateau at the isovalue every point is a zero and none is the surface.
         if (slope == 0) return std::nullopt;
         return point;
@@ -95,7 +96,7 @@ class VdbField final : public TrilinearField {
       if ((next - start).length() > kReach) return std::nullopt;
       const Sample ahead = at(next);
       if (std::signbit(ahead.value) != std::signbit(sample.value)) {
-        return rootBetween(point, sample.value, next, ahead.value);
+        return rootBetween(point, sample.value, next, ahead.value, tolerance);
       }
       point = next;
       sample = ahead;
@@ -118,17 +119,24 @@ class VdbField final : public TrilinearField {
 
   static constexpr int kMostSteps = 20;
   static constexpr double kReach = 4;  ///< voxels; farther away the search over samples is better
-  static constexpr double kTolerance = 1e-8;  ///< voxels; float samples carry less
+
+  /// How near to the surface a point must be, in voxels. Float samples carry no more than the
+  /// first; far from the origin there is no double that near.
+  [[nodiscard]] static double toleranceAt(const Vec3& point) {
+    constexpr double kLeast = 1e-8;
+    constexpr double kRoundings = 8 * std::numeric_limits<double>::epsilon();
+    return std::max(kLeast, kRoundings * point.length());
+  }
 
   /// A zero on a segment whose ends have different signs: the field is continuous, so the Illinois
   /// variant of false position cannot miss, even where the gradient jumps between cells.
-  std::optional<Vec3> rootBetween(Vec3 a, double valueA, Vec3 b, double valueB) {
+  std::optional<Vec3> rootBetween(Vec3 a, double valueA, Vec3 b, double valueB, double tolerance) {
     for (int step = 0; step < 60; ++step) {
       const Vec3 middle = a + (b - a) * (valueA / (valueA - valueB));
       const Sample sample = at(middle);
       if (!samples_.isData || !std::isfinite(sample.value)) return std::nullopt;
-      if (std::abs(sample.value) <= kTolerance * sample.slope() ||
-          (b - a).squaredLength() < kTolerance * kTolerance) {
+      if (std::abs(sample.value) <= tolerance * sample.slope() ||
+          (b - a).squaredLength() < tolerance * tolerance) {
         return middle;
       }
       if (std::signbit(sample.value) == std::signbit(valueB)) {

@@ -61,6 +61,28 @@ TEST(CheckDistance, SamplesOutsideTheBandAreMeasuredToo) {
   }
 }
 
+// Doubles are 1.5e-8 apart there, and Newton steps were to end nearer to the surface than that: the
+// distances were those to samples of it, up to half a voxel.
+TEST(CheckDistance, HoldsFarFromTheOrigin) {
+  const auto near = sphereGrid();
+  constexpr int kAway = 100'000'000;
+  const auto far = openvdb::FloatGrid::create(near->background());
+  far->setGridClass(openvdb::GRID_LEVEL_SET);
+  auto accessor = far->getAccessor();
+  for (auto voxel = near->cbeginValueOn(); voxel; ++voxel) {
+    accessor.setValue(voxel.getCoord().offsetBy(kAway, -kAway, kAway), *voxel);
+  }
+  for (const double offset : {0.0, 0.2}) {
+    Mesh mesh = test::sphere(kRadius + offset, 5);
+    const DistanceReport here = checkAgainst(mesh, *near);
+    for (Position& p : mesh.positions) p = {p.x + kAway, p.y - kAway, p.z + kAway};
+    const DistanceReport there = checkAgainst(mesh, *far);
+    EXPECT_NEAR(there.meshToSurface.largest, here.meshToSurface.largest, 1e-5);
+    EXPECT_NEAR(there.meshToSurface.mean, here.meshToSurface.mean, 1e-5);
+    EXPECT_NEAR(there.surfaceToMesh.largest, here.surfaceToMesh.largest, 1e-5);
+  }
+}
+
 TEST(CheckDistance, VoxelSizeScalesOut) {
   const double voxelSize = 1e-3;
   const DistanceReport report =
