@@ -2,9 +2,26 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <string_view>
+#include <utility>
+
 #include "commands.h"
 
 namespace tufa::tools {
+namespace {
+
+using Words = std::pair<std::string_view, std::string_view>;
+
+constexpr std::array kOptionsOfNames = {
+    Words{"VoxelizeOptions::bandVoxels", "--band-voxels"},
+    Words{"ContourOptions::tileFaces", "--tile-faces"},
+    Words{"implicit::Field::extent()", "--bounds"},
+    Words{"Method::MarchingCubes", "--method mc"},
+    Words{"NonFinite::Outside", "--nan outside"},
+};
+
+}  // namespace
 
 int exitCodeOf(const Error& error) {
   switch (error.code()) {
@@ -15,6 +32,15 @@ int exitCodeOf(const Error& error) {
     default:
       return kUnusableFile;
   }
+}
+
+std::string messageOf(const Error& error) {
+  std::string message = error.what();
+  for (const auto& [name, option] : kOptionsOfNames) {
+    const std::size_t at = message.find(name);
+    if (at != std::string::npos) message.replace(at, name.size(), option);
+  }
+  return message;
 }
 
 std::string nameOf(ErrorCode code) {

@@ -10,6 +10,9 @@ namespace tufa::tools {
 /// The exit code for an error.
 [[nodiscard]] int exitCodeOf(const Error& error);
 
+/// What an error says, with options of the command where the library names its own.
+[[nodiscard]] std::string messageOf(const Error& error);
+
 /// The name of an error's code, for programs.
 [[nodiscard]] std::string nameOf(ErrorCode code);
 

@@ -20,9 +20,9 @@ void FileList::forEach(const std::function<int(const std::string&)>& work) {
       exitCode_ = std::max(exitCode_, work(file));
     } catch (const Error& error) {
       if (files_.size() == 1 || error.code() == ErrorCode::Cancelled) throw;
-      printNote(error.what());
+      printNote(messageOf(error));
       Json object = {{"file", file}};
-      object["error"] = errorToJson(nameOf(error.code()), error.what());
+      object["error"] = errorToJson(nameOf(error.code()), messageOf(error));
       add(std::move(object));
       exitCode_ = std::max(exitCode_, exitCodeOf(error));
       unreadable_ = unreadable_ || error.code() == ErrorCode::UnreadableFile;

@@ -47,7 +47,7 @@ int runGuarded(const Command& command, const Failures& failures) {
     return command();
   } catch (const tufa::Error& error) {
     const bool cancelled = error.code() == tufa::ErrorCode::Cancelled;
-    failures.tell(nameOf(error.code()), cancelled ? "interrupted" : error.what());
+    failures.tell(nameOf(error.code()), cancelled ? "interrupted" : messageOf(error));
     if (error.code() == tufa::ErrorCode::UnreadableFile) endAtOnce(exitCodeOf(error));
     return exitCodeOf(error);
   } catch (const std::bad_alloc&) {

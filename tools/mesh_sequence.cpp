@@ -185,7 +185,7 @@ std::string meshFrame(const Frame& frame) {
     }
     json = toJson(run, frame.arguments);
   } catch (const Error& error) {
-    json["error"] = errorToJson(nameOf(error.code()), error.what());
+    json["error"] = errorToJson(nameOf(error.code()), messageOf(error));
   } catch (const std::bad_alloc&) {
     json["error"] = errorToJson("out_of_memory", "out of memory");
   }

@@ -19,7 +19,7 @@ inline void requireClosedRule(Ambiguity rule) {
   if (rule != Ambiguity::Original) return;
   throw Error(ErrorCode::InvalidArgument,
               "the rule \"original\" for ambiguous faces may leave holes: only marching cubes "
-              "(--method mc) take it, to show them; choose another");
+              "(Method::MarchingCubes) take it, to show them; choose another");
 }
 
 /// Runs the work of one public call: work(report, job) under a job with the options' threads and

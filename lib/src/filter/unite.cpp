@@ -102,7 +102,7 @@ void requireRoom(const GridBase& grid, const Target& target, double mostVoxels) 
     throw Error(ErrorCode::LimitExceeded, "the union would sample grid \"" + grid.getName() +
                                               "\" in about " + base::numberText(voxels) +
                                               " voxels, more than " + base::numberText(mostVoxels) +
-                                              "; --resample the finest grid first");
+                                              "; resample the finest grid first");
   }
   constexpr double kFarthest = 1 << 30;  // leaves room for the coordinates of nodes
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();

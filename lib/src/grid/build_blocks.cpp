@@ -57,7 +57,7 @@ std::vector<Cube> collectTasks(const BlockSource& source) {
                   "the surface may pass through more than " + std::to_string(source.mostCubes) +
                       " cubes of " + std::to_string(kTaskSide) +
                       " voxels a side; take larger voxels or smaller bounds, or raise the limit "
-                      "(--band-voxels)");
+                      "(VoxelizeOptions::bandVoxels)");
     }
     tasks.push_back(cube);
   };

@@ -66,7 +66,7 @@ void refuseNonFinite(std::size_t count, const Coord& first) {
                   (count == 1 ? "value" : "values") + ", the first at index (" +
                   std::to_string(first[0]) + ", " + std::to_string(first[1]) + ", " +
                   std::to_string(first[2]) +
-                  "); repair the grid or treat them as outside (--nan outside)");
+                  "); repair the grid or treat them as outside (NonFinite::Outside)");
 }
 
 void requireFiniteBackground(double background) {

@@ -72,12 +72,12 @@ void requireFewTileFaces(const Tree& tree, const IsoChoice& iso, std::uint64_t m
                          const std::string& name, base::Job& job) {
   const std::uint64_t faces = tree.tileSurface(iso, job);
   if (faces <= most) return;
-  throw Error(ErrorCode::LimitExceeded,
-              "grid \"" + name + "\" has about " + std::to_string(faces) +
-                  " faces of voxels on its surface between tiles, more than " +
-                  std::to_string(most) +
-                  "; resample it, or raise the limit (--tile-faces) if there is memory for " +
-                  std::to_string(faces / 5'000'000 + 1) + " GB");
+  throw Error(
+      ErrorCode::LimitExceeded,
+      "grid \"" + name + "\" has about " + std::to_string(faces) +
+          " faces of voxels on its surface between tiles, more than " + std::to_string(most) +
+          "; resample it, or raise the limit (ContourOptions::tileFaces) if there is memory for " +
+          std::to_string(faces / 5'000'000 + 1) + " GB");
 }
 
 // A grid that is moved by whole blocks keeps its surface in the same place beside this.

@@ -202,8 +202,9 @@ std::shared_ptr<const RaySurface> makeRaySurface(std::shared_ptr<const implicit:
   if (!field) throw Error(ErrorCode::InvalidArgument, "there is no field to cast rays at");
   const implicit::Box extent = field->extent();
   if (!implicit::isFinite(extent)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "the solid may go on for ever; give bounds that it is cut by (--bounds)");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "the solid may go on for ever; give bounds that it is cut by (implicit::Field::extent())");
   }
   // Beyond it all is outside; where it is closed by bounds, the surface lies in its sides.
   constexpr double kMargin = 1e-4;

@@ -97,7 +97,7 @@ void requireUsableBand(const Mesh& mesh, const VoxelizeOptions& options) {
               "the band around the mesh has about " +
                   base::roughNumberAbove(voxels, options.bandVoxels) + " voxels, more than " +
                   base::numberText(options.bandVoxels) +
-                  "; take larger voxels, or raise the limit (--band-voxels)");
+                  "; take larger voxels, or raise the limit (VoxelizeOptions::bandVoxels)");
 }
 
 }  // namespace

@@ -242,8 +242,9 @@ void activateCrossings(openvdb::FloatGrid& grid, base::Job& job) {
 double reachOf(const Field& field) {
   const Box box = field.extent();
   if (!implicit::isFinite(box)) {
-    throw Error(ErrorCode::InvalidArgument,
-                "the solid may go on for ever; give bounds that it is cut by (--bounds)");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "the solid may go on for ever; give bounds that it is cut by (implicit::Field::extent())");
   }
   double reach = 0;
   for (const Position& corner : {box.least, box.greatest}) {
@@ -278,10 +279,10 @@ openvdb::FloatGrid::Ptr voxelize(const implicit::Field& field, const VoxelizeOpt
   job.beginStage("sampling", 1);
   grid::buildBlocks(result->tree(), *source, job);
   if (sampler->overLimit()) {
-    throw Error(ErrorCode::LimitExceeded,
-                "the band around the surface has more than " +
-                    base::numberText(options.bandVoxels) +
-                    " voxels; take larger voxels, or raise the limit (--band-voxels)");
+    throw Error(
+        ErrorCode::LimitExceeded,
+        "the band around the surface has more than " + base::numberText(options.bandVoxels) +
+            " voxels; take larger voxels, or raise the limit (VoxelizeOptions::bandVoxels)");
   }
   // Leaves already hold the right signs; only the tiles between them are still all outside.
   job.run([&] { openvdb::tools::signedFloodFill(result->tree(), true, 1, 1); });

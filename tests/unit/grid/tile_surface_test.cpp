@@ -87,7 +87,7 @@ TEST(TileSurface, AboveTheLimitIsRefused) {
       options.uniform = uniform;
       test::expectError(ErrorCode::LimitExceeded, "about " + faces + " faces of voxels",
                         [&] { (void)contour(*grid, options); });
-      test::expectError(ErrorCode::LimitExceeded, "--tile-faces",
+      test::expectError(ErrorCode::LimitExceeded, "ContourOptions::tileFaces",
                         [&] { (void)contour(*grid, options); });
     }
   }

@@ -364,8 +364,8 @@ TEST(VoxelizeField, RefusesWhatItCannotDo) {
   refused(*sphere, voxelsOf(1e-9), ErrorCode::InvalidArgument, "voxel size");
   VoxelizeOptions small = voxelsOf(0.01);
   small.bandVoxels = 100000;
-  refused(*sphere, small, ErrorCode::LimitExceeded, "--band-voxels");
-  refused(*sphere, voxelsOf(2e-5), ErrorCode::LimitExceeded, "--band-voxels");
+  refused(*sphere, small, ErrorCode::LimitExceeded, "VoxelizeOptions::bandVoxels");
+  refused(*sphere, voxelsOf(2e-5), ErrorCode::LimitExceeded, "VoxelizeOptions::bandVoxels");
   VoxelizeOptions stopped = voxelsOf(0.01);
   stopped.progress = [](std::string_view, double) { return false; };
   refused(*sphere, stopped, ErrorCode::Cancelled, "cancelled");

@@ -140,14 +140,16 @@ TEST(Voxelize, RefusesBandsOfTooManyVoxels) {
   options.voxelSize = 0.1;
   EXPECT_GT(voxelize(mesh, options)->activeVoxelCount(), 0U);
   mesh.positions[3] = {0, 0, 1e6};
-  expectError(ErrorCode::LimitExceeded, "--band-voxels", [&] { (void)voxelize(mesh, options); });
+  expectError(ErrorCode::LimitExceeded, "VoxelizeOptions::bandVoxels",
+              [&] { (void)voxelize(mesh, options); });
   // A needle of two million voxels has few of them for its blocks.
   mesh.positions[3] = {0, 0, 2e5};
   expectError(ErrorCode::LimitExceeded, "more than 134217728; ",
               [&] { (void)voxelize(mesh, options); });
   mesh.positions[3] = {0, 0, 1};
   options.halfWidth = 1000;
-  expectError(ErrorCode::LimitExceeded, "--band-voxels", [&] { (void)voxelize(mesh, options); });
+  expectError(ErrorCode::LimitExceeded, "VoxelizeOptions::bandVoxels",
+              [&] { (void)voxelize(mesh, options); });
   options.halfWidth = 3;
   options.bandVoxels = 100;
   expectError(ErrorCode::LimitExceeded, "more than 100", [&] { (void)voxelize(mesh, options); });
