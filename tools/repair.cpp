@@ -31,11 +31,11 @@ struct RepairArguments {
 };
 
 Json toJson(const RepairReport& report) {
-  return {{"merged_vertices", report.mergedVertices}, {"degenerate_faces", report.degenerateFaces},
-          {"duplicate_faces", report.duplicateFaces}, {"split_vertices", report.splitVertices},
-          {"filled_holes", report.filledHoles},       {"dropped_parts", report.droppedParts},
-          {"kept_input", report.keptInput},           {"before", tools::toJson(report.before)},
-          {"after", tools::toJson(report.after)}};
+  return {{"merged_vertices", report.mergedVertices},   {"unused_vertices", report.unusedVertices},
+          {"degenerate_faces", report.degenerateFaces}, {"duplicate_faces", report.duplicateFaces},
+          {"split_vertices", report.splitVertices},     {"filled_holes", report.filledHoles},
+          {"dropped_parts", report.droppedParts},       {"kept_input", report.keptInput},
+          {"before", tools::toJson(report.before)},     {"after", tools::toJson(report.after)}};
 }
 
 std::string describe(const RepairReport& report) {
@@ -44,6 +44,7 @@ std::string describe(const RepairReport& report) {
            tools::describe(report.after);
   }
   return "merged " + formatCount(report.mergedVertices) + " vertices, dropped " +
+         formatCount(report.unusedVertices) + " unused ones, " +
          formatCount(report.degenerateFaces) + " degenerate and " +
          formatCount(report.duplicateFaces) + " duplicate faces and " +
          formatCount(report.droppedParts) + " parts, split " + formatCount(report.splitVertices) +

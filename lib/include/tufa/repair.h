@@ -23,7 +23,8 @@ struct RepairOptions {
 
 /// What repair() did.
 struct RepairReport {
-  std::size_t mergedVertices = 0;   ///< made one with another, and vertices of no face
+  std::size_t mergedVertices = 0;   ///< made one with another
+  std::size_t unusedVertices = 0;   ///< dropped: of no face, or of none that is left
   std::size_t degenerateFaces = 0;  ///< dropped: an invalid or a repeated index, or no area
   std::size_t duplicateFaces = 0;   ///< dropped: the vertices of another face
   std::size_t splitVertices = 0;    ///< copies made where edges or vertices were not manifold

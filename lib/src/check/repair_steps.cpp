@@ -83,6 +83,10 @@ void mergeNear(Soup& soup, double distance) {
   }
 }
 
+void dropUnused(Soup& soup, RepairReport& report) {
+  report.unusedVertices += pmp::remove_isolated_points_in_polygon_soup(soup.points, soup.polygons);
+}
+
 /// Drops faces with a repeated vertex or three vertices on a line.
 void dropDegenerate(Soup& soup, RepairReport& report) {
   const auto isDegenerate = [&](const Polygon& face) {
@@ -163,15 +167,14 @@ Mesh runRepairSteps(const Mesh& mesh, const RepairOptions& options, RepairReport
                     const std::function<void(double)>& step) {
   step(0);
   Soup soup = soupOf(mesh, report);
+  dropUnused(soup, report);
   if (options.mergeDistance > 0) mergeNear(soup, options.mergeDistance);
-  const std::size_t vertices = soup.points.size();
-  pmp::merge_duplicate_points_in_polygon_soup(soup.points, soup.polygons);
+  report.mergedVertices = pmp::merge_duplicate_points_in_polygon_soup(soup.points, soup.polygons);
   step(0.2);
   dropDegenerate(soup, report);
   report.duplicateFaces = pmp::merge_duplicate_polygons_in_polygon_soup(
       soup.points, soup.polygons, CGAL::parameters::erase_all_duplicates(false));
-  pmp::remove_isolated_points_in_polygon_soup(soup.points, soup.polygons);
-  report.mergedVertices = vertices - soup.points.size();
+  dropUnused(soup, report);
   if (soup.polygons.empty()) return {};  // CGAL's functions want one
   step(0.4);
   const std::size_t whole = soup.points.size();

@@ -57,6 +57,22 @@ TEST(RepairSoup, MergesVerticesAtOnePlaceOrNear) {
   EXPECT_NEAR(report.after.volume, 6, 0.05);
 }
 
+// Vertices of no face counted as merged.
+TEST(RepairSoup, CountsUnusedVerticesByThemselves) {
+  Mesh mesh = cube();
+  mesh.positions.insert(mesh.positions.begin(), 5, Position(7, 7, 7));
+  for (Quad& q : mesh.quads) {
+    for (VertexIndex& v : q.vertices) v += 5;
+  }
+  for (Triangle& t : mesh.triangles) {
+    for (VertexIndex& v : t.vertices) v += 5;
+  }
+  RepairReport report;
+  EXPECT_EQ(repair(mesh, {}, &report).positions.size(), 8U);
+  EXPECT_EQ(report.mergedVertices, 0U);
+  EXPECT_EQ(report.unusedVertices, 5U);
+}
+
 TEST(RepairSoup, DropsDegenerateDuplicateAndInvalidFacesAndOrientsTheOthers) {
   Mesh mesh = exploded(cube());
   mesh.triangles.push_back(mesh.triangles[3]);
