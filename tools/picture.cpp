@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "commands.h"
@@ -35,6 +36,7 @@ struct PictureArguments {
   std::optional<std::string> isovalue;
   std::optional<std::string> bounds;
   std::optional<std::string> compare;
+  std::optional<std::string> format;
   std::optional<double> voxelSize;
   PictureOptions options;
   bool json = false;
@@ -106,10 +108,29 @@ void readCamera(const std::string& text, PictureView& view) {
   if (placed > 0) view.centre = centre;
 }
 
-bool isScene(const std::string& name) { return endingOf(name) == ".json"; }
+/// What is on standard input its first character tells: JSON begins with a brace.
+bool isScene(const std::string& name) {
+  if (!isStandard(name)) return endingOf(name) == ".json";
+  const std::string_view bytes = standardInput().bytes;
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && bytes[first] == '{';
+}
 
 /// Throws Error(InvalidArgument) for options that the other kind of input takes.
 void requireSense(const PictureArguments& arguments) {
+  if (arguments.voxelSize && !arguments.compare) {
+    throw Error(ErrorCode::InvalidArgument, "--voxel is for --compare, which is not there");
+  }
+  if (arguments.output.empty() && !arguments.compare) {
+    throw Error(ErrorCode::InvalidArgument, "--output is required, or --compare to look at a mesh");
+  }
+  if (isStandard(arguments.input) && isStandard(arguments.compare.value_or(""))) {
+    throw Error(ErrorCode::InvalidArgument,
+                "standard input holds one file: --compare needs a name");
+  }
+  if (arguments.format && !arguments.compare) {
+    throw Error(ErrorCode::InvalidArgument, "--format is for --compare, which is not there");
+  }
   const bool scene = isScene(arguments.input);
   const auto refuse = [&](bool given, const std::string& option, const std::string& kind) {
     if (!given) return;
@@ -120,12 +141,6 @@ void requireSense(const PictureArguments& arguments) {
   refuse(scene && arguments.isovalue, "--iso", "a volume");
   refuse(!scene && arguments.bounds, "--bounds", "a scene");
   refuse(!scene && arguments.voxelSize, "--voxel", "a scene");
-  if (arguments.voxelSize && !arguments.compare) {
-    throw Error(ErrorCode::InvalidArgument, "--voxel is for --compare, which is not there");
-  }
-  if (arguments.output.empty() && !arguments.compare) {
-    throw Error(ErrorCode::InvalidArgument, "--output is required, or --compare to look at a mesh");
-  }
 }
 
 Subject readSubject(const PictureArguments& arguments, const RaySurfaceOptions& common) {
@@ -204,7 +219,7 @@ std::string describe(const PictureArguments& arguments, const PictureRun& run) {
 
 SurfaceComparison compareWith(const PictureArguments& arguments, const Subject& subject,
                               const RaySurfaceOptions& common, ProgressBar& bar) {
-  const Mesh mesh = readMeshInput(*arguments.compare, {});
+  const Mesh mesh = readMeshInput(*arguments.compare, arguments.format);
   RaySurfaceOptions options = common;
   options.progress = bar.callback();
   const auto surface = makeRaySurface(mesh, options);
@@ -272,7 +287,7 @@ void addPictureCommand(CLI::App& app, Command& chosen) {
   PictureOptions& options = arguments->options;
   picture
       ->add_option("FILE", arguments->input,
-                   "a .vdb file, a scene in .json, or - for a volume on standard input")
+                   "a .vdb file, a scene in .json, or - for either on standard input")
       ->required();
   picture->add_option("-o,--output", arguments->output,
                       "the .png file to write, or - for standard output");
@@ -288,8 +303,9 @@ void addPictureCommand(CLI::App& app, Command& chosen) {
   picture->add_option("--bounds", arguments->bounds,
                       "X0,Y0,Z0,X1,Y1,Z1: of a scene, the box that it is cut by");
   picture->add_option("--compare", arguments->compare,
-                      "a mesh: print the share of pixels where its silhouette or depth differs by "
-                      "more than half a voxel");
+                      "a mesh, or - for standard input: print the share of pixels where its "
+                      "silhouette or depth differs by more than half a voxel");
+  addInputFormatOption(*picture, arguments->format);
   picture->add_option("--voxel", arguments->voxelSize,
                       "of a scene, with --compare: what a voxel is; default: the scene's, or a "
                       "hundredth of its longest side");

@@ -71,6 +71,25 @@ TEST_F(PictureCommand, ShowsScenesAndVolumesAndComparesMeshes) {
   EXPECT_NE(text.err.find("pixels differ by more than"), std::string::npos) << text.err;
 }
 
+// A scene there was taken for a damaged volume, and a mesh had no way to tell its format.
+TEST_F(PictureCommand, TakesScenesAndMeshesFromStandardInput) {
+  const std::string small = " --size 64x48 --samples 2 --quiet ";
+  ASSERT_EQ(run("picture s.json -o named.png" + small).exitCode, 0);
+  const Outcome scene = run("picture - -o piped.png" + small, "", "cat s.json | ");
+  ASSERT_EQ(scene.exitCode, 0) << scene.err;
+  EXPECT_EQ(readBytes(folder / "piped.png"), readBytes(folder / "named.png"));
+
+  ASSERT_EQ(run("model s.json -o s.vdb").exitCode, 0);
+  EXPECT_EQ(run("picture - -o volume.png" + small, "", "cat s.vdb | ").exitCode, 0);
+  ASSERT_EQ(run("mesh s.vdb -o s.ply").exitCode, 0);
+  const std::string compare = "picture s.json --compare - --json --size 160x120 --format ply";
+  const Outcome mesh = run(compare, "", "cat s.ply | ");
+  ASSERT_EQ(mesh.exitCode, 0) << mesh.err;
+  EXPECT_LT(test::parseJson(mesh.out).at("compare").at("share"), 0.004);
+  expectFailure("picture - --compare - --format ply", 2, "holds one file");
+  expectFailure("picture s.json -o s.png --format ply", 2, "--format is for --compare");
+}
+
 TEST_F(PictureCommand, RefusesWhatIsWrong) {
   ASSERT_EQ(run("make fog -o f.vdb --voxel 0.1").exitCode, 0);
   const auto refused = [&](const std::string& options, int code, const std::string& part) {
