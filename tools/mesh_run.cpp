@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/braces.h"
 #include "checker.h"
 #include "console.h"
 #include "number.h"
@@ -22,25 +23,14 @@ namespace {
 
 constexpr const char* kUnionName = "union";
 
-/// Whether the output's file name has a place for the name of a grid.
-bool hasBraces(const std::string& output) {
-  return std::filesystem::path(output).filename().string().find("{}") != std::string::npos;
-}
-
 /// The output with braces replaced by the grid's name, which may hold what a file name may not.
 std::string outputOf(const std::string& output, const std::string& grid) {
-  if (!hasBraces(output)) return output;
-  const std::filesystem::path path = output;
-  std::string name = path.filename().string();
+  if (!base::hasBraces(output)) return output;
   std::string part = grid.empty() ? "mesh" : grid;
   for (char& c : part) {
     if (c == '/' || c == '\0') c = '_';
   }
-  for (std::size_t at = name.find("{}"); at != std::string::npos;
-       at = name.find("{}", at + part.size())) {
-    name.replace(at, 2, part);
-  }
-  return (path.parent_path() / name).string();
+  return base::fillBraces(output, part).string();
 }
 
 /// Meshes a grid that has been read, in `run.readSeconds`.
@@ -164,7 +154,7 @@ WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, Pr
 /// One file for all grids, or one for each where the name has braces.
 void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
   const bool standard = isStandard(arguments.output);
-  if (run.grids.size() == 1 || hasBraces(arguments.output)) {
+  if (run.grids.size() == 1 || base::hasBraces(arguments.output)) {
     for (const GridRun& grid : run.grids) {
       const WriteOptions options = writeOptions(arguments, grid, bar);
       WriteReport written;
@@ -193,7 +183,7 @@ void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
 /// One file holds several meshes in some formats only.
 void requireRoomForAll(const std::vector<std::string>& grids, const MeshArguments& arguments) {
   const std::string& output = arguments.output;
-  if (grids.size() < 2 || hasBraces(output)) return;
+  if (grids.size() < 2 || base::hasBraces(output)) return;
   const MeshFormat format = meshFormat(output, arguments.format);
   if (format == MeshFormat::Glb || format == MeshFormat::Obj || format == MeshFormat::Usda ||
       format == MeshFormat::ThreeMf) {
@@ -299,7 +289,7 @@ std::vector<double> callShares(const MeshArguments& arguments, std::size_t grids
     shares.push_back(kContourShare);
   }
   if (arguments.check) shares.insert(shares.end(), grids, kCheckShare);
-  const bool oneFile = grids == 1 || !hasBraces(arguments.output);
+  const bool oneFile = grids == 1 || !base::hasBraces(arguments.output);
   shares.insert(shares.end(), oneFile ? 1 : grids, kWriteShare);
   return shares;
 }

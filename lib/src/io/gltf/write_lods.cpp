@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/braces.h"
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "io/gltf/glb.h"
@@ -103,12 +104,6 @@ class LodDocument {
   GlbDocument document_;
   std::vector<std::size_t> levels_;  ///< of the nodes
 };
-
-constexpr std::string_view kBraces = "{}";
-
-bool namesMany(const std::filesystem::path& path) {
-  return path.filename().string().find(kBraces) != std::string::npos;
-}
 
 class LodWriter {
  public:
@@ -298,19 +293,13 @@ void runWriter(const LodChain& chain, const LodWriteOptions& options, LodWriteRe
 }  // namespace io
 
 std::filesystem::path lodFile(const std::filesystem::path& path, std::size_t level) {
-  std::string name = path.filename().string();
-  const std::string number = std::to_string(level);
-  for (std::size_t at = name.find(io::kBraces); at != std::string::npos;
-       at = name.find(io::kBraces, at + number.size())) {
-    name.replace(at, io::kBraces.size(), number);
-  }
-  return path.parent_path() / name;
+  return base::fillBraces(path, std::to_string(level));
 }
 
 void writeLods(const LodChain& chain, const std::filesystem::path& path,
                const LodWriteOptions& options, LodWriteReport* report) {
   io::runWriter(chain, options, report, [&](io::LodWriter& writer) {
-    if (io::namesMany(path)) {
+    if (base::hasBraces(path)) {
       writer.writeMany(path);
     } else {
       writer.writeOne(path);
