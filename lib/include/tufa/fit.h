@@ -48,7 +48,7 @@ struct BlobFit {
   /// Distances of the samples from the surface, along the field's gradient, world units.
   double rmsDistance = 0;
   double largestDistance = 0;  ///< of these the largest
-  std::vector<FitStep> steps;  ///< the first blob, and one for each split
+  std::vector<FitStep> steps;  ///< the first blob, and one for each step
 };
 
 /// Whether this library was built with what fitBlobs() needs: Ceres Solver's headers.
@@ -57,9 +57,10 @@ struct BlobFit {
 /// Describes a solid by blobs (Muraki 1991): from one blob on, the one whose split lowers the
 /// energy most is split, its parts are optimized, and then those around in turn; now and then all
 /// of them. Points of equal area are taken on the mesh, which should be closed and face outward;
-/// holes are bridged. Each step is taken only if the energy falls. Solved by Ceres's TinySolver,
-/// with derivatives in closed form and all blobs bounded. Cost: a minute for 200 blobs on two
-/// cores.
+/// holes are bridged. A step is one split or, where none lowers the energy, as of symmetric solids,
+/// up to eight that do together; it is taken only if the energy falls. Solved by Ceres's
+/// TinySolver, with derivatives in closed form and all blobs bounded. Cost: a minute for 200 blobs
+/// on two cores.
 ///
 /// Throws Error: InvalidArgument (options out of their range, a mesh without area or one that faces
 /// inward, positions that are not finite, a library built without Ceres), Cancelled.

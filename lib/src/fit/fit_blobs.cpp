@@ -76,7 +76,7 @@ class Fitter {
     const auto most = static_cast<std::size_t>(options_.blobs);
     while (field_.blobs().size() < most && steps.back().rmsDistance > options_.error * diagonal) {
       job_.checkCancelled(field_.blobs().size(), most);
-      if (!splitBest()) break;
+      if (!splitBest() && !splitAhead(most)) break;
       if (static_cast<double>(field_.blobs().size()) >= kSweepGrowth * swept) {
         sweep();
         swept = static_cast<double>(field_.blobs().size());
@@ -183,6 +183,35 @@ class Fitter {
       if (field_.energyWith(index, parts) < energy) break;
       best->isFresh = false;
     }
+    split(index, parts);
+    return true;
+  }
+
+  // Two blobs are no better than one in a ring, but four are. So that symmetric solids do not end
+  // there, makes some of the best splits whatever they cost. Whether the energy is lower then; if
+  // not, all is as it was.
+  bool splitAhead(std::size_t most) {
+    constexpr std::size_t kAhead = 8;
+    const double energy = field_.energy();
+    const BlobField fieldBefore = field_;
+    const std::vector<Trial> trialsBefore = trials_;
+    const std::size_t last = std::min(most, trials_.size() + kAhead);
+    while (trials_.size() < last) {
+      refreshTrials();
+      const auto best =
+          std::min_element(trials_.begin(), trials_.end(),
+                           [](const Trial& a, const Trial& b) { return a.energy < b.energy; });
+      split(static_cast<std::size_t>(best - trials_.begin()), best->parts);
+      sweep();
+      if (field_.energy() < energy * (1 - kLeastGain)) return true;
+    }
+    field_ = fieldBefore;
+    trials_ = trialsBefore;
+    return false;
+  }
+
+  // Puts the parts in the place of a blob, and fits them and those around.
+  void split(std::size_t index, std::array<UnitBlob, 2> parts) {
     const std::array<UnitBlob, 2> better = fit::solveBlobs(field_, index, parts, kSplitSteps);
     if (field_.energyWith(index, better) < field_.energyWith(index, parts)) parts = better;
     field_.replace(index, parts);
@@ -195,7 +224,6 @@ class Fitter {
       if (!trials_[i].isFresh) around.push_back(i);
     }
     for (const std::size_t i : around) optimize(i);
-    return true;
   }
 
   // Trials of the blobs around one that has changed tell nothing any more.

@@ -80,6 +80,21 @@ TEST_F(Fit, TheEnergyFallsAtEveryStep) {
   }
 }
 
+// It ended at one blob for the torus and at two for the cube, where no split alone is any better.
+TEST_F(Fit, GoesOnWhereSolidsAreSymmetric) {
+  const std::string cube = R"({"tufa_scene": 1, "objects": [{"type": "box", "size": [2, 2, 2]}]})";
+  for (const Mesh& mesh : {meshOf(Shape::Torus, 0.08), meshOf(cube, 0.05)}) {
+    FitOptions options;
+    options.blobs = 20;
+    const BlobFit fit = fitBlobs(mesh, options);
+    EXPECT_EQ(fit.blobs.size(), 20u);
+    EXPECT_LT(fit.rmsDistance, 0.02 * fit.diagonal);
+    for (std::size_t i = 1; i < fit.steps.size(); ++i) {
+      EXPECT_LT(fit.steps[i].energy, fit.steps[i - 1].energy);
+    }
+  }
+}
+
 TEST_F(Fit, IsTheSameForAnyNumberOfThreadsAndAnywhere) {
   Mesh mesh = meshOf(Shape::Torus, 0.1);
   FitOptions options;
