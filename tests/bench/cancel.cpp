@@ -1,6 +1,7 @@
 // How soon a call stops when it is asked to: the longest stretch without a question in each stage
 // of a whole run, then runs that are cancelled at moments spread over it.
 
+#include <tufa/chunks.h>
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/lod.h>
@@ -78,6 +79,13 @@ int main(int argc, char** argv) {
       options.contour.progress = progress;
       options.contour.threads = 1;
       (void)tufa::buildLods(*grid, options);
+      return;
+    }
+    if (what == "chunks") {
+      tufa::ChunkOptions options;
+      options.contour.progress = progress;
+      options.contour.threads = 1;
+      (void)tufa::buildChunks(*grid, options, [](const tufa::ChunkIndex&, tufa::Chunk&&) {});
       return;
     }
     tufa::ContourOptions options;

@@ -132,6 +132,7 @@ std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::Ch
     std::vector<std::uint32_t> chunkOf;
     std::vector<intersect::PolygonIndex> candidates;
     for (std::size_t t = 0; t < level.triangles.size(); ++t) {
+      job.pollCancelled(t);
       const Triangle other = chunks::changed(level, level.triangles[t]);
       if (isChanged && chunks::isGone(other)) continue;
       if (!isChanged || !(other == level.triangles[t])) {
@@ -178,7 +179,7 @@ class ChunkBuilder {
     const chunks::CutMesh cut =
         makeLevels(cutUniform(ground, index), ground, rule, index.tolerances);
     job_.beginStage("chunks", 1);
-    if (index.step > 0 && !chunks::moveToLattice(levels_, index.step)) {
+    if (index.step > 0 && !chunks::moveToLattice(levels_, index.step, job_)) {
       index.step = 0;
       index.compression = GlbCompression::None;
     }

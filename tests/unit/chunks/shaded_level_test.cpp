@@ -106,22 +106,23 @@ TEST(Lattice, HasStepsThatSixteenBitsCountThroughAChunk) {
 }
 
 TEST(Lattice, TakesAllLevelsOrNone) {
+  base::Job job(1, {});
   Roof fine;
   for (Position& p : fine.level.positions) p.y += 0.1;
   std::vector<ChainLevel> levels{fine.level, fine.level};
-  ASSERT_TRUE(moveToLattice(levels, 0.25));
+  ASSERT_TRUE(moveToLattice(levels, 0.25, job));
   EXPECT_EQ(levels[0].positions[4], Position(1, 0, 1));
   EXPECT_EQ(levels[1].positions, levels[0].positions);
 
   levels = {fine.level, fine.level};
   levels[1].positions[4] = {1, -0.95, 0.1};  // falls onto vertex 3
-  EXPECT_FALSE(moveToLattice(levels, 0.25));
+  EXPECT_FALSE(moveToLattice(levels, 0.25, job));
   EXPECT_EQ(levels[0].positions, fine.level.positions);
 
   levels = {fine.level};
   levels[0].positions[1] = {0.1, -0.95, 0.05};
   levels[0].positions[0] = {0.6, -0.95, 0.05};  // three on a line, but for rounding
-  EXPECT_FALSE(moveToLattice(levels, 0.25));
+  EXPECT_FALSE(moveToLattice(levels, 0.25, job));
 }
 
 }  // namespace

@@ -28,9 +28,13 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
       affine_(affine),
       chunkSize_(chunkSize),
       singlePrecision_(singlePrecision),
+      job_(job),
       curveVertices_(static_cast<VertexIndex>(cut_.mesh.positions.size())) {
   base::Box box = base::Box::empty();
-  for (const Position& p : cut_.mesh.positions) box.add(Vec3(p));
+  for (std::size_t v = 0; v < cut_.mesh.positions.size(); ++v) {
+    job.pollCancelled(v);
+    box.add(Vec3(cut_.mesh.positions[v]));
+  }
   middle_ = box.centre();
   const auto localsOf = [&](const std::vector<Position>& from) {
     std::vector<Vec3f> local(from.size());
@@ -121,6 +125,7 @@ void ChunkChain::setInto(ChainLevel& level) {
   std::vector<VertexIndex> now(level.own);
   std::iota(now.begin(), now.end(), 0);
   for (VertexIndex v = 0; v < lines.size(); ++v) {
+    job_.pollCancelled(v);
     const reduce::Index name = lines[v].name;
     if (level.intoPlane[name] == ChunkPlane::kNone) continue;
     now[name] = static_cast<VertexIndex>(level.positions.size());
@@ -129,6 +134,7 @@ void ChunkChain::setInto(ChainLevel& level) {
     level.into.push_back(now[name]);
   }
   for (VertexIndex v = 0; v < level.own; ++v) {
+    job_.pollCancelled(v);
     VertexIndex last = v;
     while (went[last] != last) last = went[last];
     level.into[v] = now[last];
@@ -172,6 +178,7 @@ ChainLevel ChunkChain::extract(const ChainLevel* before) const {
   level.own = reduced.positions.size();
   const std::vector<reduce::LineStep>& lines = reduction_->surface().lineStep;
   for (VertexIndex v = 0; v < level.own; ++v) {
+    job_.pollCancelled(v);
     add(level, reduced, v);
     const VertexIndex onCurve = level.cutVertex[v];
     level.curveVertex.push_back(onCurve == ChainLevel::kNone || before == nullptr

@@ -73,6 +73,7 @@ class ChunkChain {
   const grid::Affine& affine_;
   int chunkSize_;
   bool singlePrecision_;
+  base::Job& job_;
   Vec3 middle_{0.0};
   std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
   VertexIndex curveVertices_;            ///< numbers in use, see ChainLevel::curveVertex

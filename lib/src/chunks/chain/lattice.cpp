@@ -23,12 +23,13 @@ bool hasArea(const std::vector<Position>& positions, const Triangle& t) {
 }
 
 // The places of a level's vertices, in steps; none if they do not tell its triangles apart.
-std::vector<Position> placesOf(const ChainLevel& level, double step) {
+std::vector<Position> placesOf(const ChainLevel& level, double step, base::Job& job) {
   std::vector<Position> places, different;
   base::VertexWelder welder(different);
   std::vector<VertexIndex> firstAt;  // for each of `different`
   const auto place = [step](double x) { return std::round(x / step) + 0.0; };
   for (VertexIndex v = 0; v < level.positions.size(); ++v) {
+    job.pollCancelled(v);
     const Position& p = level.positions[v];
     places.push_back({place(p.x), place(p.y), place(p.z)});
     const VertexIndex at = welder.indexOf(places.back());
@@ -38,7 +39,9 @@ std::vector<Position> placesOf(const ChainLevel& level, double step) {
       return {};  // one that goes into the other is never drawn with it
     }
   }
-  for (const Triangle& t : level.triangles) {
+  for (std::size_t n = 0; n < level.triangles.size(); ++n) {
+    job.pollCancelled(n);
+    const Triangle& t = level.triangles[n];
     for (const Triangle& form : {t, changed(level, t)}) {
       if (!isGone(form) && hasArea(level.positions, form) && !hasArea(places, form)) return {};
     }
@@ -59,10 +62,10 @@ double latticeStep(const grid::Transform& transform, int chunkSize, double scale
   return std::exp2(std::ceil(std::log2(extent * scale / kMostSteps))) / scale;
 }
 
-bool moveToLattice(std::vector<ChainLevel>& levels, double step) {
+bool moveToLattice(std::vector<ChainLevel>& levels, double step, base::Job& job) {
   std::vector<std::vector<Position>> places;
   for (const ChainLevel& level : levels) {
-    places.push_back(placesOf(level, step));
+    places.push_back(placesOf(level, step, job));
     if (places.back().size() != level.positions.size()) return false;
   }
   for (std::size_t i = 0; i < levels.size(); ++i) {

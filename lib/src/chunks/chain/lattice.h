@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/job.h"
 #include "chunks/chain/chunk_chain.h"
 #include "grid/transform.h"
 
@@ -13,6 +14,6 @@ namespace tufa::chunks {
 
 /// Moves all vertices to the lattice. Changes nothing and returns false if that brought two
 /// vertices of an LOD to one place, or a triangle of either form that has an area would have none.
-[[nodiscard]] bool moveToLattice(std::vector<ChainLevel>& levels, double step);
+[[nodiscard]] bool moveToLattice(std::vector<ChainLevel>& levels, double step, base::Job& job);
 
 }  // namespace tufa::chunks

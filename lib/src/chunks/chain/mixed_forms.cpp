@@ -34,6 +34,7 @@ std::vector<std::array<std::uint32_t, 2>> findMixedForms(const ChainLevel& level
   std::vector<std::array<std::uint32_t, 2>> pairs;
   std::vector<std::uint32_t> changing, planes;
   for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
+    job.pollCancelled(t);
     bool isMixed = false;
     const std::uint32_t plane = changingPlane(level, level.triangles[t], isMixed);
     if (plane == ChunkPlane::kNone) continue;

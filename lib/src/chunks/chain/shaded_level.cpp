@@ -32,12 +32,14 @@ CurveNormals::CurveNormals(const std::vector<ChainLevel>& levels, double creaseA
   for (const ChainLevel& level : levels) {
     const VertexIndex known = numbers;
     for (VertexIndex v = 0; v < level.own; ++v) {
+      job.pollCancelled(v);
       const VertexIndex number = level.curveVertex[v];
       if (number != ChainLevel::kNone) numbers = std::max(numbers, number + 1);
     }
     if (numbers == known) continue;
     const shading::ShadedMesh split = splitOf(level, creaseAngle, job);
     for (std::size_t n = 0; n < split.sources.size(); ++n) {
+      job.pollCancelled(n);
       const VertexIndex v = split.sources[n], number = level.curveVertex[v];
       const bool isNew = v < level.own && number != ChainLevel::kNone && number >= known;
       if (isNew) all.emplace_back(number, split.normals[n]);
@@ -71,6 +73,7 @@ ShadedLevel shade(const ChainLevel& level, const CurveNormals& curves, double cr
   // by no triangle.
   std::vector<VertexIndex> first(level.positions.size(), ChainLevel::kNone);
   for (VertexIndex v = 0; v < level.positions.size(); ++v) {
+    job.pollCancelled(v);
     const VertexIndex number = level.curveVertex[v];
     if (number == ChainLevel::kNone) continue;
     first[v] = static_cast<VertexIndex>(out.sources.size());

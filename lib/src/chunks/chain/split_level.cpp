@@ -22,6 +22,7 @@ class Splitter {
     triangles_.resize(cut.chunks.size());
     edges_.resize(cut.chunks.size());
     for (std::uint32_t t = 0; t < level.triangles.size(); ++t) {
+      job.pollCancelled(t);
       triangles_[level.chunkOf[t]].push_back(t);
     }
     findEdges(job);

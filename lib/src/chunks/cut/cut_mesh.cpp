@@ -355,7 +355,7 @@ class Cutter {
     out_.chunkOf = std::move(placeOf);
     base::release(chunkOf), base::release(at_);
     mesh.normals.shrink_to_fit(), out_.isNew.shrink_to_fit();
-    namePlanes(place_, out_);
+    namePlanes(place_, out_, job_);
   }
 
   [[nodiscard]] Coord chunkAt(const Triangle& t) const {

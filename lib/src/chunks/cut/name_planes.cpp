@@ -16,9 +16,11 @@ struct Range {
 };
 
 // Of each of some vertices.
-std::vector<std::array<Range, 3>> chunksAround(const CutMesh& cut, const base::RankedBits& some) {
+std::vector<std::array<Range, 3>> chunksAround(const CutMesh& cut, const base::RankedBits& some,
+                                               base::Job& job) {
   std::vector<std::array<Range, 3>> around(some.size());
   for (std::size_t t = 0; t < cut.chunkOf.size(); ++t) {
+    job.pollCancelled(t);
     const Coord& chunk = cut.chunks[cut.chunkOf[t]];
     for (const VertexIndex v : cut.mesh.triangles[t].vertices) {
       if (!some.has(v)) continue;
@@ -37,13 +39,14 @@ bool isOnPlane(Place place) { return (place & 1) == 0; }
 
 }  // namespace
 
-void namePlanes(const std::vector<PlacesAmongPlanes>& places, CutMesh& cut) {
+void namePlanes(const std::vector<PlacesAmongPlanes>& places, CutMesh& cut, base::Job& job) {
   base::RankedBits onPlanes(places.size());
   for (std::size_t v = 0; v < places.size(); ++v) {
+    job.pollCancelled(v);
     if (std::any_of(places[v].begin(), places[v].end(), isOnPlane)) onPlanes.add(v);
   }
   onPlanes.count();
-  const std::vector<std::array<Range, 3>> around = chunksAround(cut, onPlanes);
+  const std::vector<std::array<Range, 3>> around = chunksAround(cut, onPlanes, job);
   std::unordered_map<std::int64_t, std::uint32_t> numbers;
   onPlanes.forAll([&](std::size_t v) {
     std::array<std::uint32_t, 3> planes = {ChunkPlane::kNone, ChunkPlane::kNone, ChunkPlane::kNone};

@@ -32,11 +32,13 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
     return Place{p.x, p.y, p.z};
   };
   std::vector<std::uint8_t> isUsed(positions.size(), 0);  // collapses have left others
-  for (const Triangle& t : cut.mesh.triangles) {
-    for (const VertexIndex v : t.vertices) isUsed[v] = 1;
+  for (std::size_t t = 0; t < cut.mesh.triangles.size(); ++t) {
+    job.pollCancelled(t);
+    for (const VertexIndex v : cut.mesh.triangles[t].vertices) isUsed[v] = 1;
   }
   std::vector<VertexIndex> used;
   for (VertexIndex v = 0; v < positions.size(); ++v) {
+    job.pollCancelled(v);
     if (isUsed[v] != 0) used.push_back(v);
   }
   using Entry = std::pair<Place, VertexIndex>;
@@ -52,6 +54,7 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
   };
   double moved = 0;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
+    job.pollCancelled(i - 1);
     const Place& shared = sorted[i].first;
     if (shared != sorted[i - 1].first) continue;
     Position& position = positions[sorted[i].second];
@@ -95,12 +98,14 @@ void separateRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecis
   source.lastResort = false;
   std::vector<intersect::PolygonIndex> candidates;
   for (std::uint32_t t = 0; t < rounded.triangles.size(); ++t) {
+    job.pollCancelled(t);
     const auto& v = rounded.triangles[t].vertices;
     if ((cut.isNew[v[0]] | cut.isNew[v[1]] | cut.isNew[v[2]]) != 0) candidates.push_back(t);
   }
   if (refine::repairIntersections(rounded, candidates, source, job).movedVertices == 0) return;
   cut.reference = positions;
   for (std::size_t v = 0; v < positions.size(); ++v) {
+    job.pollCancelled(v);
     if (!(rounded.positions[v] == before[v])) positions[v] = affine.fromWorld(rounded.positions[v]);
   }
 }
