@@ -30,11 +30,13 @@ CornersOfVertices::CornersOfVertices(std::size_t vertexCount, std::span<const Tr
                                      base::Job& job) {
   base::resizeLarge(first, vertexCount + 2, job);
   base::resizeLarge(corners, 3 * triangles.size(), job);
-  for (const Triangle& t : triangles) {
-    for (const Index v : t.vertices) ++first[v + 2];
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    job.pollCancelled(t);
+    for (const Index v : triangles[t].vertices) ++first[v + 2];
   }
   for (std::size_t i = 0; i < vertexCount; ++i) first[i + 2] += first[i + 1];
   for (Index c = 0; c < corners.size(); ++c) {
+    job.pollCancelled(c);
     corners[first[triangles[c / 3].vertices[c % 3] + 1]++] = c;
   }
 }

@@ -224,6 +224,7 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
   triangles.reserve(leftTriangles.size());
   regions.reserve(s.hasLines() ? leftTriangles.size() : 0);
   leftTriangles.forAll([&](std::size_t t) {
+    job.pollCancelled(t);
     const std::size_t n = triangles.size();
     if (s.hasLines()) regions.push_back(s.region[t]);
     if (!s.changeOf.empty()) s.changeOf[n] = s.changeOf[t];
@@ -241,6 +242,7 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
   std::vector<Index> sources(count), faces(count);
   Index n = 0;
   leftVertices.forAll([&](std::size_t at) {
+    job.pollCancelled(at);
     const auto v = static_cast<Index>(at);
     positions[n] = s.position[v], sources[n] = s.sourceOf(v), faces[n] = faceOf(s, reference, v);
     s.axis[n] = s.axis[v], s.flags[n] = s.flags[v];

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <set>
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/ranked_bits.h"
 #include "base/single_precision.h"
 #include "refine/repair/repair.h"
 
@@ -22,8 +23,34 @@ double nextAbove(double x, bool singlePrecision) {
   return double{std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity())};
 }
 
+// Places by their hashes: others may be taken for members, one in eight at most.
+class HashedPlaces {
+ public:
+  // Of so many places.
+  explicit HashedPlaces(std::size_t count)
+      : mask_(std::bit_ceil(8 * count + 1) - 1), bits_(mask_ + 1) {}
+
+  void add(const Place& place) { bits_.add(slotOf(place)); }
+  [[nodiscard]] bool mayHave(const Place& place) const { return bits_.has(slotOf(place)); }
+
+ private:
+  [[nodiscard]] std::size_t slotOf(const Place& place) const {
+    std::uint64_t hash = 0;
+    for (const double x : place) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 as 0
+      hash ^= hash >> 29;
+    }
+    return static_cast<std::size_t>(hash) & mask_;
+  }
+
+  std::size_t mask_;
+  base::RankedBits bits_;
+};
+
 }  // namespace
 
+// Vertices whose places may be those of others, as their hashes are, are few; they alone are
+// sorted.
 void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job) {
   std::vector<Position>& positions = cut.mesh.positions;
   const auto placeOf = [&](const Position& position) {
@@ -31,42 +58,38 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
     const Position p = singlePrecision ? base::toSingle(world) : world;
     return Place{p.x, p.y, p.z};
   };
-  std::vector<std::uint8_t> isUsed(positions.size(), 0);  // collapses have left others
+  base::RankedBits used(positions.size());  // collapses have left others
   for (std::size_t t = 0; t < cut.mesh.triangles.size(); ++t) {
     job.pollCancelled(t);
-    for (const VertexIndex v : cut.mesh.triangles[t].vertices) isUsed[v] = 1;
+    for (const VertexIndex v : cut.mesh.triangles[t].vertices) used.add(v);
   }
-  std::vector<VertexIndex> used;
-  for (VertexIndex v = 0; v < positions.size(); ++v) {
+  HashedPlaces taken(positions.size()), shared(positions.size());
+  used.forAll([&](std::size_t v) {
     job.pollCancelled(v);
-    if (isUsed[v] != 0) used.push_back(v);
-  }
-  using Entry = std::pair<Place, VertexIndex>;
-  std::vector<Entry> sorted(used.size());
-  job.forRanges(used.size(), 16384, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sorted[i] = {placeOf(positions[used[i]]), used[i]};
+    const Place place = placeOf(positions[v]);
+    (taken.mayHave(place) ? shared : taken).add(place);
   });
-  base::parallelSort(sorted.begin(), sorted.end(), std::less<>());
-  std::set<Place> added;
-  const auto isTaken = [&](const Place& place) {
-    const auto found = std::lower_bound(sorted.begin(), sorted.end(), Entry{place, 0});
-    return (found != sorted.end() && found->first == place) || added.contains(place);
-  };
+  std::vector<std::pair<Place, VertexIndex>> sorted;
+  used.forAll([&](std::size_t v) {
+    job.pollCancelled(v);
+    const Place place = placeOf(positions[v]);
+    if (shared.mayHave(place)) sorted.emplace_back(place, static_cast<VertexIndex>(v));
+  });
+  std::sort(sorted.begin(), sorted.end());
   double moved = 0;
   for (std::size_t i = 1; i < sorted.size(); ++i) {
-    job.pollCancelled(i - 1);
-    const Place& shared = sorted[i].first;
-    if (shared != sorted[i - 1].first) continue;
+    const Place& place = sorted[i].first;
+    if (place != sorted[i - 1].first) continue;
     Position& position = positions[sorted[i].second];
     const Position before = position;
     const auto moveBy = [&](double distance) {
-      position = affine.fromWorld({shared[0] + distance, shared[1], shared[2]});
+      position = affine.fromWorld({place[0] + distance, place[1], place[2]});
     };
     // Numbers near 0 lie far closer together than the places that vertices can have.
-    double step = nextAbove(shared[0], singlePrecision) - shared[0];
-    for (moveBy(step); placeOf(position) == shared; moveBy(step)) step *= 2;
-    for (int n = 2; isTaken(placeOf(position)); ++n) moveBy(n * step);
-    added.insert(placeOf(position));
+    double step = nextAbove(place[0], singlePrecision) - place[0];
+    for (moveBy(step); placeOf(position) == place; moveBy(step)) step *= 2;
+    for (int n = 2; taken.mayHave(placeOf(position)); ++n) moveBy(n * step);
+    taken.add(placeOf(position));
     moved = std::max(moved, (Vec3(position) - Vec3(before)).length());
   }
   cut.moved += moved / affine.voxelSize();
