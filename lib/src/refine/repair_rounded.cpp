@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/single_precision.h"
 #include "refine/rounding.h"
 
 namespace tufa::refine {
@@ -15,8 +16,7 @@ RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>
   const std::vector<intersect::PolygonIndex> candidates = intersect::distinctPolygonsOf(
       intersect::intersectingAmong(closePairs, mesh, world.positions));
   if (candidates.empty()) return {};
-  world.quads = mesh.quads;
-  world.triangles = mesh.triangles;
+  std::swap(world.quads, mesh.quads), std::swap(world.triangles, mesh.triangles);
   source.massPoints = [&affine,
                        points = source.massPoints](const std::vector<VertexIndex>& vertices) {
     std::vector<Position> all = points(vertices);
@@ -24,15 +24,16 @@ RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>
     return all;
   };
   source.crossings = nullptr;
-  const std::vector<Position> before = world.positions;
   RepairReport repaired = repairIntersections(world, candidates, source, job);
+  std::swap(world.quads, mesh.quads), std::swap(world.triangles, mesh.triangles);
   if (repaired.changed.empty()) return repaired;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    if (!(world.positions[i] == before[i]))
-      mesh.positions[i] = affine.fromWorld(world.positions[i]);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Position& now = world.positions[i];
+    const Position before = affine.toWorld(mesh.positions[i]);
+    if (!(now == (source.singlePrecision ? base::toSingle(before) : before))) {
+      mesh.positions[i] = affine.fromWorld(now);
+    }
   }
-  mesh.quads = std::move(world.quads);
-  mesh.triangles = std::move(world.triangles);
   return repaired;
 }
 

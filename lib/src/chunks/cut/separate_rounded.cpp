@@ -23,34 +23,21 @@ double nextAbove(double x, bool singlePrecision) {
   return double{std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity())};
 }
 
-// Places by their hashes: others may be taken for members, one in eight at most.
-class HashedPlaces {
- public:
-  // Of so many places.
-  explicit HashedPlaces(std::size_t count)
-      : mask_(std::bit_ceil(8 * count + 1) - 1), bits_(mask_ + 1) {}
-
-  void add(const Place& place) { bits_.add(slotOf(place)); }
-  [[nodiscard]] bool mayHave(const Place& place) const { return bits_.has(slotOf(place)); }
-
- private:
-  [[nodiscard]] std::size_t slotOf(const Place& place) const {
-    std::uint64_t hash = 0;
-    for (const double x : place) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 as 0
-      hash ^= hash >> 29;
-    }
-    return static_cast<std::size_t>(hash) & mask_;
+// A hash of a place, below a power of two.
+std::size_t hashOf(const Place& place, std::size_t size) {
+  std::uint64_t hash = 0;
+  for (const double x : place) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 as 0
+    hash ^= hash >> 29;
   }
-
-  std::size_t mask_;
-  base::RankedBits bits_;
-};
+  return static_cast<std::size_t>(hash) & (size - 1);
+}
 
 }  // namespace
 
-// Vertices whose places may be those of others, as their hashes are, are few; they alone are
-// sorted.
+// Vertices whose places may be those of others, as their hashes are the same, are few; they alone
+// are sorted. Free places whose hash is that of one that is taken, one in eight at most, are passed
+// by.
 void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job) {
   std::vector<Position>& positions = cut.mesh.positions;
   const auto placeOf = [&](const Position& position) {
@@ -63,17 +50,21 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
     job.pollCancelled(t);
     for (const VertexIndex v : cut.mesh.triangles[t].vertices) used.add(v);
   }
-  HashedPlaces taken(positions.size()), shared(positions.size());
+  const std::size_t size = std::bit_ceil(8 * positions.size() + 1);
+  std::vector<std::size_t> hashes(positions.size());
+  job.forRanges(positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) hashes[v] = hashOf(placeOf(positions[v]), size);
+  });
+  base::RankedBits taken(size), shared(size);
   used.forAll([&](std::size_t v) {
     job.pollCancelled(v);
-    const Place place = placeOf(positions[v]);
-    (taken.mayHave(place) ? shared : taken).add(place);
+    (taken.has(hashes[v]) ? shared : taken).add(hashes[v]);
   });
   std::vector<std::pair<Place, VertexIndex>> sorted;
   used.forAll([&](std::size_t v) {
     job.pollCancelled(v);
-    const Place place = placeOf(positions[v]);
-    if (shared.mayHave(place)) sorted.emplace_back(place, static_cast<VertexIndex>(v));
+    if (!shared.has(hashes[v])) return;
+    sorted.emplace_back(placeOf(positions[v]), static_cast<VertexIndex>(v));
   });
   std::sort(sorted.begin(), sorted.end());
   double moved = 0;
@@ -88,8 +79,9 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
     // Numbers near 0 lie far closer together than the places that vertices can have.
     double step = nextAbove(place[0], singlePrecision) - place[0];
     for (moveBy(step); placeOf(position) == place; moveBy(step)) step *= 2;
-    for (int n = 2; taken.mayHave(placeOf(position)); ++n) moveBy(n * step);
-    taken.add(placeOf(position));
+    const auto hash = [&] { return hashOf(placeOf(position), size); };
+    for (int n = 2; taken.has(hash()); ++n) moveBy(n * step);
+    taken.add(hash());
     moved = std::max(moved, (Vec3(position) - Vec3(before)).length());
   }
   cut.moved += moved / affine.voxelSize();
