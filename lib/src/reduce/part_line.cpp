@@ -188,8 +188,9 @@ bool Part::makesChord() const {
     if (isOnLine(ring_[i]) && surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) return true;
   }
   for (int i = split_ + 1; i < size_; ++i) {
+    if (!isOnLine(ring_[i])) continue;
     const int common = commonPlanes(line_[kept_].planes, line_[ring_[i]].planes);
-    if (!isOnLine(ring_[i]) || common == 0) continue;
+    if (common == 0) continue;
     if (region_[at_[i] / 3] == region_[at_[i - 1] / 3]) return true;
     if (common > 1 || surface_->isChord(sourceOf(kept_), sourceOf(ring_[i]))) {
       return true;

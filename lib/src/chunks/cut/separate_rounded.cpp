@@ -23,21 +23,55 @@ double nextAbove(double x, bool singlePrecision) {
   return double{std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity())};
 }
 
-// A hash of a place, below a power of two.
-std::size_t hashOf(const Place& place, std::size_t size) {
-  std::uint64_t hash = 0;
-  for (const double x : place) {
-    hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 as 0
-    hash ^= hash >> 29;
+// Places by their hashes. A free place whose hash is that of a taken one, one in eight at most,
+// counts as taken.
+class TakenPlaces {
+ public:
+  using Entry = std::pair<Place, VertexIndex>;
+
+  // `placeOf` tells the place of a vertex, `used` the vertices that count.
+  template <class PlaceOf>
+  TakenPlaces(const base::RankedBits& used, std::size_t vertices, const PlaceOf& placeOf,
+              base::Job& job)
+      : size_(std::bit_ceil(8 * vertices + 1)), taken_(size_) {
+    std::vector<std::size_t> hashes(vertices);
+    job.forRanges(vertices, 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) hashes[v] = hashOf(placeOf(v));
+    });
+    base::RankedBits several(size_);
+    used.forAll([&](std::size_t v) {
+      job.pollCancelled(v);
+      (taken_.has(hashes[v]) ? several : taken_).add(hashes[v]);
+    });
+    used.forAll([&](std::size_t v) {
+      job.pollCancelled(v);
+      if (several.has(hashes[v])) shared_.emplace_back(placeOf(v), static_cast<VertexIndex>(v));
+    });
+    std::sort(shared_.begin(), shared_.end());
   }
-  return static_cast<std::size_t>(hash) & (size - 1);
-}
+
+  // The vertices whose places may be those of others, by place; these are few.
+  [[nodiscard]] const std::vector<Entry>& shared() const { return shared_; }
+  [[nodiscard]] bool has(const Place& place) const { return taken_.has(hashOf(place)); }
+  void add(const Place& place) { taken_.add(hashOf(place)); }
+
+ private:
+  [[nodiscard]] std::size_t hashOf(const Place& place) const {
+    std::uint64_t hash = 0;
+    for (const double x : place) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 as 0
+      hash ^= hash >> 29;
+    }
+    return static_cast<std::size_t>(hash) & (size_ - 1);
+  }
+
+  std::size_t size_;  // a power of two
+  base::RankedBits taken_;
+  std::vector<Entry> shared_;
+};
 
 }  // namespace
 
-// Vertices whose places may be those of others, as their hashes are the same, are few; they alone
-// are sorted. Free places whose hash is that of one that is taken, one in eight at most, are passed
-// by.
 void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job) {
   std::vector<Position>& positions = cut.mesh.positions;
   const auto placeOf = [&](const Position& position) {
@@ -50,38 +84,22 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
     job.pollCancelled(t);
     for (const VertexIndex v : cut.mesh.triangles[t].vertices) used.add(v);
   }
-  const std::size_t size = std::bit_ceil(8 * positions.size() + 1);
-  std::vector<std::size_t> hashes(positions.size());
-  job.forRanges(positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) hashes[v] = hashOf(placeOf(positions[v]), size);
-  });
-  base::RankedBits taken(size), shared(size);
-  used.forAll([&](std::size_t v) {
-    job.pollCancelled(v);
-    (taken.has(hashes[v]) ? shared : taken).add(hashes[v]);
-  });
-  std::vector<std::pair<Place, VertexIndex>> sorted;
-  used.forAll([&](std::size_t v) {
-    job.pollCancelled(v);
-    if (!shared.has(hashes[v])) return;
-    sorted.emplace_back(placeOf(positions[v]), static_cast<VertexIndex>(v));
-  });
-  std::sort(sorted.begin(), sorted.end());
+  const auto placeAt = [&](std::size_t v) { return placeOf(positions[v]); };
+  TakenPlaces taken(used, positions.size(), placeAt, job);
   double moved = 0;
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    const Place& place = sorted[i].first;
-    if (place != sorted[i - 1].first) continue;
-    Position& position = positions[sorted[i].second];
+  for (std::size_t i = 1; i < taken.shared().size(); ++i) {
+    const auto& [place, vertex] = taken.shared()[i];
+    if (place != taken.shared()[i - 1].first) continue;
+    Position& position = positions[vertex];
     const Position before = position;
-    const auto moveBy = [&](double distance) {
-      position = affine.fromWorld({place[0] + distance, place[1], place[2]});
+    const auto moveBy = [&, at = place](double distance) {
+      position = affine.fromWorld({at[0] + distance, at[1], at[2]});
     };
     // Numbers near 0 lie far closer together than the places that vertices can have.
     double step = nextAbove(place[0], singlePrecision) - place[0];
     for (moveBy(step); placeOf(position) == place; moveBy(step)) step *= 2;
-    const auto hash = [&] { return hashOf(placeOf(position), size); };
-    for (int n = 2; taken.has(hash()); ++n) moveBy(n * step);
-    taken.add(hash());
+    for (int n = 2; taken.has(placeOf(position)); ++n) moveBy(n * step);
+    taken.add(placeOf(position));
     moved = std::max(moved, (Vec3(position) - Vec3(before)).length());
   }
   cut.moved += moved / affine.voxelSize();
