@@ -55,6 +55,8 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
   positions_ = std::move(positions);
   faces_ = facesOf(mesh, job);
   std::vector<float> scales = scalesOf(mesh, model.affine(), rule, job);
+  closeVertices_ = intersect::verticesOf(mesh, intersect::distinctPolygonsOf(model.closePairs()));
+  for (const VertexIndex v : closeVertices_) closePositions_.push_back(mesh.positions[v]);
   model.releaseCells();
   keepsExact_ = model.report().openEdges > 0 ||
                 rule.tolerance < static_cast<double>(reduce::kLeastTolerance) ||
@@ -77,8 +79,11 @@ Position SurfaceReduction::positionAt(const Vec3f& local) const {
 Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
                                       std::size_t vertex) const {
   const reduce::Index source = reduced.sources[vertex];
-  if (keepsExact_ && source != reduce::kNone) return model_.mesh().positions[source];
-  return positionAt(reduced.positions[vertex]);
+  if (source == reduce::kNone) return positionAt(reduced.positions[vertex]);
+  if (keepsExact_) return model_.mesh().positions[source];
+  const auto found = std::lower_bound(closeVertices_.begin(), closeVertices_.end(), source);
+  if (found == closeVertices_.end() || *found != source) return positionAt(positions_[source]);
+  return closePositions_[static_cast<std::size_t>(found - closeVertices_.begin())];
 }
 
 Normal SurfaceReduction::normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const {

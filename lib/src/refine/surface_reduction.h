@@ -22,7 +22,8 @@ namespace tufa::refine {
 ///
 /// Positions are kept in single precision, counted from the mesh's middle. Where vertices of the
 /// uniform mesh are to stay as they are, in double precision too: on open borders, beside which
-/// another mesh may go on, where the tolerance is 0, or may be in places.
+/// another mesh may go on, where the tolerance is 0, or may be in places, and those of polygons so
+/// close to each other that the last bit tells whether they intersect once they are rounded.
 class SurfaceReduction {
  public:
   /// The rule's scale holds for all tolerances. All arguments must outlive this. Releases the
@@ -67,6 +68,9 @@ class SurfaceReduction {
   base::SharedArray<base::Vec3f> positions_;
   base::SharedArray<Triangle> faces_;
   bool keepsExact_ = true;  ///< the model has positions still
+  // Else those of vertices of close polygons; the vertices rising.
+  std::vector<VertexIndex> closeVertices_;
+  std::vector<Position> closePositions_;
   std::optional<reduce::Reduction> reduction_;
   bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
   std::vector<std::uint32_t> componentOf_;  ///< of each uniform vertex
