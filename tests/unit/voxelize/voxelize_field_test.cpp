@@ -183,13 +183,16 @@ class Step : public Field {
   FieldPtr ball_ = implicit::makeSphere({0, 0, 0}, 1);
 };
 
-TEST(VoxelizeField, FieldsWithoutSlopesHaveNoHoles) {
-  const auto grid = voxelize(Step(), voxelsOf(0.1));
+void expectUnitBall(const openvdb::FloatGrid& grid) {
   ContourReport report;
-  const Mesh mesh = contour(*grid, {}, &report);
+  const Mesh mesh = contour(grid, {}, &report);
   EXPECT_EQ(report.openEdges, 0u);
   EXPECT_GT(mesh.triangleCount(), 100u);
   EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({0, 0, 0}, 1)), 0.1);
+}
+
+TEST(VoxelizeField, FieldsWithoutSlopesHaveNoHoles) {
+  expectUnitBall(*voxelize(Step(), voxelsOf(0.1)));
 }
 
 class StepWithoutGradient final : public Step {
@@ -202,12 +205,7 @@ class StepWithoutGradient final : public Step {
 
 // The inside leaked out of the extent.
 TEST(VoxelizeField, ValuesTellTheSideWhereGradientsAreNoNumbers) {
-  const auto grid = voxelize(StepWithoutGradient(), voxelsOf(0.1));
-  ContourReport report;
-  const Mesh mesh = contour(*grid, {}, &report);
-  EXPECT_EQ(report.openEdges, 0u);
-  EXPECT_GT(mesh.triangleCount(), 100u);
-  EXPECT_LT(worstVertex(mesh, *implicit::makeSphere({0, 0, 0}, 1)), 0.1);
+  expectUnitBall(*voxelize(StepWithoutGradient(), voxelsOf(0.1)));
 }
 
 /// That a solid cut by the half space where an expression is below 0 has no open edge, and that of
