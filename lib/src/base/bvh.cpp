@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "base/bits.h"
+#include "base/huge_pages.h"
 #include "base/parallel.h"
 
 namespace tufa::base {
@@ -25,15 +26,18 @@ std::uint64_t mortonCode(const Box& box, const Box& all, double scale) {
 
 }  // namespace
 
-Bvh::Bvh(std::vector<Box> boxes, Job& job) : items_(boxes.size()), boxes_(boxes.size()) {
+Bvh::Bvh(std::vector<Box> boxes, Job& job) {
   if (boxes.empty()) return;
+  resizeLarge(items_, boxes.size(), job);
+  resizeLarge(boxes_, boxes.size(), job);
   Box all = Box::empty();
   for (const Box& box : boxes) all.add(box);
   const Vec3 size = all.upper - all.lower;
   const double largest = std::max({size[0], size[1], size[2]});
   const double scale = largest > 0 ? 2097151.0 / largest : 0;
 
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes(boxes.size());
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
+  resizeLarge(codes, boxes.size(), job);
   constexpr std::size_t kGrain = 4096;
   job.forRanges(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -47,7 +51,7 @@ Bvh::Bvh(std::vector<Box> boxes, Job& job) : items_(boxes.size()), boxes_(boxes.
       boxes_[i] = boxes[items_[i]];
     }
   });
-  nodes_.resize(2 * leafCount() - 1);
+  resizeLarge(nodes_, 2 * leafCount() - 1, job);
   fill(root());
 }
 

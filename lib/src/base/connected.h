@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "base/huge_pages.h"
+
 namespace tufa::base {
 
 /// For each of some items the lowest-numbered item that it is connected with. `forPairs(connect)`
@@ -12,7 +14,9 @@ namespace tufa::base {
 template <class ForPairs>
 [[nodiscard]] std::vector<std::uint32_t> connectedItems(std::size_t count,
                                                         const ForPairs& forPairs) {
-  std::vector<std::uint32_t> parents(count);
+  std::vector<std::uint32_t> parents;
+  reserveLarge(parents, count);
+  parents.resize(count);
   std::iota(parents.begin(), parents.end(), std::uint32_t{0});
   const auto rootOf = [&](std::uint32_t i) {
     while (parents[i] != i) i = parents[i] = parents[parents[i]];

@@ -1,6 +1,7 @@
 #include "topology/misplaced.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "base/bvh.h"
 #include "base/connected.h"
 #include "base/flat_triangle.h"
+#include "base/huge_pages.h"
 #include "base/polygons.h"
 #include "base/sort_unique.h"
 #include "intersect/exact.h"
@@ -40,71 +42,122 @@ bool isAbove(const std::vector<Position>& positions, const Triangle& triangle,
   return side * intersect::orientation(a, b, c, from) < 0;
 }
 
-// A mesh and its connected components, to find what lies around a vertex. Neighbours in a mesh are
-// mostly neighbours in its arrays too, so boxes of runs of consecutive polygons serve as the leaves
-// of the tree.
+// A mesh and its connected components. Neighbours in a mesh are mostly neighbours in its arrays
+// too, so runs of consecutive polygons have small boxes.
 class Pieces {
  public:
-  Pieces(const Mesh& mesh, const std::vector<VertexIndex>& components, base::Job& job)
-      : mesh_(mesh), components_(components), runs_(boxesOfRuns(job), job) {}
+  Pieces(const Mesh& mesh, base::Job& job)
+      : mesh_(mesh), job_(job), componentOf_(connectedComponentsOf(mesh)) {
+    for (VertexIndex i = 0; i < componentOf_.size(); ++i) {
+      job.pollCancelled(i);
+      if (componentOf_[i] == i) {
+        componentOf_[i] = static_cast<std::uint32_t>(first_.size());
+        first_.push_back(i);
+        sizes_.push_back(0);
+      } else {
+        componentOf_[i] = componentOf_[componentOf_[i]];
+      }
+      ++sizes_[componentOf_[i]];
+    }
+  }
 
-  // Six times the signed volume of each component, at its lowest vertex. Taken about that vertex,
-  // so that a component far from the origin does not lose its volume to rounding.
+  [[nodiscard]] std::size_t count() const { return first_.size(); }
+  [[nodiscard]] std::uint32_t componentOf(VertexIndex vertex) const { return componentOf_[vertex]; }
+  // The lowest vertex of a component.
+  [[nodiscard]] VertexIndex first(std::size_t component) const { return first_[component]; }
+  // Vertices of a component.
+  [[nodiscard]] std::size_t size(std::size_t component) const { return sizes_[component]; }
+
+  // Six times the signed volume of each component. Taken about its lowest vertex, so that one far
+  // from the origin does not lose its volume to rounding. Sums of parts of the mesh, whichever
+  // threads make them, are added up in the order of the parts.
   [[nodiscard]] std::vector<double> volumes() const {
-    std::vector<double> volumes(components_.size());
-    forTriangles(0, mesh_.quads.size() + mesh_.triangles.size(), [&](const Triangle& triangle) {
-      const auto& v = triangle.vertices;
-      const VertexIndex component = components_[v[0]];
-      const Vec3 origin = at(component);
-      volumes[component] += (at(v[0]) - origin).dot((at(v[1]) - origin).cross(at(v[2]) - origin));
+    constexpr std::size_t kAtOnce = 4096;  // runs
+    std::vector<std::vector<std::pair<std::uint32_t, double>>> sums(runCount() / kAtOnce + 1);
+    job_.forRanges(sums.size(), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t part = from; part < to; ++part) {
+        const std::size_t last = std::min((part + 1) * kAtOnce, runCount());
+        for (std::size_t run = part * kAtOnce; run < last; ++run) {
+          forTrianglesOf(run, [&](const Triangle& triangle) { addTo(sums[part], triangle); });
+        }
+      }
     });
+    std::vector<double> volumes(count());
+    for (const auto& part : sums) {
+      for (const auto& [component, sum] : part) volumes[component] += sum;
+    }
     return volumes;
   }
 
-  // Whether the vertex lies inside an odd number of other components: whether a ray up crosses
-  // their triangles an odd number of times.
-  [[nodiscard]] bool isInside(VertexIndex vertex) const {
-    bool inside = false;
-    runs_.itemsAbove(at(vertex), [&](std::uint32_t run) {
-      forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
-        if (components_[triangle.vertices[0]] == components_[vertex]) return;
-        inside ^= isAbove(mesh_.positions, triangle, mesh_.positions[vertex]);
-      });
+  // For each of some vertices whether it lies inside an odd number of other components: whether a
+  // ray up crosses their triangles an odd number of times. The vertices, which are few, are in a
+  // tree, and the runs are looked up in it.
+  [[nodiscard]] std::vector<std::uint8_t> areInside(
+      const std::vector<VertexIndex>& vertices) const {
+    std::vector<base::Box> points;
+    for (const VertexIndex vertex : vertices) points.push_back({at(vertex), at(vertex)});
+    const base::Bvh tree(std::move(points), job_);
+    std::vector<std::uint8_t> inside(vertices.size(), 0);
+    job_.forRanges(runCount(), 256, [&](std::size_t from, std::size_t to) {
+      for (std::size_t run = from; run < to; ++run) {
+        base::Box column = boxOf(run);
+        column.lower[2] = -std::numeric_limits<double>::infinity();
+        tree.itemsMeeting(column, [&](std::uint32_t i, const base::Box&) {
+          bool isOdd = false;
+          forTrianglesOf(run, [&](const Triangle& triangle) {
+            if (componentOf_[triangle.vertices[0]] == componentOf_[vertices[i]]) return;
+            if (isAbove(mesh_.positions, triangle, mesh_.positions[vertices[i]])) isOdd = !isOdd;
+          });
+          if (!isOdd) return;
+          std::atomic_ref<std::uint8_t>(inside[i]).fetch_xor(1, std::memory_order_relaxed);
+        });
+      }
     });
     return inside;
   }
 
-  // Finds the triangle of another component that is nearest to a vertex. False if there is none.
-  [[nodiscard]] bool findNearestOther(VertexIndex vertex, Triangle& nearest) const {
-    double best = std::numeric_limits<double>::infinity();
-    return runs_.nearest(at(vertex), best, [&](std::uint32_t run) {
-      double least = best;
-      forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
-        const auto& v = triangle.vertices;
-        if (components_[v[0]] == components_[vertex]) return;
-        const double squared = base::squaredDistanceTo(at(vertex), at(v[0]), at(v[1]), at(v[2]));
-        if (squared >= least) return;
-        least = squared;
-        nearest = triangle;
+  // For each of some vertices the triangle of another component that is nearest to it, if there is
+  // one.
+  [[nodiscard]] std::vector<Triangle> nearestOthers(
+      const std::vector<VertexIndex>& vertices) const {
+    std::vector<base::Box> boxes;
+    base::resizeLarge(boxes, runCount(), job_);
+    for (std::size_t run = 0; run < boxes.size(); ++run) boxes[run] = boxOf(run);
+    const base::Bvh runs(std::move(boxes), job_);
+    std::vector<Triangle> found;
+    for (const VertexIndex vertex : vertices) {
+      job_.pollCancelled(vertex);
+      double best = std::numeric_limits<double>::infinity();
+      Triangle nearest;
+      const std::uint32_t run = runs.nearest(at(vertex), best, [&](std::uint32_t candidate) {
+        double least = best;
+        forTrianglesOf(candidate, [&](const Triangle& triangle) {
+          const auto& v = triangle.vertices;
+          if (componentOf_[v[0]] == componentOf_[vertex]) return;
+          const double squared = base::squaredDistanceTo(at(vertex), at(v[0]), at(v[1]), at(v[2]));
+          if (squared >= least) return;
+          least = squared;
+          nearest = triangle;
+        });
+        return least;
       });
-      return least;
-    }) != base::Bvh::kNone;
+      if (run != base::Bvh::kNone) found.push_back(nearest);
+    }
+    return found;
   }
 
  private:
-  static constexpr std::size_t kRun = 16;
+  static constexpr std::size_t kRun = 16;  // polygons
 
   [[nodiscard]] Vec3 at(VertexIndex vertex) const { return Vec3(mesh_.positions[vertex]); }
   [[nodiscard]] std::size_t size() const { return mesh_.quads.size() + mesh_.triangles.size(); }
-  [[nodiscard]] static std::size_t begin(std::uint32_t run) { return run * kRun; }
-  [[nodiscard]] std::size_t end(std::uint32_t run) const {
-    return std::min(begin(run) + kRun, size());
-  }
+  [[nodiscard]] std::size_t runCount() const { return (size() + kRun - 1) / kRun; }
 
-  // Calls body(triangle) for those of the polygons `begin` to `end`, quads first.
+  // Calls body(triangle) for those of a run, quads first.
   template <class Body>
-  void forTriangles(std::size_t begin, std::size_t end, const Body& body) const {
-    for (std::size_t i = begin; i < end; ++i) {
+  void forTrianglesOf(std::size_t run, const Body& body) const {
+    const std::size_t end = std::min((run + 1) * kRun, size());
+    for (std::size_t i = run * kRun; i < end; ++i) {
       if (i >= mesh_.quads.size()) {
         body(mesh_.triangles[i - mesh_.quads.size()]);
         continue;
@@ -114,22 +167,26 @@ class Pieces {
       body({v[0], v[2], v[3]});
     }
   }
-  [[nodiscard]] std::vector<base::Box> boxesOfRuns(base::Job& job) const {
-    std::vector<base::Box> boxes((size() + kRun - 1) / kRun, base::Box::empty());
-    job.forRanges(boxes.size(), 256, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const auto run = static_cast<std::uint32_t>(i);
-        forTriangles(begin(run), end(run), [&](const Triangle& triangle) {
-          for (const VertexIndex vertex : triangle.vertices) boxes[i].add(at(vertex));
-        });
-      }
+  [[nodiscard]] base::Box boxOf(std::size_t run) const {
+    base::Box box = base::Box::empty();
+    forTrianglesOf(run, [&](const Triangle& triangle) {
+      for (const VertexIndex vertex : triangle.vertices) box.add(at(vertex));
     });
-    return boxes;
+    return box;
+  }
+  void addTo(std::vector<std::pair<std::uint32_t, double>>& sums, const Triangle& triangle) const {
+    const auto& v = triangle.vertices;
+    const std::uint32_t component = componentOf_[v[0]];
+    if (sums.empty() || sums.back().first != component) sums.emplace_back(component, 0);
+    const Vec3 origin = at(first_[component]);
+    sums.back().second += (at(v[0]) - origin).dot((at(v[1]) - origin).cross(at(v[2]) - origin));
   }
 
   const Mesh& mesh_;
-  const std::vector<VertexIndex>& components_;
-  base::Bvh runs_;
+  base::Job& job_;
+  std::vector<std::uint32_t> componentOf_;  // of each vertex
+  std::vector<VertexIndex> first_;          // of each component, its lowest vertex
+  std::vector<std::size_t> sizes_;          // and how many it has
 };
 
 }  // namespace
@@ -143,47 +200,52 @@ std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
 }
 
 std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::size_t mostVertices) {
-  const std::vector<VertexIndex> names = connectedComponentsOf(mesh);
-  std::vector<VertexIndex> misplaced;
-  if (std::all_of(names.begin(), names.end(), [](VertexIndex name) { return name == 0; })) {
-    return misplaced;
+  const Pieces pieces(mesh, job);
+  if (pieces.count() <= 1) return {};
+  std::vector<VertexIndex> small;  // the first vertex of each component that is
+  for (std::size_t i = 0; i < pieces.count(); ++i) {
+    if (pieces.size(i) <= mostVertices) small.push_back(pieces.first(i));
   }
-  std::vector<std::uint32_t> sizes(names.size(), 0);
-  for (const VertexIndex name : names) ++sizes[name];
-  if (std::none_of(sizes.begin(), sizes.end(),
-                   [&](std::uint32_t size) { return size > 0 && size <= mostVertices; })) {
-    return misplaced;
-  }
-  const Pieces components(mesh, names, job);
+  if (small.empty()) return {};
   // Vertices that no polygon uses are components without volume. The component of the largest
   // volume lies in no other one.
-  const std::vector<double> volumes = components.volumes();
+  const std::vector<double> volumes = pieces.volumes();
   const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const double outermost = *std::max_element(volumes.begin(), volumes.end(), isSmaller);
-  const auto isWrong = [&](std::size_t vertex) {
-    const double volume = volumes[names[vertex]];
-    if (volume == 0) return false;
-    const bool isHole = (volume < 0) != (outermost < 0);
-    return components.isInside(static_cast<VertexIndex>(vertex)) != isHole;
-  };
-  std::vector<std::uint8_t> wrong(names.size(), 0);
-  job.forRanges(names.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      wrong[i] = names[i] == i && sizes[i] <= mostVertices && isWrong(i) ? 1 : 0;
+  // Leaves of some vertices those on the wrong side.
+  const auto keepWrong = [&](std::vector<VertexIndex>& vertices) {
+    const std::vector<std::uint8_t> inside = pieces.areInside(vertices);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const double volume = volumes[pieces.componentOf(vertices[i])];
+      const bool isHole = (volume < 0) != (outermost < 0);
+      if (volume != 0 && (inside[i] != 0) != isHole) vertices[kept++] = vertices[i];
     }
-  });
+    vertices.resize(kept);
+  };
+  keepWrong(small);
+  if (small.empty()) return {};
   // A component some of whose vertices are right intersects another one: it is not misplaced as a
   // whole. Only components whose first vertex is wrong are tested vertex by vertex.
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    job.pollCancelled(i);
-    if (names[i] != i && wrong[names[i]] != 0 && !isWrong(i)) wrong[names[i]] = 0;
+  std::vector<std::size_t> wrong(pieces.count(), 0);  // vertices
+  for (const VertexIndex vertex : small) wrong[pieces.componentOf(vertex)] = 1;
+  const auto verticesOfWrong = [&] {
+    std::vector<VertexIndex> vertices;
+    for (VertexIndex i = 0; i < mesh.positions.size(); ++i) {
+      job.pollCancelled(i);
+      if (wrong[pieces.componentOf(i)] != 0) vertices.push_back(i);
+    }
+    return vertices;
+  };
+  std::vector<VertexIndex> tested = verticesOfWrong();
+  keepWrong(tested);
+  std::fill(wrong.begin(), wrong.end(), 0);
+  for (const VertexIndex vertex : tested) ++wrong[pieces.componentOf(vertex)];
+  for (std::size_t i = 0; i < wrong.size(); ++i) {
+    if (wrong[i] != pieces.size(i)) wrong[i] = 0;
   }
-  for (VertexIndex i = 0; i < names.size(); ++i) {
-    job.pollCancelled(i);
-    if (wrong[names[i]] == 0) continue;
-    misplaced.push_back(i);
-    Triangle nearest;
-    if (!components.findNearestOther(i, nearest)) continue;
+  std::vector<VertexIndex> misplaced = verticesOfWrong();
+  for (const Triangle& nearest : pieces.nearestOthers(misplaced)) {
     misplaced.insert(misplaced.end(), nearest.vertices.begin(), nearest.vertices.end());
   }
   base::sortUnique(misplaced);

@@ -22,8 +22,8 @@ namespace tufa::topology {
 /// if the number of others around it is odd exactly if its volume has the other sign. Components
 /// that intersect others are not reported; they are left to repair. Every component that lies
 /// wholly on the wrong side is found, but for those of more than `mostVertices`. Cost: one pass for
-/// components and volumes, one ray for each component, and one for each vertex of those that seem
-/// wrong; one pass if there is only one component, or all are larger.
+/// components, one for volumes, and one for a ray from each component that is small enough; one
+/// pass if there is only one component, or all are larger. More where some seem wrong.
 [[nodiscard]] std::vector<VertexIndex> findMisplaced(
     const Mesh& mesh, base::Job& job,
     std::size_t mostVertices = std::numeric_limits<std::size_t>::max());
