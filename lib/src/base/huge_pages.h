@@ -48,4 +48,16 @@ void resizeLarge(std::vector<T>& vector, std::size_t count, Job& job, const Valu
   }
 }
 
+/// Copies a vector in parallel. `to` must be empty.
+template <class T>
+void copyLarge(const std::vector<T>& from, std::vector<T>& to, Job& job) {
+  constexpr std::size_t kGrain = 65536;
+  resizeLarge(to, from.size(), job);
+  job.forRanges(from.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin),
+              from.begin() + static_cast<std::ptrdiff_t>(end),
+              to.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
+}
+
 }  // namespace tufa::base

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/collect.h"
+#include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "intersect/surface.h"
 #include "intersect/triangle_pair.h"
@@ -63,13 +65,15 @@ bool intersectElsewhere(std::span<const Position> positions, Corners a, Corners 
 }
 
 std::vector<PolygonPair> intersectingAmong(const std::vector<PolygonPair>& pairs, const Mesh& mesh,
-                                           std::span<const Position> positions) {
+                                           std::span<const Position> positions, base::Job& job) {
+  constexpr std::size_t kGrain = 1024;
   std::vector<PolygonPair> found;
-  for (const PolygonPair& pair : pairs) {
-    if (intersectElsewhere(positions, base::cornersOf(mesh, pair.a), base::cornersOf(mesh, pair.b),
-                           pair.a == pair.b)) {
-      found.push_back(pair);
-    }
+  for (const std::uint32_t i : base::collectIf(job, pairs.size(), kGrain, [&](std::uint32_t k) {
+         const auto& [a, b] = pairs[k];
+         return intersectElsewhere(positions, base::cornersOf(mesh, a), base::cornersOf(mesh, b),
+                                   a == b);
+       })) {
+    found.push_back(pairs[i]);
   }
   return found;
 }
@@ -204,7 +208,8 @@ class SectionSearch {
 
 ClosePairs find(const Search& search, const std::vector<PolygonIndex>& candidates, base::Job& job) {
   const Surface& surface = search.surface;
-  std::vector<Box> boxes(candidates.size());
+  std::vector<Box> boxes;
+  base::resizeLarge(boxes, candidates.size(), job);
   job.forRanges(candidates.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       boxes[i] = surface.box(candidates[i]);

@@ -43,7 +43,8 @@ inline int trianglesOf(Corners v, std::array<Triangle, 2>& out) {
 /// Those of some pairs of a mesh's polygons that intersect with other positions of the vertices.
 [[nodiscard]] std::vector<PolygonPair> intersectingAmong(const std::vector<PolygonPair>& pairs,
                                                          const Mesh& mesh,
-                                                         std::span<const Position> positions);
+                                                         std::span<const Position> positions,
+                                                         base::Job& job);
 
 /// The vertices of polygons of a mesh, sorted.
 [[nodiscard]] std::vector<VertexIndex> verticesOf(const Mesh& mesh,

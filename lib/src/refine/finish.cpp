@@ -66,9 +66,10 @@ Source worldSource(SurfaceModel& model, const ExtractedMesh& extracted, base::Jo
 }
 
 // The candidates for what intersects now that the mesh is rounded.
-std::vector<intersect::PolygonIndex> candidatesOf(const ExtractedMesh& extracted) {
-  const std::vector<intersect::PolygonIndex> close = intersect::distinctPolygonsOf(
-      intersect::intersectingAmong(extracted.closePairs, extracted.mesh, extracted.mesh.positions));
+std::vector<intersect::PolygonIndex> candidatesOf(const ExtractedMesh& extracted, base::Job& job) {
+  const std::vector<intersect::PolygonIndex> close =
+      intersect::distinctPolygonsOf(intersect::intersectingAmong(
+          extracted.closePairs, extracted.mesh, extracted.mesh.positions, job));
   std::vector<intersect::PolygonIndex> candidates;
   std::set_union(close.begin(), close.end(), extracted.candidates.begin(),
                  extracted.candidates.end(), std::back_inserter(candidates));
@@ -84,21 +85,18 @@ double finishMesh(SurfaceModel& model, const ContourOptions& options, ExtractedM
   double moved = 0;
   const bool single = takeToWorld(mesh, affine, job);
   const std::vector<intersect::PolygonIndex> candidates =
-      options.repair ? candidatesOf(extracted) : std::vector<intersect::PolygonIndex>();
+      options.repair ? candidatesOf(extracted, job) : std::vector<intersect::PolygonIndex>();
   if (options.repair) report.intersectionsLeft = 0;
   if (!candidates.empty()) {
     Source source = worldSource(model, extracted, job);
     source.singlePrecision = single;
-    const std::vector<Position> before = mesh.positions;
     const RepairReport repaired = repairIntersections(mesh, candidates, source, job);
     report.intersectionsLeft = repaired.left.size();
     report.movedVertices += repaired.movedVertices;
     report.flippedDiagonals += repaired.flippedDiagonals;
     report.fannedQuads += repaired.fannedQuads;
-    if (repaired.movedVertices > 0) {
-      for (std::size_t i = 0; i < before.size(); ++i) {
-        moved = std::max(moved, (Vec3(mesh.positions[i]) - Vec3(before[i])).length());
-      }
+    for (const auto& [vertex, from] : repaired.moved) {
+      moved = std::max(moved, (Vec3(mesh.positions[vertex]) - Vec3(from)).length());
     }
   }
   if (options.normals == Normals::Faces) uniform::setFaceNormals(mesh, job);

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "base/single_precision.h"
+#include "base/huge_pages.h"
 #include "refine/rounding.h"
 
 namespace tufa::refine {
@@ -11,10 +11,10 @@ RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>
                            Source source, const grid::Affine& affine, base::Job& job) {
   if (closePairs.empty()) return {};
   Mesh world;
-  world.positions = mesh.positions;
+  base::copyLarge(mesh.positions, world.positions, job);
   source.singlePrecision = takeToWorld(world, affine, job);
   const std::vector<intersect::PolygonIndex> candidates = intersect::distinctPolygonsOf(
-      intersect::intersectingAmong(closePairs, mesh, world.positions));
+      intersect::intersectingAmong(closePairs, mesh, world.positions, job));
   if (candidates.empty()) return {};
   std::swap(world.quads, mesh.quads), std::swap(world.triangles, mesh.triangles);
   source.massPoints = [&affine,
@@ -27,12 +27,8 @@ RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>
   RepairReport repaired = repairIntersections(world, candidates, source, job);
   std::swap(world.quads, mesh.quads), std::swap(world.triangles, mesh.triangles);
   if (repaired.changed.empty()) return repaired;
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const Position& now = world.positions[i];
-    const Position before = affine.toWorld(mesh.positions[i]);
-    if (!(now == (source.singlePrecision ? base::toSingle(before) : before))) {
-      mesh.positions[i] = affine.fromWorld(now);
-    }
+  for (const auto& [vertex, from] : repaired.moved) {
+    mesh.positions[vertex] = affine.fromWorld(world.positions[vertex]);
   }
   return repaired;
 }

@@ -185,7 +185,7 @@ TEST(FindClosePairs, HoldsWhatComesToIntersect) {
     const std::vector<PolygonPair>& pairs = found.close;
     EXPECT_TRUE(std::includes(pairs.begin(), pairs.end(), found.intersecting.begin(),
                               found.intersecting.end()));
-    EXPECT_EQ(intersectingAmong(pairs, mesh, mesh.positions), found.intersecting);
+    EXPECT_EQ(intersectingAmong(pairs, mesh, mesh.positions, job), found.intersecting);
     close += pairs.size();
     for (int jitter = 0; jitter < 20; ++jitter) {
       Mesh moved = mesh;
@@ -197,7 +197,7 @@ TEST(FindClosePairs, HoldsWhatComesToIntersect) {
       const Surface other(moved, job);
       const std::vector<PolygonPair> after = findPairs(other, allOf(other), job);
       EXPECT_TRUE(std::includes(pairs.begin(), pairs.end(), after.begin(), after.end()));
-      EXPECT_EQ(intersectingAmong(pairs, mesh, moved.positions), after);
+      EXPECT_EQ(intersectingAmong(pairs, mesh, moved.positions, job), after);
       all += after.size();
       for (const PolygonPair& pair : after) {
         later += std::binary_search(found.intersecting.begin(), found.intersecting.end(), pair)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "base/bvh.h"
@@ -53,6 +54,11 @@ class Repairer {
     if (source_.lastResort) repairInRounds(true);
     surface_.finish();
     base::sortUnique(report_.changed);
+    for (const auto& [vertex, from] : before_) {
+      if (!(surface_.mesh().positions[vertex] == from)) report_.moved.push_back({vertex, from});
+    }
+    std::sort(report_.moved.begin(), report_.moved.end(),
+              [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
     report_.left = std::move(pairs_);
     return std::move(report_);
   }
@@ -103,13 +109,18 @@ class Repairer {
   std::vector<intersect::PolygonIndex> retreatAll() {
     for (const auto& [vertex, to] : fallbacks_.massPoints) {
       if (surface_.mesh().positions[vertex] == to) continue;
-      surface_.move(vertex, to);
-      ++report_.movedVertices;
+      move(vertex, to);
     }
     std::vector<intersect::PolygonIndex> all(surface_.size());
     std::iota(all.begin(), all.end(), intersect::PolygonIndex{0});
     for (const intersect::PolygonIndex polygon : all) surface_.update(polygon);
     return all;
+  }
+
+  void move(VertexIndex vertex, const Position& to) {
+    if (vertex < ownVertices_) before_.try_emplace(vertex, surface_.mesh().positions[vertex]);
+    surface_.move(vertex, to);
+    ++report_.movedVertices;
   }
 
   // Each group is repaired in a copy of its surroundings, in parallel; changes are applied in the
@@ -238,7 +249,7 @@ class Repairer {
   }
 
   void apply(const Changes& changes, std::vector<intersect::PolygonIndex>& changed) {
-    for (const auto& [vertex, to] : changes.moves) surface_.move(vertex, to);
+    for (const auto& [vertex, to] : changes.moves) move(vertex, to);
     for (const intersect::PolygonIndex quad : changes.turns) surface_.turn(quad);
     for (const auto& [quad, centre] : changes.fans) {
       const auto first = static_cast<intersect::PolygonIndex>(surface_.size());
@@ -247,7 +258,6 @@ class Repairer {
     }
     for (const intersect::PolygonIndex polygon : changes.polygons) surface_.update(polygon);
     changed.insert(changed.end(), changes.polygons.begin(), changes.polygons.end());
-    report_.movedVertices += changes.moves.size();
     report_.flippedDiagonals += changes.turns.size();
     report_.fannedQuads += changes.fans.size();
   }
@@ -274,8 +284,9 @@ class Repairer {
   VertexIndex ownVertices_;  // those behind are centres of fans
   std::vector<intersect::PolygonPair> pairs_;
   FallbackPositions fallbacks_;
-  std::set<intersect::PolygonPair> stuck_;  // pairs that nothing in this phase helps
-  std::vector<Box> sights_;                 // surroundings of the groups
+  std::unordered_map<VertexIndex, Position> before_;  // where vertices were that have moved
+  std::set<intersect::PolygonPair> stuck_;            // pairs that nothing in this phase helps
+  std::vector<Box> sights_;                           // surroundings of the groups
   RepairReport report_;
 };
 

@@ -30,11 +30,16 @@ struct Source {
 
 /// What a repair found and did.
 struct RepairReport {
+  struct Moved {
+    VertexIndex vertex;
+    Position from;
+  };
   std::size_t pairsFound = 0;  ///< pairs of polygons that intersected
   std::size_t movedVertices = 0;
   std::size_t flippedDiagonals = 0;              ///< split along their other diagonal
   std::size_t fannedQuads = 0;                   ///< replaced by four triangles around a new vertex
   std::vector<intersect::PolygonIndex> changed;  ///< polygons that are not as they were, sorted
+  std::vector<Moved> moved;                      ///< vertices that are not where they were, sorted
   std::vector<intersect::PolygonPair> left;      ///< pairs that still intersect
 };
 
