@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "uniform/acute.h"
 #include "uniform/point_grid.h"
 #include "uniform/quad_places.h"
@@ -68,6 +69,25 @@ std::optional<Vec3> onAll(const Plane& a, const Plane& b, const Plane& c) {
          volume;
 }
 
+// The lowest order of the moves of each vertex that has some. Moves are few beside vertices.
+class LowestOrders {
+ public:
+  explicit LowestOrders(const std::vector<Move>& moves) {
+    for (const Move& move : moves) orders_.emplace_back(move.vertex, move.order);
+    std::sort(orders_.begin(), orders_.end());
+  }
+  // Above all orders if the vertex has none.
+  [[nodiscard]] std::uint64_t of(VertexIndex vertex) const {
+    const auto at =
+        std::lower_bound(orders_.begin(), orders_.end(), std::pair(vertex, std::uint64_t{0}));
+    return at != orders_.end() && at->first == vertex ? at->second
+                                                      : std::numeric_limits<std::uint64_t>::max();
+  }
+
+ private:
+  std::vector<std::pair<VertexIndex, std::uint64_t>> orders_;
+};
+
 class CreaseSnapper {
  public:
   CreaseSnapper(Mesh& mesh, VertexSheets& sheets, double voxelSize, const QuadsAt& quadsAt,
@@ -81,7 +101,7 @@ class CreaseSnapper {
 
   std::size_t run(base::Job& job) {
     collectCorners();
-    isTouched_.resize(mesh_.positions.size());
+    base::resizeLarge(isTouched_, mesh_.positions.size(), job);
     std::size_t moved = 0;
     for (int round = 0; round < kRounds; ++round) {
       std::vector<Move> moves = round == 0 ? findMoves(job) : findMovesAgain(job);
@@ -156,23 +176,18 @@ class CreaseSnapper {
   // Keeps the snaps that wait for none: no lower one moves a vertex of the same quad. So the kept
   // ones are independent, and which they are depends on what is near alone.
   void dropContested(std::vector<Move>& moves) {
-    lowest_.resize(mesh_.positions.size(), kNoMove);
-    for (const Move& move : moves) {
-      std::uint64_t& lowest = lowest_[move.vertex];
-      lowest = std::min(lowest, move.order);
-    }
+    const LowestOrders lowest(moves);
     std::vector<Move> kept;
     for (const Move& move : moves) {
       const auto& v = mesh_.quads[move.quad].vertices;
       const bool waits = std::any_of(
-          v.begin(), v.end(), [&](VertexIndex vertex) { return lowest_[vertex] < move.order; });
+          v.begin(), v.end(), [&](VertexIndex vertex) { return lowest.of(vertex) < move.order; });
       if (waits) {
         touch(v[0]);
       } else {
         kept.push_back(move);
       }
     }
-    for (const Move& move : moves) lowest_[move.vertex] = kNoMove;
     std::sort(kept.begin(), kept.end(),
               [](const Move& a, const Move& b) { return a.order < b.order; });
     moves = std::move(kept);
@@ -349,8 +364,6 @@ class CreaseSnapper {
   PointGrid corners_;
   std::vector<VertexIndex> touched_;     // around which the next round looks
   std::vector<std::uint8_t> isTouched_;  // of each vertex
-  static constexpr std::uint64_t kNoMove = std::numeric_limits<std::uint64_t>::max();
-  std::vector<std::uint64_t> lowest_;  // order of the moves of each vertex, kNoMove between rounds
 };
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/huge_pages.h"
+
 namespace tufa::uniform {
 namespace {
 
@@ -9,6 +11,27 @@ namespace {
 constexpr double kSameSide = 0.95;
 
 }  // namespace
+
+VertexSheets::VertexSheets(std::size_t vertices) {
+  base::reserveLarge(kinds_, vertices);
+  base::reserveLarge(outOfCell_, vertices);
+  kinds_.resize(vertices, Kind::Smooth);
+  outOfCell_.resize(vertices, 0);
+}
+
+void VertexSheets::setMeeting(VertexIndex vertex, const MeetingSheets& sheets) {
+  if (entryOf_.empty()) {
+    base::reserveLarge(entryOf_, kinds_.size());
+    entryOf_.resize(kinds_.size(), 0);
+  }
+  std::uint32_t& entry = entryOf_[vertex];
+  if (entry == 0) {
+    entries_.emplace_back();
+    entry = static_cast<std::uint32_t>(entries_.size());
+  }
+  entries_[entry - 1] = sheets;
+  kinds_[vertex] = Kind::Meeting;
+}
 
 MeetingSheets VertexSheets::sheets(const Mesh& mesh, VertexIndex vertex) const {
   switch (kinds_[vertex]) {

@@ -32,8 +32,7 @@ class VertexSheets {
     Unknown,  ///< on several sheets that could not be told apart
   };
 
-  explicit VertexSheets(std::size_t vertices = 0)
-      : kinds_(vertices, Kind::Smooth), outOfCell_(vertices, 0) {}
+  explicit VertexSheets(std::size_t vertices = 0);
 
   [[nodiscard]] Kind kind(VertexIndex vertex) const { return kinds_[vertex]; }
   [[nodiscard]] bool isSharp(VertexIndex vertex) const { return kinds_[vertex] >= Kind::Meeting; }
@@ -46,16 +45,7 @@ class VertexSheets {
   [[nodiscard]] bool isOutOfCell(VertexIndex vertex) const { return outOfCell_[vertex] != 0; }
   /// May be called from several threads.
   void setOutOfCell(VertexIndex vertex) { outOfCell_[vertex] = 1; }
-  void setMeeting(VertexIndex vertex, const MeetingSheets& sheets) {
-    if (entryOf_.empty()) entryOf_.resize(kinds_.size(), 0);
-    std::uint32_t& entry = entryOf_[vertex];
-    if (entry == 0) {
-      entries_.emplace_back();
-      entry = static_cast<std::uint32_t>(entries_.size());
-    }
-    entries_[entry - 1] = sheets;
-    kinds_[vertex] = Kind::Meeting;
-  }
+  void setMeeting(VertexIndex vertex, const MeetingSheets& sheets);
   /// Takes back a place at a crease: the vertex is in its cell again, and on no known crease.
   void withdraw(VertexIndex vertex) {
     outOfCell_[vertex] = 0;
