@@ -204,18 +204,18 @@ Triangle ConflictFinder::cornersOf(std::uint32_t face) const {
   return face % 2 == 0 ? Triangle{v[0], v[1], v[2]} : Triangle{v[0], v[2], v[3]};
 }
 
-Vec3 ConflictFinder::normalOf(std::uint32_t face) const {
+Vec3 ConflictFinder::normalOf(std::uint32_t face, const Trial& trial) const {
   const Triangle t = cornersOf(face);
-  const Vec3 a = pointOf(t.vertices[0]);
-  return (pointOf(t.vertices[1]) - a).cross(pointOf(t.vertices[2]) - a);
+  const Vec3 a = pointOf(t.vertices[0], trial);
+  return (pointOf(t.vertices[1], trial) - a).cross(pointOf(t.vertices[2], trial) - a);
 }
 
 // Which of a quad's triangles are more than 70 degrees off the normal of one of their vertices.
-ConflictFinder::Off ConflictFinder::offIn(std::uint32_t quad) const {
+ConflictFinder::Off ConflictFinder::offIn(std::uint32_t quad, const Trial& trial) const {
   const auto& v = mesh_.quads[quad].vertices;
-  const Vec3 a = pointOf(v[0]), diagonal = pointOf(v[2]) - a;
-  const std::array<Vec3, 2> normals = {(pointOf(v[1]) - a).cross(diagonal),
-                                       diagonal.cross(pointOf(v[3]) - a)};
+  const Vec3 a = pointOf(v[0], trial), diagonal = pointOf(v[2], trial) - a;
+  const std::array<Vec3, 2> normals = {(pointOf(v[1], trial) - a).cross(diagonal),
+                                       diagonal.cross(pointOf(v[3], trial) - a)};
   const Vec3 first(mesh_.normals[v[0]]), third(mesh_.normals[v[2]]);
   Off off{};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -234,19 +234,20 @@ void ConflictFinder::addOff(std::uint32_t quad, std::vector<std::uint32_t>& face
   }
 }
 
-bool ConflictFinder::isWithin(double voxels, VertexIndex a, VertexIndex b) const {
+bool ConflictFinder::isWithin(double voxels, VertexIndex a, VertexIndex b,
+                              const Trial& trial) const {
   const double distance = voxels * surface_.affine().voxelSize();
-  return (pointOf(a) - pointOf(b)).squaredLength() < distance * distance;
+  return (pointOf(a, trial) - pointOf(b, trial)).squaredLength() < distance * distance;
 }
 
-bool ConflictFinder::isTurnedOver(std::uint32_t quad) const {
+bool ConflictFinder::isTurnedOver(std::uint32_t quad, const Trial& trial) const {
   if (mesh_.normals.empty()) return false;
-  const Off off = offIn(quad);
+  const Off off = offIn(quad, trial);
   return off[0] || off[1];
 }
 
-bool ConflictFinder::isFold(const EdgeFace& a, const EdgeFace& b) const {
-  const Vec3 na = normalOf(a.face), nb = normalOf(b.face);
+bool ConflictFinder::isFold(const EdgeFace& a, const EdgeFace& b, const Trial& trial) const {
+  const Vec3 na = normalOf(a.face, trial), nb = normalOf(b.face, trial);
   const double least = 2 * kLeastArea * std::pow(surface_.affine().voxelSize(), 2);
   if (std::min(na.squaredLength(), nb.squaredLength()) < least * least) return false;
   const double cosine = na.dot(nb);
@@ -291,19 +292,39 @@ Involved ConflictFinder::involvedIn(const Conflict& conflict) const {
   return out;
 }
 
-bool ConflictFinder::isConflict(const Conflict& conflict) const {
+bool ConflictFinder::isConflict(const Conflict& conflict, const Trial& trial) const {
   switch (conflict.kind) {
     case Conflict::Kind::SamePoint:
-      return isWithin(kSameCrease, conflict.edge[0], conflict.edge[1]);
+      return isWithin(kSameCrease, conflict.edge[0], conflict.edge[1], trial);
     case Conflict::Kind::Fold:
       return isFold({conflict.edge[0], conflict.edge[1], conflict.parts[0]},
-                    {conflict.edge[0], conflict.edge[1], conflict.parts[1]});
+                    {conflict.edge[0], conflict.edge[1], conflict.parts[1]}, trial);
     case Conflict::Kind::Pair:
       break;
   }
-  const auto [a, b] = conflict.parts;
-  return intersect::intersectElsewhere(mesh_.positions, mesh_.quads[a].vertices,
-                                       mesh_.quads[b].vertices, a == b);
+  return intersect(conflict.parts[0], conflict.parts[1], trial);
+}
+
+// In a copy of the two quads, of which one corner may be somewhere else.
+bool ConflictFinder::intersect(std::uint32_t a, std::uint32_t b, const Trial& trial) const {
+  std::array<Position, 8> positions;
+  std::array<VertexIndex, 8> vertices;
+  std::size_t count = 0;
+  const auto copyOf = [&](const Quad& quad) {
+    Quad own;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const VertexIndex v = quad.vertices[i];
+      const auto* const known = std::find(vertices.begin(), vertices.begin() + count, v);
+      own.vertices[i] = static_cast<VertexIndex>(known - vertices.begin());
+      if (known != vertices.begin() + count) continue;
+      positions[count] = v == trial.vertex ? trial.to : mesh_.positions[v];
+      vertices[count++] = v;
+    }
+    return own;
+  };
+  const Quad first = copyOf(mesh_.quads[a]), second = copyOf(mesh_.quads[b]);
+  return intersect::intersectElsewhere({positions.data(), count}, first.vertices, second.vertices,
+                                       a == b);
 }
 
 }  // namespace tufa::refine

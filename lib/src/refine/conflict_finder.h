@@ -38,10 +38,11 @@ class ConflictFinder {
   [[nodiscard]] std::vector<Conflict> findAroundMoved(Pairs which);
 
   /// Whether a conflict is one still, whatever has moved.
-  [[nodiscard]] bool isConflict(const Conflict& conflict) const;
+  [[nodiscard]] bool isConflict(const Conflict& conflict, const Trial& trial) const;
   /// Whether one of a quad's triangles is turned over.
-  [[nodiscard]] bool isTurnedOver(std::uint32_t quad) const;
-  [[nodiscard]] bool isWithin(double voxels, VertexIndex a, VertexIndex b) const;
+  [[nodiscard]] bool isTurnedOver(std::uint32_t quad, const Trial& trial = {}) const;
+  [[nodiscard]] bool isWithin(double voxels, VertexIndex a, VertexIndex b,
+                              const Trial& trial = {}) const;
   [[nodiscard]] Involved involvedIn(const Conflict& conflict) const;
 
   /// The candidates of the mesh as it was at the last search. Sorted.
@@ -54,12 +55,15 @@ class ConflictFinder {
   struct EdgeFace;
 
   [[nodiscard]] Triangle cornersOf(std::uint32_t face) const;
-  [[nodiscard]] Vec3 pointOf(VertexIndex vertex) const { return Vec3(mesh_.positions[vertex]); }
-  [[nodiscard]] Vec3 normalOf(std::uint32_t face) const;
+  [[nodiscard]] Vec3 pointOf(VertexIndex vertex, const Trial& trial) const {
+    return Vec3(vertex == trial.vertex ? trial.to : mesh_.positions[vertex]);
+  }
+  [[nodiscard]] Vec3 normalOf(std::uint32_t face, const Trial& trial) const;
   using Off = std::array<bool, 2>;  // of a quad's triangles
-  [[nodiscard]] Off offIn(std::uint32_t quad) const;
+  [[nodiscard]] Off offIn(std::uint32_t quad, const Trial& trial = {}) const;
   void addOff(std::uint32_t quad, std::vector<std::uint32_t>& faces) const;
-  [[nodiscard]] bool isFold(const EdgeFace& a, const EdgeFace& b) const;
+  [[nodiscard]] bool isFold(const EdgeFace& a, const EdgeFace& b, const Trial& trial = {}) const;
+  [[nodiscard]] bool intersect(std::uint32_t a, std::uint32_t b, const Trial& trial) const;
   [[nodiscard]] bool isSharpAt(VertexIndex vertex, const Vec3& na, const Vec3& nb) const;
   void addFolds(const std::vector<std::uint32_t>& off, std::vector<Conflict>& conflicts);
   void addPairs(const intersect::ClosePairs& found, std::vector<Conflict>& conflicts);

@@ -17,6 +17,12 @@ struct Conflict {
   std::array<VertexIndex, 2> edge{};  ///< of a fold; or the two vertices at one point
 };
 
+/// A vertex that is taken to be somewhere else; none by default.
+struct Trial {
+  VertexIndex vertex = ~VertexIndex{0};
+  Position to{0, 0, 0};
+};
+
 /// The vertices that a conflict is between.
 struct Involved {
   std::array<VertexIndex, 8> vertices;

@@ -67,40 +67,57 @@ class PlacementGuard {
   // points at once: what the smallest moves would come to, after many rounds.
   std::vector<VertexIndex> withdrawFrom(const std::vector<Conflict>& conflicts) {
     const std::vector<VertexIndex> vertices = verticesOf(conflicts);
-    const auto [plain, mass] =
+    const uniform::FallbackPoints points =
         uniform::fallbackPoints(surface_.volume.blocks, surface_.volume.scale, surface_.topology,
                                 surface_.affine(), vertices, job_);
-    const auto slotOf = [&](VertexIndex vertex) {
-      return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
-                                      vertices.begin());
-    };
     std::vector<std::optional<Move>> chosen(vertices.size());
     if (conflicts.size() > mesh_.quads.size()) {
       for (std::size_t slot = 0; slot < vertices.size(); ++slot) {
         if (placementMoves_.isAtMassPoint(vertices[slot])) continue;
-        chosen[slot] = PlacementMoves::toMassPoint(vertices[slot], mass[slot]);
+        chosen[slot] = PlacementMoves::toMassPoint(vertices[slot], points.mass[slot]);
       }
       return apply(chosen);
     }
-    std::vector<Move> moves;
-    for (const Conflict& conflict : conflicts) {
-      moves.clear();
-      const Involved involved = finder_.involvedIn(conflict);
-      for (int i = 0; i < involved.count; ++i) {
-        const std::size_t slot = slotOf(involved.vertices[i]);
-        placementMoves_.add(involved.vertices[i], plain[slot], mass[slot], moves);
-        if (conflict.kind == Conflict::Kind::Fold) {
-          placementMoves_.addSlidesOnSheet(involved.vertices[i], moves);
-        }
-      }
-      if (const Move* move = settling(conflict, moves)) {
-        std::optional<Move>& best = chosen[slotOf(move->vertex)];
-        if (!best || leavesFewer(*move, *best)) best = *move;
-      } else {
+    for (const std::optional<Move>& move : settlingMoves(conflicts, vertices, points)) {
+      if (!move) {
         ++result_.left;
+        continue;
       }
+      std::optional<Move>& best = chosen[slotOf(vertices, move->vertex)];
+      if (!best || leavesFewer(*move, *best)) best = move;
     }
     return apply(chosen);
+  }
+
+  // The place of a vertex among others, which rise.
+  static std::size_t slotOf(const std::vector<VertexIndex>& vertices, VertexIndex vertex) {
+    return static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
+                                    vertices.begin());
+  }
+
+  // For each conflict the smallest move that settles it, if there is one; `points` are those of the
+  // vertices of all conflicts. Nothing is moved, so conflicts do not see each other's moves.
+  [[nodiscard]] std::vector<std::optional<Move>> settlingMoves(
+      const std::vector<Conflict>& conflicts, const std::vector<VertexIndex>& vertices,
+      const uniform::FallbackPoints& points) {
+    std::vector<std::optional<Move>> settling(conflicts.size());
+    job_.forRanges(conflicts.size(), 64, [&](std::size_t begin, std::size_t end) {
+      std::vector<Move> moves;
+      for (std::size_t c = begin; c < end; ++c) {
+        moves.clear();
+        const Involved involved = finder_.involvedIn(conflicts[c]);
+        for (int i = 0; i < involved.count; ++i) {
+          const VertexIndex vertex = involved.vertices[i];
+          const std::size_t slot = slotOf(vertices, vertex);
+          placementMoves_.add(vertex, points.plain[slot], points.mass[slot], moves);
+          if (conflicts[c].kind == Conflict::Kind::Fold) {
+            placementMoves_.addSlidesOnSheet(vertex, moves);
+          }
+        }
+        settling[c] = moveSettling(conflicts[c], moves);
+      }
+    });
+    return settling;
   }
 
   // The vertices of all conflicts, rising. Marked as they are found: where a surface touches itself
@@ -121,7 +138,8 @@ class PlacementGuard {
 
   // The smallest move that settles a conflict, or else the smallest to a place of its own. Sorts
   // the moves from the back, only as far as they are tried.
-  const Move* settling(const Conflict& conflict, std::vector<Move>& moves) {
+  [[nodiscard]] std::optional<Move> moveSettling(const Conflict& conflict,
+                                                 std::vector<Move>& moves) const {
     const auto isDearer = [](const Move& a, const Move& b) {
       return std::pair(a.cost, a.vertex) > std::pair(b.cost, b.vertex);
     };
@@ -129,26 +147,27 @@ class PlacementGuard {
     for (auto end = moves.end(); end != moves.begin(); --end) {
       std::pop_heap(moves.begin(), end, isDearer);
       const Move& move = end[-1];
-      const Position was = mesh_.positions[move.vertex];
-      mesh_.positions[move.vertex] = move.to;
-      const bool settles =
-          !finder_.isConflict(conflict) && (!move.isSlide || maySlide(move.vertex, conflict));
-      mesh_.positions[move.vertex] = was;
-      if (settles) return &move;
+      const Trial trial{move.vertex, move.to};
+      if (!finder_.isConflict(conflict, trial) && (!move.isSlide || maySlide(trial, conflict))) {
+        return move;
+      }
     }
     const auto first = std::find_if(moves.rbegin(), moves.rend(), PlacementMoves::isWhole);
-    return first == moves.rend() ? nullptr : &*first;
+    return first == moves.rend() ? std::optional<Move>() : *first;
   }
 
   // Whether a vertex may stay where it has slid. Two at the same point of a crease may be in any
   // order along it: in the wrong one a triangle is turned over.
-  [[nodiscard]] bool maySlide(VertexIndex vertex, const Conflict& conflict) const {
-    if (conflict.kind == Conflict::Kind::SamePoint && finder_.isTurnedOver(conflict.parts[0]))
+  [[nodiscard]] bool maySlide(const Trial& trial, const Conflict& conflict) const {
+    if (conflict.kind == Conflict::Kind::SamePoint &&
+        finder_.isTurnedOver(conflict.parts[0], trial)) {
       return false;
+    }
     const Involved involved = finder_.involvedIn(conflict);
     return std::none_of(involved.vertices.begin(), involved.vertices.begin() + involved.count,
                         [&](VertexIndex other) {
-                          return other != vertex && finder_.isWithin(kApart, vertex, other);
+                          return other != trial.vertex &&
+                                 finder_.isWithin(kApart, trial.vertex, other, trial);
                         });
   }
 
