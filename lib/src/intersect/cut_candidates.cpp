@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/huge_pages.h"
 #include "base/polygons.h"
 #include "intersect/envelope.h"
 #include "uniform/block_ranges.h"
@@ -41,7 +42,7 @@ class CutEnvelopes {
   std::vector<std::uint8_t> run() {
     findCells();
     leaveOutSharedCells();
-    isCandidate_.resize(mesh_.quads.size() + mesh_.triangles.size());
+    base::resizeLarge(isCandidate_, mesh_.quads.size() + mesh_.triangles.size(), job_);
     test(made_.quadSources, 0);
     test(made_.triangleSources, mesh_.quads.size());
     return std::move(isCandidate_);
@@ -49,7 +50,7 @@ class CutEnvelopes {
 
  private:
   void findCells() {
-    cells_.resize(cut_.clusters.size());
+    base::resizeLarge(cells_, cut_.clusters.size(), job_);
     job_.forRanges(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const octree::ClusterRef& ref = cut_.clusters[i];

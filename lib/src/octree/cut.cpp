@@ -25,7 +25,7 @@ class Numbering {
     std::vector<VertexIndex> first(count + 1);
     forBlocks([&](std::size_t i) { first[i + 1] = countInBlock(i); });
     for (std::size_t i = 0; i < count; ++i) first[i + 1] += first[i];
-    cut_.clusters.resize(first[count]);
+    base::resizeLarge(cut_.clusters, first[count], job_);
     numberLargeCells();
     job_.checkCancelled(0, 1);
     forBlocks([&](std::size_t i) { numberBlock(i, first[i]); });

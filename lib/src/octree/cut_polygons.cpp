@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/huge_pages.h"
+
 #include "uniform/diagonal.h"
 
 namespace tufa::octree {
@@ -11,8 +13,8 @@ constexpr std::size_t kChunk = 4096;
 
 void placeVertices(const ClusterForest& forest, const Cut& cut, const Mesh& base,
                    const grid::Affine& affine, Mesh& mesh, base::Job& job) {
-  mesh.positions.resize(cut.clusters.size());
-  mesh.normals.resize(cut.clusters.size());
+  base::resizeLarge(mesh.positions, cut.clusters.size(), job);
+  base::resizeLarge(mesh.normals, cut.clusters.size(), job);
   job.forRanges(cut.clusters.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ClusterRef& ref = cut.clusters[i];
@@ -113,10 +115,10 @@ CutMesh meshCut(const ClusterForest& forest, const Cut& cut, const Mesh& base,
     before[chunk + 1].quads += before[chunk].quads;
     before[chunk + 1].triangles += before[chunk].triangles;
   }
-  mesh.quads.resize(before[chunks].quads);
-  mesh.triangles.resize(before[chunks].triangles);
-  result.quadSources.resize(before[chunks].quads);
-  result.triangleSources.resize(before[chunks].triangles);
+  base::resizeLarge(mesh.quads, before[chunks].quads, job);
+  base::resizeLarge(mesh.triangles, before[chunks].triangles, job);
+  base::resizeLarge(result.quadSources, before[chunks].quads, job);
+  base::resizeLarge(result.triangleSources, before[chunks].triangles, job);
   job.forRanges(chunks, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       Counts next = before[chunk];

@@ -5,6 +5,7 @@
 #include <functional>
 #include <utility>
 
+#include "base/huge_pages.h"
 #include "base/parallel.h"
 #include "base/polygons.h"
 #include "base/small_angles.h"
@@ -91,9 +92,9 @@ std::vector<VertexIndex> meetingVertices(const Mesh& mesh,
                                          const std::vector<std::uint8_t>& second,
                                          const grid::Affine& affine, base::Job& job) {
   Mesh world;
-  world.positions = mesh.positions;
-  world.quads = mesh.quads;
-  world.triangles = mesh.triangles;
+  base::copyLarge(mesh.positions, world.positions, job);
+  base::copyLarge(mesh.quads, world.quads, job);
+  base::copyLarge(mesh.triangles, world.triangles, job);
   (void)takeToWorld(world, affine, job);
   const intersect::Surface surface(world, job);
   return intersect::verticesOf(

@@ -114,7 +114,7 @@ class Measure {
 
   // Of a quad with one vertex in a larger cell, a triangle may have none.
   void splitFolds() {
-    for (const auto& [a, b] : findFolds(overlay_.triangles(), cut_, owners_.base)) {
+    for (const auto& [a, b] : findFolds(overlay_.triangles(), cut_, owners_.base, owners_.job)) {
       std::vector<VertexIndex> corners;
       for (const Index t : {a, b}) {
         const base::Corners v =

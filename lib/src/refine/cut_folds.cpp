@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/collect.h"
+#include "base/huge_pages.h"
+
 namespace tufa::refine {
 namespace {
 
 using base::Vec3f;
 using reduce::Index;
 
+constexpr std::size_t kGrain = 16384;
 // Cosine of 149 degrees and area in square voxels: positions are still to be rounded.
 constexpr float kFoldCosine = -0.857f;
 constexpr float kLeastArea = 0.048f;
@@ -28,32 +32,38 @@ struct Fold {
 };
 
 // Of triangles below the least area, none.
-std::vector<Vec3f> normalsOf(const CutTriangles& triangles) {
-  std::vector<Vec3f> normals(triangles.corners.size());
-  for (Index t = 0; t < normals.size(); ++t) {
-    const Vec3f a = triangles(t, 0);
-    const Vec3f normal = cross(triangles(t, 1) - a, triangles(t, 2) - a);
-    const float size = length(normal);
-    normals[t] = size > 2 * kLeastArea ? normal * (1 / size) : Vec3f();
-  }
+std::vector<Vec3f> normalsOf(const CutTriangles& triangles, base::Job& job) {
+  std::vector<Vec3f> normals;
+  base::resizeLarge(normals, triangles.corners.size(), job);
+  job.forRanges(normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (Index t = static_cast<Index>(begin); t < end; ++t) {
+      const Vec3f a = triangles(t, 0);
+      const Vec3f normal = cross(triangles(t, 1) - a, triangles(t, 2) - a);
+      const float size = length(normal);
+      normals[t] = size > 2 * kLeastArea ? normal * (1 / size) : Vec3f();
+    }
+  });
   return normals;
 }
 
-std::vector<Fold> foldsOf(const CutTriangles& triangles) {
-  const std::vector<Vec3f> normals = normalsOf(triangles);
+std::vector<Fold> foldsOf(const CutTriangles& triangles, base::Job& job) {
+  const std::vector<Vec3f> normals = normalsOf(triangles, job);
+  const auto cosineAt = [&](Index corner, Index across) {
+    return dot(normals[corner / 3], normals[across / 3]);
+  };
   std::vector<Fold> folds;
-  for (Index t = 0; t < normals.size(); ++t) {
-    for (int i = 0; i < 3; ++i) {
-      const Index across = triangles.opposite[3 * t + static_cast<Index>(i)];
-      if (across == reduce::kNone || across / 3 < t) continue;
-      const Index other = across / 3;
-      const float cosine = dot(normals[t], normals[other]);
-      if (cosine >= kFoldCosine) continue;
-      folds.push_back({{t, other},
-                       {Vec3(normals[t]), Vec3(normals[other])},
-                       {triangles.vertex(t, (i + 1) % 3), triangles.vertex(t, (i + 2) % 3)},
-                       static_cast<double>(cosine)});
-    }
+  for (const Index corner :
+       base::collectIf(job, triangles.opposite.size(), kGrain, [&](Index corner) {
+         const Index across = triangles.opposite[corner];
+         return across != reduce::kNone && across / 3 >= corner / 3 &&
+                cosineAt(corner, across) < kFoldCosine;
+       })) {
+    const Index across = triangles.opposite[corner], t = corner / 3, other = across / 3;
+    const auto i = static_cast<int>(corner % 3);
+    folds.push_back({{t, other},
+                     {Vec3(normals[t]), Vec3(normals[other])},
+                     {triangles.vertex(t, (i + 1) % 3), triangles.vertex(t, (i + 2) % 3)},
+                     static_cast<double>(cosineAt(corner, across))});
   }
   return folds;
 }
@@ -104,8 +114,8 @@ void findSharp(const octree::Cut& cut, const uniform::SurfaceView& base, std::ve
 }  // namespace
 
 std::vector<std::array<Index, 2>> findFolds(const CutTriangles& triangles, const octree::Cut& cut,
-                                            const uniform::SurfaceView& base) {
-  std::vector<Fold> folds = foldsOf(triangles);
+                                            const uniform::SurfaceView& base, base::Job& job) {
+  std::vector<Fold> folds = foldsOf(triangles, job);
   if (!folds.empty()) findSharp(cut, base, folds);
   std::vector<std::array<Index, 2>> pairs;
   for (const Fold& fold : folds) {

@@ -15,6 +15,7 @@ namespace tufa::refine {
 /// 150.5 degrees sheets as sharp excuse faces of up to 150.
 [[nodiscard]] std::vector<std::array<reduce::Index, 2>> findFolds(const CutTriangles& triangles,
                                                                   const octree::Cut& cut,
-                                                                  const uniform::SurfaceView& base);
+                                                                  const uniform::SurfaceView& base,
+                                                                  base::Job& job);
 
 }  // namespace tufa::refine

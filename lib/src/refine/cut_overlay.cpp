@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/huge_pages.h"
+
 namespace tufa::refine {
 namespace {
 
@@ -30,7 +32,7 @@ std::vector<std::uint8_t> grown(const Mesh& mesh, const std::vector<std::uint8_t
 
 CutOverlay::CutOverlay(const CutOwners& owners, const octree::Cut& cut, const octree::CutMesh& made)
     : owners_(owners), cut_(cut), made_(made), mesh_(made.mesh) {
-  polygonOf_.assign(owners_.base.mesh.quads.size(), kNone);
+  base::resizeLarge(polygonOf_, owners_.base.mesh.quads.size(), owners_.job, kNone);
   forEach(owners_.job, mesh_.quads.size() + mesh_.triangles.size(), [&](std::size_t i) {
     const auto polygon = static_cast<base::PolygonIndex>(i);
     polygonOf_[made_.sourceOf(polygon)] = polygon;
@@ -78,26 +80,55 @@ void CutOverlay::collectTriangles(const std::vector<std::uint8_t>& isCorner) {
     for (const VertexIndex v : cornersOf(owners_.owner[r], storage)) mark(marks, v);
   });
   for (int i = 0; i < 3; ++i) marks = grown(mesh_, marks, owners_.job);
-  localOf_.resize(2 * owners_.base.mesh.quads.size());
-  const auto count = static_cast<base::PolygonIndex>(mesh_.quads.size() + mesh_.triangles.size());
-  for (base::PolygonIndex polygon = 0; polygon < count; ++polygon) {
-    const base::Corners v = base::cornersOf(mesh_, polygon);
-    if (std::none_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; })) continue;
-    const std::uint32_t id = 2 * made_.sourceOf(polygon);
-    add({v[0], v[1], v[2]}, id);
-    if (v.size() == 4) add({v[0], v[2], v[3]}, id + 1);
-  }
-  triangles_.positions.resize(mesh_.positions.size());
+  base::resizeLarge(localOf_, 2 * owners_.base.mesh.quads.size(), owners_.job);
+  addMarked(marks);
+  base::resizeLarge(triangles_.positions, mesh_.positions.size(), owners_.job);
   forEach(owners_.job, mesh_.positions.size(),
           [&](std::size_t i) { triangles_.positions[i] = owners_.toVoxels(mesh_.positions[i]); });
   corners_.emplace(mesh_.positions.size(), triangles_.corners, owners_.job);
   triangles_.opposite = reduce::oppositeCorners(triangles_.corners, *corners_, owners_.job);
 }
 
-void CutOverlay::add(const Triangle& corners, std::uint32_t id) {
-  localOf_[id] = static_cast<Index>(triangles_.corners.size());
-  triangles_.corners.push_back(corners);
-  triangles_.ids.push_back(id);
+// The triangles of polygons with a marked vertex, in the order of the mesh. Each range of polygons
+// is counted first, so that ranges are filled in at the same time.
+void CutOverlay::addMarked(const std::vector<std::uint8_t>& marks) {
+  const std::size_t count = mesh_.quads.size() + mesh_.triangles.size();
+  const auto forMarked = [&](std::size_t range, const auto& body) {
+    const std::size_t end = std::min((range + 1) * kGrain, count);
+    for (std::size_t i = range * kGrain; i < end; ++i) {
+      const auto polygon = static_cast<base::PolygonIndex>(i);
+      const base::Corners v = base::cornersOf(mesh_, polygon);
+      if (std::any_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; }))
+        body(polygon, v);
+    }
+  };
+  const std::size_t ranges = (count + kGrain - 1) / kGrain;
+  std::vector<Index> first(ranges + 1);
+  owners_.job.forRanges(ranges, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t range = begin; range < end; ++range) {
+      forMarked(range, [&](base::PolygonIndex, base::Corners v) {
+        first[range + 1] += static_cast<Index>(v.size() - 2);
+      });
+    }
+  });
+  for (std::size_t range = 0; range < ranges; ++range) first[range + 1] += first[range];
+  base::resizeLarge(triangles_.corners, first[ranges], owners_.job);
+  base::resizeLarge(triangles_.ids, first[ranges], owners_.job);
+  owners_.job.forRanges(ranges, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t range = begin; range < end; ++range) {
+      Index next = first[range];
+      const auto add = [&](const Triangle& corners, std::uint32_t id) {
+        localOf_[id] = next;
+        triangles_.corners[next] = corners;
+        triangles_.ids[next++] = id;
+      };
+      forMarked(range, [&](base::PolygonIndex polygon, base::Corners v) {
+        const std::uint32_t id = 2 * made_.sourceOf(polygon);
+        add({v[0], v[1], v[2]}, id);
+        if (v.size() == 4) add({v[0], v[2], v[3]}, id + 1);
+      });
+    }
+  });
 }
 
 reduce::OwnedFace CutOverlay::ownedFace(const Triangle& r) const {

@@ -57,7 +57,7 @@ class CutOverlay {
   [[nodiscard]] float acrossOneEdge2(const reduce::OwnedFace& face) const;
   bool findWay(const reduce::OwnedFace& face, std::size_t a, std::size_t b, float limit2,
                reduce::OverlayPath& way) const;
-  void add(const Triangle& corners, std::uint32_t id);
+  void addMarked(const std::vector<std::uint8_t>& marks);
 
   const CutOwners& owners_;
   const octree::Cut& cut_;

@@ -31,9 +31,9 @@ CutOwners::CutOwners(const uniform::SurfaceView& view, const octree::CutRule& ru
   job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = toVoxels(base.mesh.positions[i]);
   });
-  owner.assign(count, octree::kNone);
-  distance.assign(count, 0);
-  faceBound.assign(2 * base.mesh.quads.size(), 0);
+  base::resizeLarge(owner, count, job, octree::kNone);
+  base::resizeLarge(distance, count, job);
+  base::resizeLarge(faceBound, 2 * base.mesh.quads.size(), job);
 }
 
 base::Vec3f CutOwners::toVoxels(const Position& p) const {
