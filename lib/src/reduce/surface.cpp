@@ -221,7 +221,7 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
   leftTriangles.count();
   std::vector<Triangle> triangles;
   std::vector<Index> regions;
-  triangles.reserve(leftTriangles.size());
+  base::reserveLarge(triangles, leftTriangles.size());
   regions.reserve(s.hasLines() ? leftTriangles.size() : 0);
   leftTriangles.forAll([&](std::size_t t) {
     job.pollCancelled(t);
@@ -238,8 +238,10 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
   }
   leftVertices.count();
   const std::size_t count = leftVertices.size();
-  std::vector<Vec3f> positions(count);
-  std::vector<Index> sources(count), faces(count);
+  std::vector<Vec3f> positions;
+  std::vector<Index> sources, faces;
+  base::resizeLarge(positions, count, job);
+  base::resizeLarge(sources, count, job), base::resizeLarge(faces, count, job);
   Index n = 0;
   leftVertices.forAll([&](std::size_t at) {
     job.pollCancelled(at);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/box.h"
+#include "base/huge_pages.h"
 #include "base/interpolated_normal.h"
 #include "base/single_precision.h"
 #include "refine/surface_reduction.h"
@@ -37,7 +38,8 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
   }
   middle_ = box.centre();
   const auto localsOf = [&](const std::vector<Position>& from) {
-    std::vector<Vec3f> local(from.size());
+    std::vector<Vec3f> local;
+    base::resizeLarge(local, from.size(), job);
     job.forRanges(local.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) local[i] = localOf(from[i]);
     });

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/collect.h"
+#include "base/huge_pages.h"
 #include "base/shrink.h"
 #include "base/single_precision.h"
 #include "base/vec3.h"
@@ -109,17 +110,17 @@ class Cutter {
     // For the vertices that cuts make, or all would be moved when the first one is made: three cuts
     // across some three edges a vertex, which are half a voxel long along an axis.
     const std::size_t room = uniform_.size() + 5 * uniform_.size() / size_;
-    at_.reserve(room), place_.reserve(room), moved_.reserve(room);
-    out_.mesh.normals.reserve(hasNormals_ ? room : 0), out_.isNew.reserve(room);
-    at_.resize(uniform_.size());
+    const auto make = [&](auto& vector) {
+      base::reservePopulated(vector, room, job_);
+      base::resizeLarge(vector, uniform_.size(), job_);
+    };
+    make(at_), make(place_), make(moved_), make(out_.isNew);
+    if (hasNormals_) base::reserveLarge(out_.mesh.normals, room);
     job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         at_[v] = affine_.latticePoint(uniform_[v], affine_.origin());
       }
     });
-    moved_.assign(at_.size(), 0);
-    out_.isNew.assign(at_.size(), 0);
-    place_.resize(at_.size());
   }
 
   // Of all vertices: those that were made on planes of other axes too.
@@ -170,7 +171,8 @@ class Cutter {
   // changed, and returns how far that moves the surface at most.
   template <class Change>
   void unlessIntersecting(const Change& change) {
-    const std::vector<Triangle> before = out_.mesh.triangles;
+    std::vector<Triangle> before;
+    base::copyLarge(out_.mesh.triangles, before, job_);
     std::vector<std::uint8_t> stays(at_.size(), 0);
     std::vector<VertexIndex> changed;
     double moved = 0;
@@ -236,7 +238,7 @@ class Cutter {
           const auto [low, high] = rangeOf(rest[t], axis);
           return low + 2 - (low & 1) < high;
         });
-    done.reserve(rest.size() + 3 * passing.size());
+    base::reservePopulated(done, rest.size() + 3 * passing.size(), job_);
     cuts_.clear();
     std::vector<Triangle> open;
     auto next = rest.begin();
@@ -337,7 +339,8 @@ class Cutter {
     });
     for (VertexIndex v = old; v < at_.size(); ++v) uniform_.push_back(positionOf(v));
     mesh.positions = std::move(uniform_);
-    std::vector<Coord> chunkOf(mesh.triangles.size());
+    std::vector<Coord> chunkOf;
+    base::resizeLarge(chunkOf, mesh.triangles.size(), job_);
     job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) chunkOf[t] = chunkAt(mesh.triangles[t]);
     });
@@ -345,7 +348,8 @@ class Cutter {
     std::unique_copy(chunkOf.begin(), chunkOf.end(), std::back_inserter(out_.chunks));
     std::sort(out_.chunks.begin(), out_.chunks.end());
     out_.chunks.erase(std::unique(out_.chunks.begin(), out_.chunks.end()), out_.chunks.end());
-    std::vector<std::uint32_t> placeOf(chunkOf.size());
+    std::vector<std::uint32_t> placeOf;
+    base::resizeLarge(placeOf, chunkOf.size(), job_);
     job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto found = std::lower_bound(out_.chunks.begin(), out_.chunks.end(), chunkOf[t]);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/collect.h"
+#include "base/huge_pages.h"
 #include "chunks/cut/pairs_at.h"
 #include "chunks/cut/turned.h"
 
@@ -40,8 +41,8 @@ class PlaneMover {
     });
     if (near_.empty()) return {};
     findTouched();
-    target_.assign(points_.size(), kStays);
-    before_.assign(points_.size(), kStays);
+    base::resizeLarge(target_, points_.size(), job_, kStays);
+    base::resizeLarge(before_, points_.size(), job_, kStays);
     std::vector<double> first;
     for (const VertexIndex v : near_) first.push_back(points_[v][axis_]);
     for (const Move& move : kMoves) make(move);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/collect.h"
+#include "base/huge_pages.h"
 #include "base/ranked_bits.h"
 
 namespace tufa::chunks {
@@ -71,14 +72,14 @@ std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
 Mesh meshOf(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& some,
             std::size_t vertices, const PlaceOfVertex& placeOf) {
   Mesh mesh;
-  mesh.triangles.reserve(some.size());
+  base::reserveLarge(mesh.triangles, some.size());
   base::RankedBits used(vertices);
   for (const std::uint32_t t : some) {
     mesh.triangles.push_back(triangles[t]);
     for (const VertexIndex v : triangles[t].vertices) used.add(v);
   }
   used.count();
-  mesh.positions.reserve(used.size());
+  base::reserveLarge(mesh.positions, used.size());
   used.forAll(
       [&](std::size_t v) { mesh.positions.emplace_back(placeOf(static_cast<VertexIndex>(v))); });
   for (Triangle& t : mesh.triangles) {
@@ -104,12 +105,12 @@ std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& tri
   if (kMany * touched.size() < triangles.size()) {
     near = trianglesNear(triangles, at, touched, job);
   } else {
-    near.resize(triangles.size());
+    base::resizeLarge(near, triangles.size(), job);
     std::iota(near.begin(), near.end(), 0);
   }
   Mesh mesh = meshOf(triangles, near, at.size(), placeOf);
   std::vector<intersect::PolygonIndex> candidates;
-  candidates.reserve(touched.size());
+  base::reserveLarge(candidates, touched.size());
   for (std::size_t i = 0, next = 0; i < near.size(); ++i) {
     if (next == touched.size() || touched[next] != near[i]) continue;
     candidates.push_back(static_cast<std::uint32_t>(i));

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "base/ranked_bits.h"
 #include "base/single_precision.h"
 #include "refine/repair/repair.h"
@@ -34,7 +35,8 @@ class TakenPlaces {
   TakenPlaces(const base::RankedBits& used, std::size_t vertices, const PlaceOf& placeOf,
               base::Job& job)
       : size_(std::bit_ceil(8 * vertices + 1)), taken_(size_) {
-    std::vector<std::size_t> hashes(vertices);
+    std::vector<std::size_t> hashes;
+    base::resizeLarge(hashes, vertices, job);
     job.forRanges(vertices, 16384, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) hashes[v] = hashOf(placeOf(v));
     });
@@ -110,15 +112,16 @@ void separateRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecis
   if (cut.isSeparated) return;
   std::vector<Position>& positions = cut.mesh.positions;
   Mesh rounded;
-  rounded.positions.resize(positions.size());
-  rounded.triangles = cut.mesh.triangles;
+  base::resizeLarge(rounded.positions, positions.size(), job);
+  base::copyLarge(cut.mesh.triangles, rounded.triangles, job);
   job.forRanges(positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Position world = affine.toWorld(positions[v]);
       rounded.positions[v] = singlePrecision ? base::toSingle(world) : world;
     }
   });
-  const std::vector<Position> before = rounded.positions;
+  std::vector<Position> before;
+  base::copyLarge(rounded.positions, before, job);
   refine::Source source;
   source.massPoints = [&](const std::vector<VertexIndex>& vertices) {
     std::vector<Position> points;
