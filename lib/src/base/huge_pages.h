@@ -48,6 +48,15 @@ void resizeLarge(std::vector<T>& vector, std::size_t count, Job& job, const Valu
   }
 }
 
+/// Makes room for so many elements, those that there are included; these move to the new room.
+template <class T>
+void growLarge(std::vector<T>& vector, std::size_t count) {
+  std::vector<T> larger;
+  reserveLarge(larger, count);
+  larger.insert(larger.end(), vector.begin(), vector.end());
+  vector.swap(larger);
+}
+
 /// Copies a vector in parallel. `to` must be empty.
 template <class T>
 void copyLarge(const std::vector<T>& from, std::vector<T>& to, Job& job) {

@@ -38,6 +38,7 @@ class Neighbourhood {
   void look(const List& triangles, const Box3f& within) {
     Box3f bounds;
     float sizes = 0;
+    items_.reserve(triangles.size());
     for (const Index t : triangles) {
       const Vec3f p[3] = {surface_.corner(t, 0), surface_.corner(t, 1), surface_.corner(t, 2)};
       Box3f box = boxOf(p);

@@ -94,7 +94,10 @@ void Part::loadSamples(const Surface& surface) {
   wasFar_.assign(triangleCount_, 0);
   sampleIds_ = surface.isWhole ? partition_->vertices(number_) : partition_->samples(number_);
   const auto renew = [&](auto& vector) {
-    if (vector.capacity() < sampleIds_.size()) base::release(vector);
+    if (vector.capacity() < sampleIds_.size()) {
+      base::release(vector);
+      base::reserveLarge(vector, sampleIds_.size());
+    }
     vector.resize(sampleIds_.size());
   };
   renew(samples_), renew(isRough_), renew(owners_);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/huge_pages.h"
 #include "base/sort_unique.h"
 #include "reduce/overlay_path.h"
 #include "reduce/part.h"
@@ -356,7 +357,10 @@ bool Part::facesNear() {
   }
   if (roughFaces_.empty()) return true;
   base::sortUnique(roughFaces_);
-  if (takers_.empty()) takers_.assign(owners_.size(), {kNone, 0});
+  if (takers_.empty()) {
+    base::reserveLarge(takers_, owners_.size());
+    takers_.resize(owners_.size(), {kNone, 0});
+  }
   for (const Taken& t : taken_) {
     takers_[t.sample] = {t.triangle, now_};
   }

@@ -236,6 +236,7 @@ void Partition::sortSamples(const Surface& surface, std::size_t part, std::vecto
   next.assign(triangles + 1, 0);
   for (const Index r : own) ++next[localTriangle_[surface.owner[r]] + 1];
   for (std::size_t t = 0; t < triangles; ++t) next[t + 1] += next[t];
+  if (sorted.capacity() < own.size()) base::reserveLarge(sorted, own.size());
   sorted.resize(own.size());
   for (const Index r : own) sorted[next[localTriangle_[surface.owner[r]]]++] = r;
   for (Index s = 0; s < own.size(); ++s) own[s] = sorted[s], localSample_[sorted[s]] = s;

@@ -115,7 +115,7 @@ class Cutter {
       base::resizeLarge(vector, uniform_.size(), job_);
     };
     make(at_), make(place_), make(moved_), make(out_.isNew);
-    if (hasNormals_) base::reserveLarge(out_.mesh.normals, room);
+    if (hasNormals_) base::growLarge(out_.mesh.normals, room);
     job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         at_[v] = affine_.latticePoint(uniform_[v], affine_.origin());
@@ -332,13 +332,13 @@ class Cutter {
 
   void finish() {
     Mesh& mesh = out_.mesh;
-    const auto old = static_cast<VertexIndex>(uniform_.size());
-    uniform_.reserve(at_.size());
-    job_.forRanges(old, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (auto v = static_cast<VertexIndex>(begin); v < end; ++v) uniform_[v] = positionOf(v);
+    base::resizeLarge(mesh.positions, at_.size(), job_);
+    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (auto v = static_cast<VertexIndex>(begin); v < end; ++v) {
+        mesh.positions[v] = positionOf(v);
+      }
     });
-    for (VertexIndex v = old; v < at_.size(); ++v) uniform_.push_back(positionOf(v));
-    mesh.positions = std::move(uniform_);
+    base::release(uniform_);
     std::vector<Coord> chunkOf;
     base::resizeLarge(chunkOf, mesh.triangles.size(), job_);
     job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -358,7 +358,8 @@ class Cutter {
     });
     out_.chunkOf = std::move(placeOf);
     base::release(chunkOf), base::release(at_);
-    mesh.normals.shrink_to_fit(), out_.isNew.shrink_to_fit();
+    base::shrinkTo(mesh.normals, mesh.normals.size());
+    base::shrinkTo(out_.isNew, out_.isNew.size());
     namePlanes(place_, out_, job_);
   }
 
