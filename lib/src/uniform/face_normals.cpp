@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/huge_pages.h"
 #include "uniform/place_vertices.h"
 
 namespace tufa::uniform {
@@ -15,7 +16,8 @@ Vec3 at(const Mesh& mesh, VertexIndex vertex) {
 
 void setFaceNormals(Mesh& mesh, base::Job& job) {
   // Serial sums, so that their order does not depend on the number of threads.
-  std::vector<Vec3> sums(mesh.positions.size(), Vec3(0));
+  std::vector<Vec3> sums;
+  base::resizeLarge(sums, mesh.positions.size(), job, Vec3(0));
   for (const Triangle& triangle : triangulate(mesh)) {
     const auto& v = triangle.vertices;
     const Vec3 p[3] = {at(mesh, v[0]), at(mesh, v[1]), at(mesh, v[2])};
@@ -27,7 +29,7 @@ void setFaceNormals(Mesh& mesh, base::Job& job) {
       sums[v[i]] += normal * std::acos(std::clamp(a.dot(b), -1.0, 1.0));
     }
   }
-  mesh.normals.resize(mesh.positions.size());
+  base::resizeLarge(mesh.normals, mesh.positions.size(), job);
   job.forRanges(sums.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Vec3 n = sums[i];

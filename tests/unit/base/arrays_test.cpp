@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/huge_pages.h"
 #include "base/ranked_bits.h"
 #include "base/shared_array.h"
 #include "base/shrink.h"
@@ -63,6 +64,24 @@ TEST(Shrink, GivesRoomBack) {
   EXPECT_EQ(numbers[9], 9);
   release(numbers);
   EXPECT_EQ(numbers.capacity(), 0U);
+}
+
+// Many steps of clearing, and an end that fills none.
+TEST(LargeArrays, KeepTheirElements) {
+  constexpr std::size_t kCount = 3'000'001;
+  Job job(2, {});
+  std::vector<std::uint64_t> numbers, copy;
+  resizeLarge(numbers, kCount, job, std::uint64_t{7});
+  ASSERT_EQ(numbers.size(), kCount);
+  for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(std::exchange(numbers[i], 3 * i), 7U);
+  copyLarge(numbers, copy, job);
+  EXPECT_EQ(copy, numbers);
+  growLarge(copy, 2 * kCount);
+  EXPECT_GE(copy.capacity(), 2 * kCount);
+  EXPECT_EQ(copy, numbers);
+  copy.clear();
+  copyLarge(std::vector<std::uint64_t>(), copy, job);
+  EXPECT_TRUE(copy.empty());
 }
 
 }  // namespace

@@ -89,7 +89,8 @@ TEST(Repair, UnfoldsASheet) {
   Mesh good = foldedSheet();
   good.positions[12] = {2, 2, 0};
   ASSERT_TRUE(allPairs(good).empty());
-  Mesh mesh = foldedSheet();
+  const Mesh before = foldedSheet();
+  Mesh mesh = before;
   const std::size_t pairs = allPairs(mesh).size();
   ASSERT_GT(pairs, 0U);
   base::Job job(0, {});
@@ -100,6 +101,17 @@ TEST(Repair, UnfoldsASheet) {
   EXPECT_TRUE(allPairs(mesh).empty());
   EXPECT_EQ(mesh.quads.size(), 16U);
   EXPECT_EQ(mesh.positions.size(), 25U);
+  // It tells which vertices have moved, and from where.
+  Mesh undone = mesh;
+  VertexIndex next = 0;
+  for (const auto& [vertex, from] : report.moved) {
+    EXPECT_GE(vertex, next);
+    EXPECT_NE(undone.positions[vertex], from);
+    undone.positions[vertex] = from;
+    next = vertex + 1;
+  }
+  EXPECT_EQ(report.moved.size(), 1U);
+  EXPECT_EQ(undone.positions, before.positions);
 }
 
 TEST(Repair, LeavesAGoodMeshAlone) {

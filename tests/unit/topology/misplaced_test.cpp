@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace tufa::topology {
 namespace {
 
@@ -89,6 +91,29 @@ TEST(Misplaced, AreFoundWhereRaysPassThroughVertices) {
   addTetrahedron(mesh, {0.25, 0.25, 0.25}, 0.125);
   addTetrahedron(mesh, {0.25, 0.25, 3.25}, 0.125);
   EXPECT_EQ(misplaced(mesh).size(), 2u * (4 + 3));
+}
+
+// Over several parts that are summed up by themselves, whichever threads do it.
+TEST(Misplaced, AreTheSameForAnyThreads) {
+  Mesh mesh;
+  addTetrahedron(mesh, {-1, -1, -1}, 400);
+  Vertices expected;
+  for (int i = 0; i < 40'000; ++i) {
+    const double x = 1 + i % 40, y = 1 + i / 40 % 40, z = 1 + i / 1600;
+    const auto first = static_cast<VertexIndex>(mesh.positions.size());
+    addTetrahedron(mesh, {x, y, z}, 0.5, i % 1000 == 0);
+    if (i % 1000 == 0) expected.insert(expected.end(), {first, first + 1, first + 2, first + 3});
+  }
+  Vertices found[3];
+  for (int threads = 1; threads <= 3; ++threads) {
+    base::Job job(threads, {});
+    found[threads - 1] = findMisplaced(mesh, job);
+  }
+  EXPECT_EQ(found[1], found[0]);
+  EXPECT_EQ(found[2], found[0]);
+  // And the triangles nearest to them.
+  EXPECT_TRUE(std::includes(found[0].begin(), found[0].end(), expected.begin(), expected.end()));
+  EXPECT_LE(found[0].size(), 40U * (4 + 4 * 3));
 }
 
 }  // namespace
