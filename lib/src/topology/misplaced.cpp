@@ -245,6 +245,7 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::si
     if (wrong[i] != pieces.size(i)) wrong[i] = 0;
   }
   std::vector<VertexIndex> misplaced = verticesOfWrong();
+  if (misplaced.empty()) return {};
   for (const Triangle& nearest : pieces.nearestOthers(misplaced)) {
     misplaced.insert(misplaced.end(), nearest.vertices.begin(), nearest.vertices.end());
   }
