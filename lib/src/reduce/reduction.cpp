@@ -46,6 +46,9 @@ constexpr int kMostValenceAtLast = 40;
 constexpr float kMostTurnAtLast = 120;
 // Voxels; at larger tolerances the first attempt lets edges end anywhere near.
 constexpr float kLooseTolerance = 4;
+// A proxy is good for tolerances from so many times its error on: what it takes of them costs 3% of
+// the triangles at most.
+constexpr float kProxyRatio = 15;
 // What was beyond the tolerance is held within so many tolerances and voxels: at this share of the
 // tolerance, down to so many voxels; below, and where that does not help, it stays as it is.
 constexpr float kHeldTolerances = 2;
@@ -121,6 +124,8 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
   tolerance *= largestScale_;
   if (lines == LineMode::Alone) beginLines();
   if (tolerance < kLeastTolerance) return;
+  chooseReference(tolerance);
+  tolerance -= proxyError();
   lines_ = lines;
   keepsShape_ = true;
   const float toleranceBefore = tolerance_;
@@ -139,6 +144,31 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     surface_ = before ? *before : wholeSurface();
   }
   reference_.releaseAll();
+}
+
+Certificate Reduction::certificate() const {
+  Certificate all = certificate_;
+  if (!original_) return all;
+  all.largest += proxy_->largest;
+  all.mean += proxy_->mean;
+  for (float& largest : all.ofRegion) largest += proxy_->largest;
+  return all;
+}
+
+// The mesh of the first tolerance stands in for the reference from tolerances on that are many
+// times its error. The surface, which is within `now` of the reference, must be within what is left
+// of the tolerance. Where scales differ from place to place, so would what is left.
+void Reduction::chooseReference(float tolerance) {
+  const bool isMeasured = !isReference_ && tolerance_ > 0;
+  if (original_ || !isMeasured || reference_.hasScales()) return;
+  if (!proxy_) proxy_ = makeProxy(surface_, certificate_.largest, certificate_.mean);
+  const float error = proxy_->largest, now = std::max(tolerance_, certificate_.largest);
+  if (tolerance < std::max(kProxyRatio * error, now + 2 * error)) return;
+  ReferenceMesh mesh = makeReference(*proxy_, job_);
+  handOver(surface_, reference_, *proxy_, mesh, job_);
+  proxy_->owners = {};
+  original_ = std::exchange(reference_, std::move(mesh));
+  tolerance_ += error;
 }
 
 // Less is allowed around some faces of the reference than the tolerance.
@@ -332,6 +362,11 @@ ReducedMesh Reduction::mesh() const {
                    s.source,
                    s.face,
                    {s.region.begin(), s.region.end()}};
+  if (original_) {
+    for (Index v = 0; v < s.position.size(); ++v) {
+      mesh.faces[v] = faceBelow(*original_, *proxy_, s.face[v], s.position[v], s.axis[v]);
+    }
+  }
   if (!s.isWhole) return mesh;
   for (Index v = 0; v < s.position.size(); ++v) {
     mesh.sources.push_back(v);

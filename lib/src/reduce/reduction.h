@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "reduce/certificate.h"
 #include "reduce/operations.h"
 #include "reduce/partition.h"
+#include "reduce/proxy.h"
 #include "reduce/reference_mesh.h"
 #include "reduce/surface.h"
 
@@ -103,7 +105,7 @@ class Reduction {
     return static_cast<Index>(surface_.triangles.size());
   }
   /// What was measured last. A mesh that is still the reference has a certificate of 0.
-  [[nodiscard]] const Certificate& certificate() const { return certificate_; }
+  [[nodiscard]] Certificate certificate() const;
   /// How often the mesh was reduced to the last tolerance.
   [[nodiscard]] int attempts() const { return attempt_ + 1; }
   [[nodiscard]] ReducedMesh mesh() const;
@@ -146,6 +148,9 @@ class Reduction {
   [[nodiscard]] Surface wholeSurface() const;
   void descendTo(float tolerance, Index count);
   float toCountWithin(Index count, float mostTolerance);
+  void chooseReference(float tolerance);
+  /// How far a distance to the present reference may be from that to the one that came in.
+  [[nodiscard]] float proxyError() const { return original_ ? proxy_->largest : 0; }
   bool findCount(Index count, float mostTolerance);
   void buildParts();
   void beginLines();
@@ -168,6 +173,8 @@ class Reduction {
   std::function<Regions()> regions_;  ///< empty without regions
   Surface surface_;
   ReferenceMesh reference_;
+  std::optional<Proxy> proxy_;  ///< the mesh of the first tolerance, once there is a second
+  std::optional<ReferenceMesh> original_;  ///< that came in, once the proxy is the reference
   Partition partition_;
   std::mutex partsMutex_;
   std::vector<std::unique_ptr<Part>> parts_;  ///< as many as threads have been at work
@@ -175,7 +182,7 @@ class Reduction {
   std::vector<std::array<Index, 2>> lastChanges_;  ///< see Part::changes()
   std::vector<Form> lastForms_;                    ///< see Part::forms()
   std::vector<SurfaceChanges> lastStored_;         ///< see Part::stored()
-  Certificate certificate_;
+  Certificate certificate_;                        ///< of the distance to the present reference
   float largestScale_;  ///< what tolerances from outside are multiplied with
   bool isReference_;    ///< the mesh is the reference still
   std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance

@@ -39,7 +39,8 @@ void Reduction::restore(const State& state) {
 }
 
 float Reduction::toCount(Index count, float mostTolerance) {
-  return toCountWithin(count, mostTolerance * largestScale_) / largestScale_;
+  const float most = mostTolerance * largestScale_ - proxyError();
+  return (toCountWithin(count, most) + proxyError()) / largestScale_;
 }
 
 // Where the certificate is beyond the tolerance that was found, the mesh is left as it was around

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "reduce/triangles.h"
 #include "support/mesh_oracle.h"
 #include "unit/reduce/meshes.h"
 
@@ -158,6 +159,56 @@ TEST(Reduction, OfAChainGoesOnFromLevelToLevel) {
     reduction.toTolerance(tolerance);
     EXPECT_LT(reduction.triangleCount(), last);
     last = reduction.triangleCount();
+    EXPECT_LE(reduction.certificate().largest, tolerance);
+  }
+}
+
+// The vertices lie over faces of the mesh that came in, whatever they were measured against.
+void expectFacesNear(const test::FineMesh& input, const ReducedMesh& mesh, float most) {
+  ASSERT_EQ(mesh.faces.size(), mesh.positions.size());
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    ASSERT_LT(mesh.faces[v], input.triangles.size());
+    const auto& [a, b, c] = input.triangles[mesh.faces[v]].vertices;
+    const float d2 = squaredDistanceToTriangle(mesh.positions[v], input.positions[a],
+                                               input.positions[b], input.positions[c]);
+    EXPECT_LE(std::sqrt(d2), most);
+  }
+}
+
+class ChainsByProxy : public testing::TestWithParam<unsigned> {};
+
+// From 0.3 on distances are measured to the mesh of the first tolerance.
+TEST_P(ChainsByProxy, KeepToTheMeshThatCameIn) {
+  const unsigned seed = GetParam();
+  const test::FineMesh mesh =
+      seed % 2 == 0 ? test::bumpySphere(5, 8, 1, seed) : test::noiseSolid(12, 6, seed);
+  base::Job job(1, {});
+  Options options;
+  options.partVertices = 1000;
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
+  Index last = reduction.triangleCount();
+  for (const float tolerance : {0.02f, 0.1f, 0.3f, 0.6f, 2.0f}) {
+    reduction.toTolerance(tolerance);
+    EXPECT_LT(reduction.triangleCount(), last);
+    last = reduction.triangleCount();
+    const Certificate certificate = reduction.certificate();
+    EXPECT_LE(certificate.largest, tolerance);
+    EXPECT_GT(certificate.largest, 0.6f * tolerance);
+    EXPECT_LE(certificate.mean, certificate.largest);
+    expectSound(mesh, reduction.mesh(), certificate);
+    expectFacesNear(mesh, reduction.mesh(), 3 * tolerance);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ChainsByProxy, testing::Range(1U, 7U));
+
+// The mesh at 1.45 may be farther from the one at 0.1 than is left of the next tolerance.
+TEST(Reduction, IsMeasuredByProxyOnlyWhereThatIsWithinTheTolerance) {
+  const test::FineMesh mesh = test::bumpySphere(5, 16, 3, 4);
+  base::Job job(1, {});
+  Reduction reduction(mesh.input(), mesh.input(), {}, {}, {}, job);
+  for (const float tolerance : {0.1f, 1.45f, 1.5f, 3.0f}) {
+    reduction.toTolerance(tolerance);
     EXPECT_LE(reduction.certificate().largest, tolerance);
   }
 }
