@@ -18,9 +18,9 @@ struct StageTime {
 
 /// What was measured of an adaptive mesh: its distance to the uniform mesh, and counts.
 struct Certificate {
-  double maxErrorVoxels = 0;               ///< to the uniform mesh, both ways: a bound
-  /// Mean over the vertices of the uniform mesh; of an LOD that was measured to LOD 0, over those of
-  /// LOD 0, and LOD 0's own mean.
+  double maxErrorVoxels = 0;  ///< to the uniform mesh, both ways: a bound
+  /// Mean over the vertices of the uniform mesh; of an LOD that was measured to LOD 0, over those
+  /// of LOD 0, and LOD 0's own mean.
   double meanErrorVoxels = 0;
   double maxErrorWorld = 0;                ///< maxErrorVoxels in world units
   std::int64_t eulerCharacteristic = 0;    ///< vertices - edges + faces

@@ -107,11 +107,13 @@ void Part::loadSamples(const Surface& surface) {
     findOwnersAtVertices(surface);
   } else {
     for (Index s = 0; s < sampleIds_.size(); ++s) {
+      job_->pollCancelled(s);
       owners_[s] = partition_->localTriangle(surface.owner[sampleIds_[s]]);
     }
   }
   hasRough_ = false;
   for (Index s = 0; s < sampleIds_.size(); ++s) {
+    job_->pollCancelled(s);
     const Index r = sampleIds_[s], t = owners_[s];
     if (t == kNone) continue;
     samples_[s] = {reference_->positions()[r], firstSample_[t]};

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/job.h"
 #include "reduce/box_list.h"
 #include "reduce/lines.h"
 #include "reduce/local_quadric.h"
@@ -24,9 +25,11 @@ namespace tufa::reduce {
 /// An operation is tried on the copy, passes all guards or is refused, and is then made for good.
 /// The guards, in the order in which they are asked (see Outcome): topology, place, shape of the
 /// triangles, folds, stars, distance, intersections. One object serves many parts in turn, and
-/// keeps its memory.
+/// keeps its memory. Long work asks `job` now and then whether it is cancelled: a part of a coarse
+/// surface has many samples.
 class Part {
  public:
+  explicit Part(base::Job& job) : job_(&job) {}
   void load(const Surface& surface, const ReferenceMesh& reference, const Partition& partition,
             Index number, const PhaseLimits& limits);
   /// Contracts clusters, connected vertices of one cube, each to one vertex. For meshes as fine as
@@ -109,6 +112,10 @@ class Part {
   void loadQuadrics();
   void loadSamples(const Surface& surface);
   void findOwnersAtVertices(const Surface& surface);
+  void pollAttempt() {
+    constexpr std::size_t kBetween = 256;
+    if (++attempts_ % kBetween == 0) job_->checkCancelled(0, 1);
+  }
   void push(float cost, const Candidate& candidate);
   bool pop(Candidate& candidate);
   void giveSamples();
@@ -261,6 +268,8 @@ class Part {
   bool flipIntersects(const Index* v);
   void applyFlip(const Index* v);
 
+  base::Job* job_;
+  std::size_t attempts_ = 0;
   const Surface* surface_ = nullptr;
   const ReferenceMesh* reference_ = nullptr;
   const Partition* partition_ = nullptr;

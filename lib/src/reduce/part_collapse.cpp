@@ -29,6 +29,7 @@ void Part::collapseProposed() {
       ++counts_.overQuota;
       continue;  // until the queue is empty
     }
+    pollAttempt();
     const Outcome outcome = tryCollapse(e.a, e.b);
     ++counts_.collapses[static_cast<std::size_t>(outcome)];
     done_ += outcome == Outcome::Done;

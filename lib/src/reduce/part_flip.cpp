@@ -21,6 +21,7 @@ void Part::flipAll() {
     bool isAny = false;
     for (Index c = 0; c < 3 * triangleCount_; ++c) {
       if (isDead(c / 3) || opposite_[c] == kNone || opposite_[c] < c) continue;
+      pollAttempt();
       const Outcome outcome = tryFlip(c);
       ++counts_.flips[static_cast<std::size_t>(outcome)];
       isAny |= outcome == Outcome::Done;

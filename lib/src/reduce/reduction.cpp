@@ -298,7 +298,7 @@ std::vector<Index> Reduction::largestFirst() const {
 
 std::unique_ptr<Part> Reduction::takePart() {
   const std::lock_guard<std::mutex> lock(partsMutex_);
-  if (parts_.empty()) return std::make_unique<Part>();
+  if (parts_.empty()) return std::make_unique<Part>(job_);
   std::unique_ptr<Part> part = std::move(parts_.back());
   parts_.pop_back();
   return part;

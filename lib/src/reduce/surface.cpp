@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/atomic_bits.h"
+#include "base/collect.h"
 #include "base/huge_pages.h"
 #include "base/ranked_bits.h"
 #include "base/shrink.h"
@@ -81,10 +83,14 @@ void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index
   });
 }
 
-void findChords(Surface& s) {
+void findChords(Surface& s, base::Job& job) {
   s.chords.clear();
+  const std::vector<Index> some = base::collectIf(job, s.triangles.size(), kGrain, [&](Index t) {
+    const auto& v = s.triangles[t].vertices;
+    return s.isOnLine(v[0]) + s.isOnLine(v[1]) + s.isOnLine(v[2]) > 1;
+  });
   std::vector<std::pair<std::uint64_t, Index>> edges;  // with their triangles' regions
-  for (Index t = 0; t < s.triangles.size(); ++t) {
+  for (const Index t : some) {
     const auto& v = s.triangles[t].vertices;
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = v[i], b = v[(i + 1) % 3];
@@ -104,22 +110,27 @@ using CornerAt = std::pair<Index, Index>;
 
 // The vertices at triangles of several regions, rising, with all their corners.
 std::vector<CornerAt> cornersOnLines(const Surface& s, base::Job& job) {
-  std::vector<Index> regionAt(s.position.size(), kNone);
-  base::RankedBits several(s.position.size());
-  const auto count = static_cast<Index>(s.triangles.size());
-  for (Index t = 0; t < count; ++t) {
-    job.pollCancelled(t);
-    for (const Index v : s.triangles[t].vertices) {
-      if (regionAt[v] == kNone) regionAt[v] = s.region[t];
-      if (regionAt[v] != s.region[t]) several.add(v);
+  std::vector<Index> regionAt;  // one of them
+  base::resizeLarge(regionAt, s.position.size(), job, kNone);
+  base::AtomicBits several(s.position.size());
+  job.forRanges(s.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      for (const Index v : s.triangles[t].vertices) {
+        const std::atomic_ref<Index> at(regionAt[v]);
+        Index other = at.load(std::memory_order_relaxed);
+        if (other == kNone) {
+          at.compare_exchange_strong(other, s.region[t], std::memory_order_relaxed);
+        }
+        if (other != kNone && other != s.region[t]) several.add(v);
+      }
     }
-  }
+  });
+  const auto vertexAt = [&](Index c) { return s.triangles[c / 3].vertices[c % 3]; };
+  const std::vector<Index> some = base::collectIf(
+      job, 3 * s.triangles.size(), kGrain, [&](Index c) { return several.has(vertexAt(c)); });
   std::vector<CornerAt> corners;
-  for (Index c = 0; c < 3 * count; ++c) {
-    job.pollCancelled(c);
-    const Index v = s.triangles[c / 3].vertices[c % 3];
-    if (several.has(v)) corners.emplace_back(v, c);
-  }
+  corners.reserve(some.size());
+  for (const Index c : some) corners.emplace_back(vertexAt(c), c);
   std::sort(corners.begin(), corners.end());
   return corners;
 }
@@ -209,7 +220,7 @@ void setRegions(Surface& s, Regions regions, base::Job& job) {
     if (lines > 0) s.lineKind[v] = isSimple ? LineKind::On : LineKind::End;
     begin = end;
   }
-  findChords(s);
+  findChords(s, job);
 }
 
 void apply(Surface& s, const ReferenceMesh& reference, const std::vector<SurfaceChanges>& changes,

@@ -9,7 +9,7 @@
 #include "base/connected.h"
 #include "base/huge_pages.h"
 #include "base/interpolated_normal.h"
-#include "base/polygons.h"
+#include "base/triangulate.h"
 #include "intersect/surface.h"
 #include "refine/rounding.h"
 #include "refine/tolerance_scales.h"
@@ -20,20 +20,6 @@ namespace {
 using base::Vec3f;
 
 constexpr std::size_t kGrain = 16384;
-
-// The triangles of quads, two for each.
-std::vector<Triangle> facesOf(const Mesh& mesh, base::Job& job) {
-  std::vector<Triangle> faces;
-  base::resizeLarge(faces, 2 * mesh.quads.size(), job);
-  job.forRanges(mesh.quads.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto& v = mesh.quads[i].vertices;
-      faces[2 * i] = {v[0], v[1], v[2]};
-      faces[2 * i + 1] = {v[0], v[2], v[3]};
-    }
-  });
-  return faces;
-}
 
 }  // namespace
 
@@ -53,7 +39,7 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
     }
   });
   positions_ = std::move(positions);
-  faces_ = facesOf(mesh, job);
+  faces_ = base::triangulate(mesh, job);
   std::vector<float> scales = scalesOf(mesh, model.affine(), rule, job);
   closeVertices_ = intersect::verticesOf(mesh, intersect::distinctPolygonsOf(model.closePairs()));
   for (const VertexIndex v : closeVertices_) closePositions_.push_back(mesh.positions[v]);

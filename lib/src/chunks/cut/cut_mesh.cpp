@@ -13,6 +13,7 @@
 #include "base/huge_pages.h"
 #include "base/shrink.h"
 #include "base/single_precision.h"
+#include "base/triangulate.h"
 #include "base/vec3.h"
 #include "chunks/cut/chunk_planes.h"
 #include "chunks/cut/flip_caps.h"
@@ -46,7 +47,7 @@ class Cutter {
         planes_(affine.origin(), size),
         singlePrecision_(singlePrecision),
         job_(job) {
-    out_.mesh.triangles = triangulate(uniform);
+    out_.mesh.triangles = base::triangulate(uniform, job);
     out_.mesh.normals = std::move(uniform.normals);
     base::release(uniform.quads);  // which may live as long as what is made of it here
   }

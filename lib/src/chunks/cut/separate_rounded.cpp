@@ -5,12 +5,15 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "base/atomic_bits.h"
+#include "base/collect.h"
 #include "base/huge_pages.h"
-#include "base/ranked_bits.h"
+#include "base/parallel.h"
 #include "base/single_precision.h"
 #include "refine/repair/repair.h"
 
@@ -30,45 +33,68 @@ class TakenPlaces {
  public:
   using Entry = std::pair<Place, VertexIndex>;
 
-  // `placeOf` tells the place of a vertex, `used` the vertices that count.
+  // `placeOf` tells the place of a vertex; those without triangles do not count: collapses have
+  // left them.
   template <class PlaceOf>
-  TakenPlaces(const base::RankedBits& used, std::size_t vertices, const PlaceOf& placeOf,
+  TakenPlaces(const std::vector<Triangle>& triangles, std::size_t vertices, const PlaceOf& placeOf,
               base::Job& job)
       : size_(std::bit_ceil(8 * vertices + 1)), taken_(size_) {
-    std::vector<std::size_t> hashes;
-    base::resizeLarge(hashes, vertices, job);
-    job.forRanges(vertices, 16384, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) hashes[v] = hashOf(placeOf(v));
+    base::AtomicBits used(vertices), several(size_);
+    job.forRanges(triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        for (const VertexIndex v : triangles[t].vertices) used.add(v);
+      }
     });
-    base::RankedBits several(size_);
-    used.forAll([&](std::size_t v) {
-      job.pollCancelled(v);
-      (taken_.has(hashes[v]) ? several : taken_).add(hashes[v]);
+    job.forRanges(vertices, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        if (!used.has(v)) continue;
+        if (const std::size_t at = slotOf(placeOf(v)); taken_.add(at)) several.add(at);
+      }
     });
-    used.forAll([&](std::size_t v) {
-      job.pollCancelled(v);
-      if (several.has(hashes[v])) shared_.emplace_back(placeOf(v), static_cast<VertexIndex>(v));
-    });
+    const std::vector<VertexIndex> some = base::collectIf(
+        job, vertices, kGrain,
+        [&](VertexIndex v) { return used.has(v) && several.has(slotOf(placeOf(v))); });
+    std::vector<std::pair<std::uint64_t, VertexIndex>> hashes;
+    hashes.reserve(some.size());
+    for (const VertexIndex v : some) {
+      hashes.emplace_back(hashOf(placeOf(v)), v);
+    }
+    base::parallelSort(hashes.begin(), hashes.end(), std::less<>());
+    for (std::size_t i = 0; i < hashes.size(); ++i) {
+      const auto isAsAt = [&](std::size_t j) {
+        return j < hashes.size() && hashes[j].first == hashes[i].first;
+      };
+      const VertexIndex v = hashes[i].second;
+      if (isAsAt(i - 1) || isAsAt(i + 1)) shared_.emplace_back(placeOf(v), v);
+    }
     std::sort(shared_.begin(), shared_.end());
   }
 
   // The vertices whose places may be those of others, by place; these are few.
   [[nodiscard]] const std::vector<Entry>& shared() const { return shared_; }
-  [[nodiscard]] bool has(const Place& place) const { return taken_.has(hashOf(place)); }
-  void add(const Place& place) { taken_.add(hashOf(place)); }
+  [[nodiscard]] bool has(const Place& place) const { return taken_.has(slotOf(place)); }
+  void add(const Place& place) { taken_.add(slotOf(place)); }
 
  private:
-  [[nodiscard]] std::size_t hashOf(const Place& place) const {
+  static constexpr std::size_t kGrain = 16384;
+
+  [[nodiscard]] static std::uint64_t hashOf(const Place& place) {
+    // The low bits of numbers in single precision are 0, so that multiplying alone mixes too few.
     std::uint64_t hash = 0;
     for (const double x : place) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9E3779B97F4A7C15U;  // -0 as 0
-      hash ^= hash >> 29;
+      hash ^= std::bit_cast<std::uint64_t>(x + 0.0);  // -0 as 0
+      hash = (hash ^ hash >> 30) * 0xBF58476D1CE4E5B9U;
+      hash = (hash ^ hash >> 27) * 0x94D049BB133111EBU;
+      hash ^= hash >> 31;
     }
-    return static_cast<std::size_t>(hash) & (size_ - 1);
+    return hash;
+  }
+  [[nodiscard]] std::size_t slotOf(const Place& place) const {
+    return static_cast<std::size_t>(hashOf(place)) & (size_ - 1);
   }
 
   std::size_t size_;  // a power of two
-  base::RankedBits taken_;
+  base::AtomicBits taken_;
   std::vector<Entry> shared_;
 };
 
@@ -81,13 +107,8 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
     const Position p = singlePrecision ? base::toSingle(world) : world;
     return Place{p.x, p.y, p.z};
   };
-  base::RankedBits used(positions.size());  // collapses have left others
-  for (std::size_t t = 0; t < cut.mesh.triangles.size(); ++t) {
-    job.pollCancelled(t);
-    for (const VertexIndex v : cut.mesh.triangles[t].vertices) used.add(v);
-  }
   const auto placeAt = [&](std::size_t v) { return placeOf(positions[v]); };
-  TakenPlaces taken(used, positions.size(), placeAt, job);
+  TakenPlaces taken(cut.mesh.triangles, positions.size(), placeAt, job);
   double moved = 0;
   for (std::size_t i = 1; i < taken.shared().size(); ++i) {
     const auto& [place, vertex] = taken.shared()[i];
