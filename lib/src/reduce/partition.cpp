@@ -42,7 +42,7 @@ base::Groups membersOf(const std::vector<std::array<Index, 2>>& pairs, std::size
 
 void Partition::build(const Surface& surface, Index most, float share, base::Job& job) {
   begin(surface, job);
-  Tree tree = split(0, static_cast<Index>(items_.size()), kEverywhere, most, share);
+  Tree tree = split(0, static_cast<Index>(items_.size()), kEverywhere, most, share, job);
   nodes_ = std::move(tree.nodes);
   boxes_ = std::move(tree.boxes);
   ranges_.insert(ranges_.end(), tree.ends.begin(), tree.ends.end());
@@ -92,10 +92,11 @@ float Partition::planeBelow(float least, int axis, Index begin, Index end) const
   return middle > most ? middle : least;
 }
 
-Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, Index most,
-                                 float share) {
+Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, Index most, float share,
+                                 base::Job& job) {
   const Tree part{{{-1, 0, 0, 0}}, {box}, {end}};
   if (end - begin <= most) return part;
+  job.checkCancelled(0, 1);
   Box3f bounds;
   for (Index i = begin; i < end; ++i) bounds.add(items_[i].p);
   const Vec3f d = bounds.upper - bounds.lower;
@@ -113,8 +114,8 @@ Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, Index
   lower.upper[axis] = plane, upper.lower[axis] = plane;
   Tree low, high;
   both(
-      end - begin, [&] { low = split(begin, cut, lower, most, share); },
-      [&] { high = split(cut, end, upper, most, share); });
+      end - begin, [&] { low = split(begin, cut, lower, most, share, job); },
+      [&] { high = split(cut, end, upper, most, share, job); });
   Tree all{{{axis, plane, 0, 0}}, {}, {}};
   all.nodes[0].low = all.add(low);
   all.nodes[0].high = all.add(high);

@@ -95,7 +95,8 @@ class Partition {
   void finish(const Surface& surface, base::Job& job);
   [[nodiscard]] Index moveBelow(Index begin, Index end, int axis, float plane);
   [[nodiscard]] float planeBelow(float least, int axis, Index begin, Index end) const;
-  [[nodiscard]] Tree split(Index begin, Index end, const Box3f& box, Index most, float share);
+  [[nodiscard]] Tree split(Index begin, Index end, const Box3f& box, Index most, float share,
+                           base::Job& job);
   void splitAlong(Index node, Index begin, Index end, const Box3f& box);
   void numberVertices(base::Job& job);
   /// That of all its corners, or kNone.

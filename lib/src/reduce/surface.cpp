@@ -212,7 +212,9 @@ void setRegions(Surface& s, Regions regions, base::Job& job) {
   s.lineKind.assign(s.position.size(), LineKind::Off);
   s.lineStep.clear(), s.into.clear(), s.intoPlane.clear();
   const std::vector<CornerAt> corners = cornersOnLines(s, job);
+  std::size_t done = 0;
   for (auto begin = corners.begin(); begin != corners.end();) {
+    job.pollCancelled(done++);
     const Index v = begin->first;
     const auto end = std::find_if(begin, corners.end(), [&](auto& c) { return c.first != v; });
     const int lines = linesAt(s, {begin, end});

@@ -1,15 +1,19 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "base/atomic_bits.h"
 #include "base/huge_pages.h"
 #include "base/ranked_bits.h"
 #include "base/shared_array.h"
 #include "base/shrink.h"
+#include "base/triangulate.h"
 
 namespace tufa::base {
 namespace {
@@ -53,6 +57,34 @@ TEST(RankedBits, TellHowManyAreBelow) {
     ASSERT_EQ(members.size(), below);
     for (std::size_t i = 0; i < members.size(); ++i) EXPECT_EQ(bits.rank(members[i]), i);
   }
+}
+
+// Each number is told to be new once.
+TEST(AtomicBits, AreAddedByManyThreads) {
+  constexpr std::size_t kNumbers = 1000, kTimes = 100;
+  AtomicBits bits(kNumbers);
+  std::atomic<std::size_t> firsts{0};
+  Job job(4, {});
+  job.run([&] {
+    job.forRanges(kNumbers * kTimes, 100, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i % 3 == 0 && !bits.add(i % kNumbers)) ++firsts;
+      }
+    });
+  });
+  EXPECT_EQ(firsts, kNumbers);  // 3 divides none of the turns
+  EXPECT_TRUE(bits.has(0) && bits.has(kNumbers - 1));
+  EXPECT_FALSE(AtomicBits(65).has(64));
+}
+
+TEST(Triangulate, IsTheSameByAllThreads) {
+  Mesh mesh;
+  mesh.triangles = {{0, 1, 2}, {2, 1, 3}};
+  for (VertexIndex v = 0; v < 50000; ++v) mesh.quads.emplace_back(v, v + 1, v + 2, v + 3);
+  Job job(4, {});
+  std::vector<Triangle> triangles;
+  job.run([&] { triangles = triangulate(mesh, job); });
+  EXPECT_EQ(triangles, tufa::triangulate(mesh));
 }
 
 TEST(Shrink, GivesRoomBack) {

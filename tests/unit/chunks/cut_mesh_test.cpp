@@ -179,6 +179,34 @@ TEST(CutMesh, KeepsVerticesApartThatAreRoundedToOnePlace) {
   }
 }
 
+// One vertex of each pair at one place moves, and no other one, for any threads.
+TEST(CutMesh, FindsVerticesAtOnePlaceAmongMany) {
+  constexpr VertexIndex kCount = 60000, kStep = 20000;
+  const grid::Affine affine{grid::Transform(*openvdb::math::Transform::createLinearTransform(1))};
+  std::vector<CutMesh> cuts(2);
+  for (int i = 0; i < 2; ++i) {
+    CutMesh& cut = cuts[static_cast<std::size_t>(i)];
+    for (VertexIndex v = 0; v < kCount; ++v) {
+      const VertexIndex n = v % kStep == 7 ? 7 : v;  // three at the place of vertex 7
+      cut.mesh.positions.push_back(
+          {0.1F * static_cast<float>(n % 200), 0.1F * static_cast<float>(n / 200), 0.25});
+    }
+    for (VertexIndex v = 0; v + 2 < kCount; v += 2) cut.mesh.triangles.push_back({v, v + 1, v + 2});
+    const std::vector<Position> before = cut.mesh.positions;
+    base::Job job(1 + 2 * i, {});
+    job.run([&] { keepApart(cut, affine, true, job); });
+    std::size_t moved = 0;
+    for (VertexIndex v = 0; v < kCount; ++v) {
+      if (cut.mesh.positions[v] == before[v]) continue;
+      EXPECT_EQ(v % kStep, 7U);
+      ++moved;
+    }
+    EXPECT_EQ(moved, 2U);
+    EXPECT_LE(cut.moved, 1e-5);
+  }
+  EXPECT_EQ(cuts[0].mesh.positions, cuts[1].mesh.positions);
+}
+
 // Next to 0 there are more numbers than anyone can count through, and index space knows few of
 // them.
 TEST(CutMesh, KeepsVerticesApartThatAreRoundedToTheOrigin) {
