@@ -104,7 +104,9 @@ class Reduction {
   [[nodiscard]] Index triangleCount() const {
     return static_cast<Index>(surface_.triangles.size());
   }
-  /// What was measured last. A mesh that is still the reference has a certificate of 0.
+  /// What was measured last. A mesh that is still the reference has a certificate of 0. From a
+  /// tolerance of many times the first certificate on distances are bounded by way of the mesh that
+  /// has it, and `worst` and `beyond` are faces of that mesh.
   [[nodiscard]] Certificate certificate() const;
   /// How often the mesh was reduced to the last tolerance.
   [[nodiscard]] int attempts() const { return attempt_ + 1; }
