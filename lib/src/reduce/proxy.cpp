@@ -1,8 +1,9 @@
 #include "reduce/proxy.h"
 
+#include <array>
 #include <limits>
+#include <utility>
 
-#include "base/huge_pages.h"
 #include "reduce/triangles.h"
 
 namespace tufa::reduce {

@@ -46,8 +46,8 @@ constexpr int kMostValenceAtLast = 40;
 constexpr float kMostTurnAtLast = 120;
 // Voxels; at larger tolerances the first attempt lets edges end anywhere near.
 constexpr float kLooseTolerance = 4;
-// A proxy is good for tolerances from so many times its error on: what it takes of them costs 3% of
-// the triangles at most.
+// A proxy is good for tolerances from so many times its error on: sample meshes have as many
+// triangles then, give or take a percent in sum.
 constexpr float kProxyRatio = 15;
 // What was beyond the tolerance is held within so many tolerances and voxels: at this share of the
 // tolerance, down to so many voxels; below, and where that does not help, it stays as it is.
