@@ -14,7 +14,7 @@
 
 namespace tufa::reduce {
 
-/// The mesh that distances are measured to, the uniform one. Only what is held changes.
+/// The mesh that distances are measured to, the uniform one or a proxy. Only what is held changes.
 class ReferenceMesh {
  public:
   /// The mesh of a surface as makeSurface() gives it. `scales`: see scaleAt(); one for each vertex,
