@@ -130,17 +130,17 @@ class Cutter {
  private:
   void makeNext() {
     const uniform::SurfaceView base = model_.view();
-    before_ = std::move(cut_);
+    const octree::Cut before = std::move(cut_);
     merged_ = octree::mergeCells(forest_, rule_, forbidden_, job_);
     cut_ = octree::makeCut(forest_, base.topology, merged_, job_);
+    changed_ = changedVertices(before, cut_);
     made_ = octree::meshCut(forest_, cut_, base.mesh, base.affine, job_);
   }
 
   // Where few cells are too far off, intersections are looked for in the same round. Whether any
   // cell was split.
   bool splitWhereNeeded() {
-    const std::vector<VertexIndex> coarse =
-        distance_.measure(cut_, made_, changedVertices(before_, cut_));
+    const std::vector<VertexIndex> coarse = distance_.measure(cut_, made_, changed_);
     const bool hasSplit = split(coarse);
     if (hasSplit && coarse.size() * kFew > cut_.clusters.size()) return true;
     if ((model_.repairs() && split(findMeeting())) || hasSplit) return true;
@@ -201,8 +201,9 @@ class Cutter {
   octree::CellFlags forbidden_;
   octree::CellFlags merged_{forest_};
   CutDistance distance_;
-  octree::Cut cut_, before_;
-  octree::Cut searched_;  // the one in which pairs were looked for last
+  octree::Cut cut_;
+  std::vector<std::uint8_t> changed_;  // of its vertices, since the cut before
+  octree::Cut searched_;               // the one in which pairs were looked for last
   octree::CutMesh made_;
   AdaptiveMesh adaptive_;
 };

@@ -80,7 +80,6 @@ void CutOverlay::collectTriangles(const std::vector<std::uint8_t>& isCorner) {
     for (const VertexIndex v : cornersOf(owners_.owner[r], storage)) mark(marks, v);
   });
   for (int i = 0; i < 3; ++i) marks = grown(mesh_, marks, owners_.job);
-  base::resizeLarge(localOf_, 2 * owners_.base.mesh.quads.size(), owners_.job);
   addMarked(marks);
   base::resizeLarge(triangles_.positions, mesh_.positions.size(), owners_.job);
   forEach(owners_.job, mesh_.positions.size(),
@@ -114,16 +113,17 @@ void CutOverlay::addMarked(const std::vector<std::uint8_t>& marks) {
   for (std::size_t range = 0; range < ranges; ++range) first[range + 1] += first[range];
   base::resizeLarge(triangles_.corners, first[ranges], owners_.job);
   base::resizeLarge(triangles_.ids, first[ranges], owners_.job);
+  base::resizeLarge(firstLocal_, count, owners_.job);
   owners_.job.forRanges(ranges, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t range = begin; range < end; ++range) {
       Index next = first[range];
       const auto add = [&](const Triangle& corners, std::uint32_t id) {
-        localOf_[id] = next;
         triangles_.corners[next] = corners;
         triangles_.ids[next++] = id;
       };
       forMarked(range, [&](base::PolygonIndex polygon, base::Corners v) {
         const std::uint32_t id = 2 * made_.sourceOf(polygon);
+        firstLocal_[polygon] = next;
         add({v[0], v[1], v[2]}, id);
         if (v.size() == 4) add({v[0], v[2], v[3]}, id + 1);
       });
@@ -137,7 +137,7 @@ reduce::OwnedFace CutOverlay::ownedFace(const Triangle& r) const {
     const VertexIndex v = r.vertices[i];
     owned.corners[i] = owners_.points[v];
     owned.vertices[i] = v;
-    owned.owners[i] = localOf_[owners_.owner[v]];
+    owned.owners[i] = localOf(owners_.owner[v]);
   }
   return owned;
 }

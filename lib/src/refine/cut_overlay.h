@@ -54,6 +54,9 @@ class CutOverlay {
   [[nodiscard]] float bound2(const reduce::OwnedFace& face, float limit) const;
 
  private:
+  [[nodiscard]] reduce::Index localOf(std::uint32_t id) const {
+    return firstLocal_[polygonOf_[id / 2]] + id % 2;
+  }
   [[nodiscard]] float acrossOneEdge2(const reduce::OwnedFace& face) const;
   bool findWay(const reduce::OwnedFace& face, std::size_t a, std::size_t b, float limit2,
                reduce::OverlayPath& way) const;
@@ -66,7 +69,7 @@ class CutOverlay {
   std::vector<base::PolygonIndex> polygonOf_;  // of each uniform quad; kNone for none
   CutTriangles triangles_;
   std::optional<reduce::CornersOfVertices> corners_;
-  std::vector<reduce::Index> localOf_;  // from ids to triangles_, of those that are there
+  std::vector<reduce::Index> firstLocal_;  // of each polygon that is there, in triangles_
 };
 
 /// Calls body(i) for each index below `count`, in parallel.
