@@ -242,7 +242,7 @@ void markNarrow(Surface& surface, const Partition& partition, float reach, base:
   job.forRanges(others.size(), 1, [&](std::size_t begin, std::size_t end) {
     List all;
     for (std::size_t p = begin; p < end; ++p) {
-      const auto own = partition.triangles(static_cast<Index>(p));
+      const List own = partition.triangles(static_cast<Index>(p));
       std::sort(others[p].begin(), others[p].end());
       all.clear();
       std::merge(own.begin(), own.end(), others[p].begin(), others[p].end(),

@@ -19,49 +19,85 @@ inline constexpr Index kNone = ~Index{0};
 [[nodiscard]] inline Index nextCorner(Index c) { return c % 3 == 2 ? c - 2 : c + 1; }
 [[nodiscard]] inline Index previousCorner(Index c) { return c % 3 == 0 ? c + 2 : c - 1; }
 
-/// For each vertex the corners at it, in rising order.
-struct CornersOfVertices {
+/// For each vertex the corners at it, in rising order: of all vertices, or of a range of them.
+class CornersOfVertices {
+ public:
   CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles, base::Job& job);
-  [[nodiscard]] std::size_t vertexCount() const { return first.size() - 2; }
+  [[nodiscard]] Index begin() const { return begin_; }
+  [[nodiscard]] Index end() const { return begin_ + static_cast<Index>(first_.size() - 2); }
   [[nodiscard]] std::span<const Index> of(Index vertex) const {
-    return {corners.data() + first[vertex], corners.data() + first[vertex + 1]};
+    const Index* const first = first_.data() + (vertex - begin_);
+    return {corners_.data() + first[0], corners_.data() + first[1]};
   }
-  std::vector<Index> first;
-  std::vector<Index> corners;
+
+ private:
+  friend class CornerRanges;
+  /// forTriangles(body) calls body(t) for triangles in rising order, those of all corners wanted
+  /// among them.
+  template <class ForTriangles>
+  CornersOfVertices(Index begin, Index end, std::span<const Triangle> triangles,
+                    const ForTriangles& forTriangles);
+
+  Index begin_;
+  std::vector<Index> first_;
+  std::vector<Index> corners_;
 };
+
+/// The vertices of a mesh in ranges, so that corners are found range by range: a fraction of the
+/// memory of all, and on several threads at a time.
+class CornerRanges {
+ public:
+  CornerRanges(std::size_t vertexCount, std::span<const Triangle> triangles, base::Job& job);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] CornersOfVertices operator[](std::size_t range) const;
+
+ private:
+  std::size_t vertexCount_;
+  std::span<const Triangle> triangles_;
+  int shift_;
+  std::size_t size_;
+  std::vector<std::uint64_t> reached_;  ///< of each run of triangles a bit for each range
+};
+
+/// Calls body(corners) for ranges that all vertices are in, in parallel.
+template <class Body>
+void forCornerRanges(std::size_t vertexCount, std::span<const Triangle> triangles, base::Job& job,
+                     const Body& body) {
+  const CornerRanges ranges(vertexCount, triangles, job);
+  job.forRanges(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t range = begin; range < end; ++range) body(ranges[range]);
+  });
+}
 
 /// All triangles that have a vertex in common with one of these, in rising order.
 [[nodiscard]] std::vector<Index> trianglesAround(std::span<const Triangle> triangles,
                                                  const CornersOfVertices& corners,
                                                  std::span<const Index> some);
 
-/// Calls set(corner, other) for every corner, other being the one across its edge, or kNone at a
-/// border; where several are, the last one. In parallel. Vertex by vertex: an edge that comes from
-/// another vertex meets the one that goes back there.
+/// Calls set(corner, other) for the corners that follow those at some vertices in their triangles,
+/// other being the one across the edge, or kNone at a border; where several are, the last one. An
+/// edge that comes from another vertex meets the one that goes back there.
 template <class Set>
 void forOppositeCorners(std::span<const Triangle> triangles, const CornersOfVertices& corners,
-                        base::Job& job, const Set& set) {
-  constexpr std::size_t kGrain = 4096;
-  job.forRanges(corners.vertexCount(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Index> nextVertices;
-    for (std::size_t v = begin; v < end; ++v) {
-      const std::span<const Index> around = corners.of(static_cast<Index>(v));
-      nextVertices.clear();
-      for (const Index c : around) {
-        const Index next = nextCorner(c);
-        nextVertices.push_back(triangles[next / 3].vertices[next % 3]);
-      }
-      for (const Index c : around) {
-        const Index previous = previousCorner(c);
-        const Index from = triangles[previous / 3].vertices[previous % 3];
-        Index other = kNone;
-        for (std::size_t i = 0; i < around.size(); ++i) {
-          if (nextVertices[i] == from) other = previousCorner(around[i]);
-        }
-        set(nextCorner(c), other);
-      }
+                        Index begin, Index end, const Set& set) {
+  std::vector<Index> nextVertices;
+  for (Index v = begin; v < end; ++v) {
+    const std::span<const Index> around = corners.of(v);
+    nextVertices.clear();
+    for (const Index c : around) {
+      const Index next = nextCorner(c);
+      nextVertices.push_back(triangles[next / 3].vertices[next % 3]);
     }
-  });
+    for (const Index c : around) {
+      const Index previous = previousCorner(c);
+      const Index from = triangles[previous / 3].vertices[previous % 3];
+      Index other = kNone;
+      for (std::size_t i = 0; i < around.size(); ++i) {
+        if (nextVertices[i] == from) other = previousCorner(around[i]);
+      }
+      set(nextCorner(c), other);
+    }
+  }
 }
 
 /// That of every corner.

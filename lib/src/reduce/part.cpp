@@ -30,7 +30,8 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
     flags_[i] = surface.flags[v];
     face_[i] = faceOf(surface, reference, v), inner_[i] = partition.isInner(v);
   }
-  loadTables(surface, partition.triangles(number));
+  triangleIds_ = partition.triangles(number);
+  loadTables(surface);
   matchOpposites();
   loadQuadrics();
   loadSamples(surface);
@@ -41,12 +42,12 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   boxList_.clear();
 }
 
-void Part::loadTables(const Surface& surface, std::span<const Index> triangles) {
-  triangleCount_ = static_cast<Index>(triangles.size());
+void Part::loadTables(const Surface& surface) {
+  triangleCount_ = static_cast<Index>(triangleIds_.size());
   vertex_.resize(3 * triangleCount_);
   for (Index t = 0; t < triangleCount_; ++t) {
     for (Index i = 0; i < 3; ++i) {
-      const Index v = partition_->localVertex(surface.triangles[triangles[t]].vertices[i]);
+      const Index v = partition_->localVertex(surface.triangles[triangleIds_[t]].vertices[i]);
       vertex_[3 * t + i] = v, corner_[v] = 3 * t + i;
     }
   }
@@ -126,23 +127,21 @@ void Part::loadSamples(const Surface& surface) {
 // Of the samples of a surface that is whole, those whose owners are in the part.
 void Part::findOwnersAtVertices(const Surface& surface) {
   const auto vertices = partition_->vertices(number_);
-  const auto triangles = partition_->triangles(number_);
   for (Index c = 0; c < vertex_.size(); ++c) {
     const Index v = vertex_[c];
-    if (surface.owner[vertices[v]] == triangles[c / 3]) owners_[v] = c / 3;
+    if (surface.owner[vertices[v]] == triangleIds_[c / 3]) owners_[v] = c / 3;
   }
 }
 
 void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) {
   const auto vertices = partition_->vertices(number_);
-  const auto triangles = partition_->triangles(number_);
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
     if (inner_[i] != 0) surface.axis[v] = axis_[i], surface.flags[v] = flags_[i];
     if (moved_[i] != 0) stored_.moved.push_back({v, position_[i], face_[i]});
   }
   for (Index t = 0; t < triangleCount_; ++t) {
-    const Index own = triangles[t];
+    const Index own = triangleIds_[t];
     if (isDead(t)) {
       dead[own] = 1;
       continue;

@@ -107,7 +107,7 @@ class Part {
   struct Changed;  ///< the mesh as it would be
 
   // part.cpp: tables and queue.
-  void loadTables(const Surface& surface, std::span<const Index> triangles);
+  void loadTables(const Surface& surface);
   void matchOpposites();
   void loadQuadrics();
   void loadSamples(const Surface& surface);
@@ -293,6 +293,7 @@ class Part {
   std::vector<Index> changeOf_;  ///< in a step of LineMode::Alone: of each triangle, as in Surface
   std::vector<Form> newForms_;
   std::unordered_map<Index, FormsOfRegion> formsOf_;
+  std::vector<Index> triangleIds_;  ///< in the surface
   // For each corner; for each triangle its first sample; for each sample.
   std::vector<Index> vertex_, opposite_, firstSample_;
   std::vector<std::uint8_t> wasFar_;  ///< the first sample of a triangle, in an attempt before

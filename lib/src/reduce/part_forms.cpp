@@ -81,11 +81,10 @@ bool mayMeet(Form a, Form b) {
 // What other parts change while this one works was as it is now, or is foreign and stays, and lies
 // in their boxes in both forms.
 void Part::loadForms(const Surface& surface) {
-  const auto triangles = partition_->triangles(number_);
   changeOf_.resize(triangleCount_);
   formsOf_.clear();
   for (Index t = 0; t < triangleCount_; ++t) {
-    changeOf_[t] = surface.changeOf[triangles[t]];
+    changeOf_[t] = surface.changeOf[triangleIds_[t]];
     if (changeOf_[t] != kNone) formsOf_[region_[t]].changed.push_back(t);
   }
   for (const Index i : partition_->oldForms(number_)) {

@@ -14,7 +14,6 @@ void Part::loadLines(const Surface& surface) {
   hasLines_ = surface.hasLines();
   if (!hasLines_) return;
   const auto vertices = partition_->vertices(number_);
-  const auto triangles = partition_->triangles(number_);
   line_.resize(vertexCount_), region_.resize(triangleCount_);
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
@@ -22,7 +21,7 @@ void Part::loadLines(const Surface& surface) {
     line = {surface.lineStep.empty() ? LineStep() : surface.lineStep[v], surface.lineKind[v]};
     if (line.kind != LineKind::Off) line.planes = surface.planesOf(surface.sourceOf(v));
   }
-  for (Index t = 0; t < triangleCount_; ++t) region_[t] = surface.region[triangles[t]];
+  for (Index t = 0; t < triangleCount_; ++t) region_[t] = surface.region[triangleIds_[t]];
   wentInto_.clear();
   if (isAlone()) loadForms(surface);
 }
@@ -32,9 +31,8 @@ void Part::storeLines(Surface& surface) const {
   for (const auto& [from, to, plane] : wentInto_) {
     surface.into[from] = to, surface.intoPlane[from] = plane;
   }
-  const auto triangles = partition_->triangles(number_);
   for (const auto& [region, forms] : formsOf_) {
-    for (const Index t : forms.changed) surface.changeOf[triangles[t]] = changeOf_[t];
+    for (const Index t : forms.changed) surface.changeOf[triangleIds_[t]] = changeOf_[t];
   }
 }
 

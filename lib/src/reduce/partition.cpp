@@ -4,7 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "base/collect.h"
 #include "base/parallel.h"
 #include "base/shrink.h"
 
@@ -40,12 +39,14 @@ base::Groups membersOf(const std::vector<std::array<Index, 2>>& pairs, std::size
 
 }  // namespace
 
-void Partition::build(const Surface& surface, Index most, float share, base::Job& job) {
+void Partition::build(const Surface& surface, const PartSize& size, float share, base::Job& job) {
   begin(surface, job);
-  Tree tree = split(0, static_cast<Index>(items_.size()), kEverywhere, most, share, job);
+  countSamples(surface, size.samples, job);
+  Tree tree = split(0, static_cast<Index>(items_.size()), kEverywhere, size, share, job);
   nodes_ = std::move(tree.nodes);
   boxes_ = std::move(tree.boxes);
   ranges_.insert(ranges_.end(), tree.ends.begin(), tree.ends.end());
+  base::release(samplesAt_);
   finish(surface, job);
 }
 
@@ -66,6 +67,26 @@ void Partition::begin(const Surface& surface, base::Job& job) {
     }
   });
   ranges_.assign(1, 0);
+}
+
+// Those of a surface that is whole are at its vertices, as many in all parts.
+void Partition::countSamples(const Surface& surface, std::size_t most, base::Job& job) {
+  if (surface.isWhole || surface.owner.size() <= most) return;
+  samplesAt_.assign(surface.position.size(), 0);
+  for (std::size_t r = 0; r < surface.owner.size(); ++r) {
+    job.pollCancelled(r);
+    const Index owner = surface.owner[r];
+    if (owner != kNone) ++samplesAt_[surface.triangles[owner].vertices[0]];
+  }
+}
+
+// Whether some items may be a part.
+bool Partition::isSmall(Index begin, Index end, const PartSize& size) const {
+  if (end - begin > size.vertices) return false;
+  if (samplesAt_.empty() || end - begin <= size.leastVertices) return true;
+  std::size_t samples = 0;
+  for (Index i = begin; i < end; ++i) samples += samplesAt_[items_[i].vertex];
+  return samples <= size.samples;
 }
 
 void Partition::finish(const Surface& surface, base::Job& job) {
@@ -92,10 +113,10 @@ float Partition::planeBelow(float least, int axis, Index begin, Index end) const
   return middle > most ? middle : least;
 }
 
-Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, Index most, float share,
-                                 base::Job& job) {
+Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, const PartSize& size,
+                                 float share, base::Job& job) {
   const Tree part{{{-1, 0, 0, 0}}, {box}, {end}};
-  if (end - begin <= most) return part;
+  if (isSmall(begin, end, size)) return part;
   job.checkCancelled(0, 1);
   Box3f bounds;
   for (Index i = begin; i < end; ++i) bounds.add(items_[i].p);
@@ -114,8 +135,8 @@ Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, Index
   lower.upper[axis] = plane, upper.lower[axis] = plane;
   Tree low, high;
   both(
-      end - begin, [&] { low = split(begin, cut, lower, most, share, job); },
-      [&] { high = split(cut, end, upper, most, share, job); });
+      end - begin, [&] { low = split(begin, cut, lower, size, share, job); },
+      [&] { high = split(cut, end, upper, size, share, job); });
   Tree all{{{axis, plane, 0, 0}}, {}, {}};
   all.nodes[0].low = all.add(low);
   all.nodes[0].high = all.add(high);
@@ -175,30 +196,67 @@ void Partition::numberVertices(base::Job& job) {
 }
 
 void Partition::shareTriangles(const Surface& surface, base::Job& job) {
-  const std::size_t parts = size(), count = surface.triangles.size();
   base::shrinkTo(inner_, surface.position.size(), job);
   job.forRanges(inner_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
   });
-  base::shrinkTo(localTriangle_, surface.isWhole ? 0 : count, job);
-  const auto partOf = [&](Index t) { return partOfTriangle(surface.triangles[t]); };
-  across_ = base::collectIf(job, count, kGrain, [&](Index t) { return partOf(t) == kNone; });
+  findRuns(surface, job);
   for (const Index t : across_) {
     for (const Index v : surface.triangles[t].vertices) inner_[v] = 0;
   }
-  triangles_ = base::groupBy(
-      count, parts, partOf,
-      [&](Index t, Index at) {
-        if (!surface.isWhole) localTriangle_[t] = at;
-      },
-      job);
+  base::shrinkTo(localTriangle_, surface.isWhole ? 0 : surface.triangles.size(), job);
+  if (!surface.isWhole) {
+    job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        Index next = 0;
+        for (const Run& run : of(runs_, firstRun_, static_cast<Index>(p))) {
+          for (Index t = run.begin; t < run.end; ++t) localTriangle_[t] = next++;
+        }
+      }
+    });
+  }
   std::vector<std::array<Index, 2>> reached;
   for (const Index t : across_) {
     Box3f box;
     for (const Index i : surface.triangles[t].vertices) box.add(surface.position[i]);
     forPartsAt(box, [&](Index part) { reached.push_back({part, t}); });
   }
-  foreign_ = membersOf(reached, parts, job);
+  foreign_ = membersOf(reached, size(), job);
+}
+
+void Partition::findRuns(const Surface& surface, base::Job& job) {
+  struct RunOf {
+    Index part;
+    Run run;
+  };
+  const std::size_t count = surface.triangles.size(), blocks = (count + kGrain - 1) / kGrain;
+  std::vector<std::vector<RunOf>> found(blocks);
+  job.forRanges(blocks, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      std::vector<RunOf>& own = found[block];
+      const auto last = static_cast<Index>(std::min((block + 1) * kGrain, count));
+      for (auto t = static_cast<Index>(block * kGrain); t < last; ++t) {
+        const Index part = partOfTriangle(surface.triangles[t]);
+        if (own.empty() || own.back().part != part) own.push_back({part, {t, t}});
+        own.back().run.end = t + 1;
+      }
+    }
+  });
+  across_.clear();
+  firstRun_.assign(size() + 2, 0);
+  for (const std::vector<RunOf>& some : found) {
+    for (const auto& [part, run] : some) {
+      if (part != kNone) ++firstRun_[part + 2];
+      for (Index t = run.begin; part == kNone && t < run.end; ++t) across_.push_back(t);
+    }
+  }
+  for (std::size_t p = 1; p < firstRun_.size(); ++p) firstRun_[p] += firstRun_[p - 1];
+  runs_.resize(firstRun_.back());
+  for (const std::vector<RunOf>& some : found) {
+    for (const auto& [part, run] : some) {
+      if (part != kNone) runs_[firstRun_[part + 1]++] = run;
+    }
+  }
 }
 
 void Partition::shareForms(const Surface& surface, base::Job& job) {
@@ -232,7 +290,10 @@ void Partition::sortSamples(const Surface& surface, std::size_t part, std::vecto
                             std::vector<Index>& sorted) {
   const std::span<Index> own{samples_.members.data() + samples_.first[part],
                              samples_.members.data() + samples_.first[part + 1]};
-  const std::size_t triangles = triangles_.first[part + 1] - triangles_.first[part];
+  std::size_t triangles = 0;
+  for (const Run& run : of(runs_, firstRun_, static_cast<Index>(part))) {
+    triangles += run.end - run.begin;
+  }
   if (own.size() < 2 * triangles) return;
   next.assign(triangles + 1, 0);
   for (const Index r : own) ++next[localTriangle_[surface.owner[r]] + 1];

@@ -10,6 +10,16 @@
 
 namespace tufa::reduce {
 
+/// What a part has at most.
+struct PartSize {
+  Index vertices = 8192;
+  /// Reference vertices that its triangles own, so that the last phases of a large mesh are not one
+  /// part's, and one thread's.
+  std::size_t samples = std::size_t{1} << 19;
+  /// Parts have more samples rather than fewer vertices: those at borders stay for a phase.
+  Index leastVertices = 1024;
+};
+
 /// The k-d parts of a surface that a phase works on one by one, in parallel.
 ///
 /// Parts cannot disturb each other. A part moves vertices only strictly inside its box, and changes
@@ -20,8 +30,8 @@ namespace tufa::reduce {
 class Partition {
  public:
   /// Cuts across the longest extent leave `share` of the vertices on their lower side, until parts
-  /// have at most `most`. Depends on the surface alone. Cost: n log n.
-  void build(const Surface& surface, Index most, float share, base::Job& job);
+  /// are small enough. Depends on the surface alone. Cost: n log n.
+  void build(const Surface& surface, const PartSize& size, float share, base::Job& job);
 
   /// The tree of the parts.
   struct Node {
@@ -38,9 +48,13 @@ class Partition {
   [[nodiscard]] const Box3f& box(Index part) const { return boxes_[part]; }
   /// Vertices of a part, in rising order. Numbers in the part are places in these lists.
   [[nodiscard]] std::span<const Index> vertices(Index p) const { return of(vertices_, ranges_, p); }
-  /// Triangles with all corners in a part.
-  [[nodiscard]] std::span<const Index> triangles(Index p) const {
-    return of(triangles_.members, triangles_.first, p);
+  /// Triangles with all corners in a part, in rising order.
+  [[nodiscard]] std::vector<Index> triangles(Index p) const {
+    std::vector<Index> all;
+    for (const Run& run : of(runs_, firstRun_, p)) {
+      for (Index t = run.begin; t < run.end; ++t) all.push_back(t);
+    }
+    return all;
   }
   /// Triangles of several parts that reach into the box of a part.
   [[nodiscard]] std::span<const Index> foreign(Index p) const {
@@ -80,8 +94,14 @@ class Partition {
     Vec3f p;
     Index vertex;
   };
-  static std::span<const Index> of(const std::vector<Index>& all, const std::vector<Index>& first,
-                                   Index part) {
+  /// Triangles of a part one behind the other: most are, as neighbours mostly are neighbours in the
+  /// order of triangles too.
+  struct Run {
+    Index begin, end;
+  };
+  template <class T>
+  static std::span<const T> of(const std::vector<T>& all, const std::vector<Index>& first,
+                               Index part) {
     return {all.data() + first[part], all.data() + first[part + 1]};
   }
   /// A part of the tree, with its own parts, by their numbers in it.
@@ -92,11 +112,13 @@ class Partition {
     Index add(const Tree& other);
   };
   void begin(const Surface& surface, base::Job& job);
+  void countSamples(const Surface& surface, std::size_t most, base::Job& job);
+  [[nodiscard]] bool isSmall(Index begin, Index end, const PartSize& size) const;
   void finish(const Surface& surface, base::Job& job);
   [[nodiscard]] Index moveBelow(Index begin, Index end, int axis, float plane);
   [[nodiscard]] float planeBelow(float least, int axis, Index begin, Index end) const;
-  [[nodiscard]] Tree split(Index begin, Index end, const Box3f& box, Index most, float share,
-                           base::Job& job);
+  [[nodiscard]] Tree split(Index begin, Index end, const Box3f& box, const PartSize& size,
+                           float share, base::Job& job);
   void splitAlong(Index node, Index begin, Index end, const Box3f& box);
   void numberVertices(base::Job& job);
   /// That of all its corners, or kNone.
@@ -106,17 +128,21 @@ class Partition {
     return part == partOf_[v[1]] && part == partOf_[v[2]] ? part : kNone;
   }
   void shareTriangles(const Surface& surface, base::Job& job);
+  void findRuns(const Surface& surface, base::Job& job);
   void shareForms(const Surface& surface, base::Job& job);
   void shareSamples(const Surface& surface, base::Job& job);
   void sortSamples(const Surface& surface, std::size_t part, std::vector<Index>& next,
                    std::vector<Index>& sorted);
 
   std::vector<Item> items_;
+  std::vector<Index> samplesAt_;  ///< each at one vertex of its owner; empty once there are parts
   std::vector<Node> nodes_;
   std::vector<Box3f> boxes_;
   std::vector<Index> vertices_, ranges_, partOf_, localVertex_;
   std::vector<Index> localTriangle_, localSample_;
-  base::Groups triangles_, foreign_, forms_, samples_;
+  std::vector<Run> runs_;
+  std::vector<Index> firstRun_;  ///< of each part
+  base::Groups foreign_, forms_, samples_;
   std::vector<Index> across_;
   std::vector<std::uint8_t> inner_;
 };

@@ -90,10 +90,9 @@ Reduction::Meshes Reduction::meshesOf(const InputMesh& input, const InputMesh& r
                                       std::span<const Index> standsFor, std::vector<float> scales,
                                       base::Job& job) {
   const float largestScale = takeLargest(scales);
-  const CornersOfVertices corners(input.positions.size(), input.triangles, job);
-  Surface surface = makeSurface(input.positions, input.triangles, corners, job);
+  Surface surface = makeSurface(input.positions, input.triangles, job);
   if (standsFor.empty()) {
-    ReferenceMesh own(surface, corners, std::move(scales), job);
+    ReferenceMesh own(surface, std::move(scales), job);
     return {std::move(surface), std::move(own), largestScale};
   }
   const Surface other = makeSurface(reference.positions, reference.triangles, job);
@@ -275,7 +274,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
 // near what is held.
 void Reduction::buildParts() {
   if (nextTree_ == trees_.size()) {
-    partition_.build(surface_, options_.partVertices, shareOf(phaseNumber_), job_);
+    partition_.build(surface_, options_.partSize, shareOf(phaseNumber_), job_);
     trees_.push_back(partition_.tree());
   } else {
     partition_.build(surface_, trees_[nextTree_], job_);

@@ -43,8 +43,8 @@ struct ReducedMesh {
 };
 
 struct Options {
-  Index partVertices = 8192;  ///< most vertices of a part; the result depends on it
-  float leastAngle = 10;      ///< degrees under which a triangle is a sliver
+  PartSize partSize;      ///< the result depends on it
+  float leastAngle = 10;  ///< degrees under which a triangle is a sliver
   /// Of the triangles that may become slivers nevertheless. 0: a collapse makes none but in the
   /// place of as many. Clusters do, in the first phase; later ones take those away.
   float sliverShare = 0.08f;

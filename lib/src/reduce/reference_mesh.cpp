@@ -11,18 +11,15 @@ constexpr std::size_t kGrain = 16384;
 }
 
 ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job)
-    : ReferenceMesh(input, CornersOfVertices(input.position.size(), input.triangles, job),
-                    std::move(scales), job) {}
-
-ReferenceMesh::ReferenceMesh(const Surface& input, const CornersOfVertices& corners,
-                             std::vector<float> scales, base::Job& job)
     : positions_(input.position), faces_(input.triangles), scales_(std::move(scales)) {
   isPaired_ = areAllPaired(job);
-  findOpposite(corners, job);
+  base::resizeLarge(opposite_, isPaired_ ? 2 * faces_.size() : 3 * faces_.size(), job);
   base::resizeLarge(cornerOf_, input.position.size(), job, kNone);
   base::resizeLarge(rough_, input.position.size(), job);
-  job.forRanges(positions_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Index v = static_cast<Index>(begin); v < end; ++v) {
+  forCornerRanges(positions_.size(), faces_, job, [&](const CornersOfVertices& corners) {
+    forOppositeCorners(faces_, corners, corners.begin(), corners.end(),
+                       [&](Index c, Index other) { setOpposite(c, other); });
+    for (Index v = corners.begin(); v < corners.end(); ++v) {
       if (!corners.of(v).empty()) cornerOf_[v] = corners.of(v).back();
       rough_[v] = (input.flags[v] & (kSteep | kBorder)) != 0 ? kRough : 0;
     }
@@ -41,16 +38,13 @@ bool ReferenceMesh::areAllPaired(base::Job& job) const {
   return all;
 }
 
-void ReferenceMesh::findOpposite(const CornersOfVertices& corners, base::Job& job) {
-  base::resizeLarge(opposite_, isPaired_ ? 2 * faces_.size() : 3 * faces_.size(), job);
-  forOppositeCorners(faces_, corners, job, [&](Index c, Index other) {
-    const Index i = c % 6;
-    if (!isPaired_) {
-      opposite_[c] = other;
-    } else if (i != 1 && i != 5) {
-      opposite_[4 * (c / 6) + (i == 0 ? 0 : i - 1)] = other;
-    }
-  });
+void ReferenceMesh::setOpposite(Index c, Index other) {
+  const Index i = c % 6;
+  if (!isPaired_) {
+    opposite_[c] = other;
+  } else if (i != 1 && i != 5) {
+    opposite_[4 * (c / 6) + (i == 0 ? 0 : i - 1)] = other;
+  }
 }
 
 void ReferenceMesh::hold(std::span<const Index> faces, float radius, float share) {

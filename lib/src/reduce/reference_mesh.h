@@ -20,9 +20,6 @@ class ReferenceMesh {
   /// The mesh of a surface as makeSurface() gives it. `scales`: see scaleAt(); one for each vertex,
   /// or none.
   ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job);
-  /// The same where the corners at its vertices are known.
-  ReferenceMesh(const Surface& input, const CornersOfVertices& corners, std::vector<float> scales,
-                base::Job& job);
 
   [[nodiscard]] const base::SharedArray<Vec3f>& positions() const { return positions_; }
   [[nodiscard]] const base::SharedArray<Triangle>& faces() const { return faces_; }
@@ -210,7 +207,7 @@ class ReferenceMesh {
     return opposite_[4 * quad + (i == 0 ? 0 : i - 1)];
   }
   [[nodiscard]] bool areAllPaired(base::Job& job) const;
-  void findOpposite(const CornersOfVertices& corners, base::Job& job);
+  void setOpposite(Index c, Index other);
 
   // Asks for a face that a walk may enter next while the position that decides it is read.
   void prefetchAcross(Index c) const {

@@ -154,20 +154,14 @@ int linesAt(const Surface& s, std::span<const CornerAt> around) {
 
 Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triangle> triangles,
                     base::Job& job) {
-  const CornersOfVertices corners(positions.size(), triangles, job);
-  return makeSurface(std::move(positions), std::move(triangles), corners, job);
-}
-
-Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triangle> triangles,
-                    const CornersOfVertices& corners, base::Job& job) {
   Surface s;
   const std::size_t count = positions.size();
   s.position = std::move(positions);
   s.triangles = std::move(triangles);
   base::resizeLarge(s.axis, count, job);
   base::resizeLarge(s.flags, count, job);
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (Index v = static_cast<Index>(begin); v < end; ++v) makeVertex(s, corners, v);
+  forCornerRanges(count, s.triangles, job, [&](const CornersOfVertices& corners) {
+    for (Index v = corners.begin(); v < corners.end(); ++v) makeVertex(s, corners, v);
   });
   return s;
 }

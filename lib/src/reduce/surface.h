@@ -80,11 +80,6 @@ struct Surface {
 /// Vertices without an axis, and those beside them, are narrow.
 [[nodiscard]] Surface makeSurface(base::SharedArray<Vec3f> positions,
                                   base::SharedArray<Triangle> triangles, base::Job& job);
-/// The same where the corners at its vertices are known.
-[[nodiscard]] Surface makeSurface(base::SharedArray<Vec3f> positions,
-                                  base::SharedArray<Triangle> triangles,
-                                  const CornersOfVertices& corners, base::Job& job);
-
 /// The face of the reference below a vertex, or kNone.
 [[nodiscard]] Index faceOf(const Surface& surface, const ReferenceMesh& reference, Index vertex);
 

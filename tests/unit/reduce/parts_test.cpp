@@ -248,7 +248,7 @@ TEST(Partition, CutsBetweenVertices) {
   const Surface surface = surfaceOf(mesh, job);
   for (const float share : {1.0f / 3, 0.5f}) {
     Partition partition;
-    partition.build(surface, 300, share, job);
+    partition.build(surface, {300}, share, job);
     ASSERT_GT(partition.size(), 10U);
     for (Index p = 0; p < partition.size(); ++p) {
       for (const Index v : partition.vertices(p)) {
@@ -256,6 +256,56 @@ TEST(Partition, CutsBetweenVertices) {
       }
     }
   }
+}
+
+// Where a few triangles own most of the reference, as on a flat face, parts have fewer vertices.
+TEST(Partition, DividesWhereThereAreManySamples) {
+  const test::FineMesh mesh = test::bumpySphere(5, 20, 1, 1);
+  base::Job job(1, {});
+  Surface surface = surfaceOf(mesh, job);
+  const ReferenceMesh reference(surface, {}, job);
+  locateAll(surface, reference, {}, job);
+  apply(surface, reference, {}, std::vector<std::uint8_t>(mesh.triangles.size(), 0), job);
+  for (Index r = 0; r < surface.owner.size(); ++r) surface.owner[r] = r % 16;
+  const auto sizesOf = [&](const PartSize& size) {
+    Partition partition;
+    partition.build(surface, size, 0.5f, job);
+    std::vector<std::size_t> sizes;  // where triangle 0 is, and the largest elsewhere
+    const Index first = partition.partOf(surface.triangles[0].vertices[0]);
+    sizes.push_back(partition.vertices(first).size());
+    sizes.push_back(0);
+    for (Index p = 0; p < partition.size(); ++p) {
+      if (partition.samples(p).empty()) sizes[1] = std::max(sizes[1], partition.vertices(p).size());
+    }
+    return sizes;
+  };
+  const std::vector<std::size_t> few = sizesOf({500, 100, 60});
+  EXPECT_LE(few[0], 60U);
+  EXPECT_GT(few[0], 20U);
+  EXPECT_GT(few[1], 250U);
+  EXPECT_GT(sizesOf({500, mesh.positions.size(), 60})[0], 250U);
+}
+
+// In ranges as all at once, each corner of a vertex once.
+TEST(CornerRanges, HoldTheCornersOfAllVertices) {
+  test::FineMesh mesh = test::bumpySphere(7, 60, 1, 1);
+  base::Job job(2, {});
+  ASSERT_GT(mesh.positions.size(), std::size_t{2} << 15);
+  // Not in the order of the vertices.
+  for (std::size_t t = 0; t + 1 < mesh.triangles.size(); t += 5) {
+    std::swap(mesh.triangles[t], mesh.triangles[mesh.triangles.size() - 1 - t]);
+  }
+  const CornersOfVertices all(mesh.positions.size(), mesh.triangles, job);
+  std::vector<int> isSame(mesh.positions.size(), 0);
+  forCornerRanges(mesh.positions.size(), mesh.triangles, job, [&](const CornersOfVertices& some) {
+    EXPECT_LT(some.end() - some.begin(), mesh.positions.size());
+    for (Index v = some.begin(); v < some.end(); ++v) {
+      const auto a = some.of(v), b = all.of(v);
+      isSame[v] += std::equal(a.begin(), a.end(), b.begin(), b.end()) ? 1 : 100;
+    }
+  });
+  EXPECT_EQ(std::count(isSame.begin(), isSame.end(), 1), std::ssize(isSame));
+  for (const Index c : all.of(3)) EXPECT_EQ(mesh.triangles[c / 3].vertices[c % 3], 3U);
 }
 
 TEST(Partition, OwnsEachVertexAndTriangleOnce) {
@@ -266,7 +316,7 @@ TEST(Partition, OwnsEachVertexAndTriangleOnce) {
   locateAll(surface, reference, {}, job);
   apply(surface, reference, {}, std::vector<std::uint8_t>(mesh.triangles.size(), 0), job);
   Partition partition;
-  partition.build(surface, 500, 0.5f, job);
+  partition.build(surface, {500}, 0.5f, job);
   ASSERT_GT(partition.size(), 8U);
   std::vector<int> vertices(mesh.positions.size()), triangles(mesh.triangles.size()),
       foreign(mesh.triangles.size());
@@ -359,7 +409,7 @@ TEST(Partition, IsTheSameAlongItsOwnTreeAndForAnyThreads) {
       Partition partition;
       for (const test::FineMesh* mesh : {&large, &small}) {
         const Surface surface = surfaceOf(*mesh, job);
-        partition.build(surface, 500, 0.5f, job);
+        partition.build(surface, {500}, 0.5f, job);
         found.push_back(verticesOf(partition));
         const std::vector<Partition::Node> tree = partition.tree();
         partition.build(surface, tree, job);
@@ -390,7 +440,7 @@ std::size_t marksOfPlate(float thickness, float reach, bool isTurned = false) {
   Surface surface = surfaceOf(mesh, job);
   locateAll(surface, reference, {}, job);
   Partition partition;
-  partition.build(surface, 500, 0.5f, job);
+  partition.build(surface, {500}, 0.5f, job);
   surface.flags.assign(surface.flags.size(), 0);
   markNarrow(surface, partition, reach, job);
   std::size_t marks = 0;

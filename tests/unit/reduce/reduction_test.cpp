@@ -35,7 +35,7 @@ ReducedMesh reduced(const test::FineMesh& mesh, float tolerance, int threads) {
   ReducedMesh out;
   job.run([&] {
     Options options;
-    options.partVertices = 500;  // so that there are several parts
+    options.partSize.vertices = 500;  // so that there are several parts
     Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
     reduction.toTolerance(tolerance);
     out = reduction.mesh();
@@ -54,7 +54,11 @@ TEST_P(RandomMeshes, StaySound) {
   const float tolerance = 0.03f * std::pow(1.6f, static_cast<float>(seed * 7 % 8));
   base::Job job(1, {});
   Options options;
-  options.partVertices = seed % 2 == 0 ? 4096 : 300;
+  if (seed % 2 == 0) {
+    options.partSize.vertices = 4096;
+  } else {
+    options.partSize = {300, 1500, 100};
+  }
   Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
   reduction.toTolerance(tolerance);
   Certificate certificate = reduction.certificate();
@@ -184,7 +188,7 @@ TEST_P(ChainsByProxy, KeepToTheMeshThatCameIn) {
       seed % 2 == 0 ? test::bumpySphere(5, 8, 1, seed) : test::noiseSolid(12, 6, seed);
   base::Job job(1, {});
   Options options;
-  options.partVertices = 1000;
+  options.partSize.vertices = 1000;
   Reduction reduction(mesh.input(), mesh.input(), {}, {}, options, job);
   Index last = reduction.triangleCount();
   for (const float tolerance : {0.02f, 0.1f, 0.3f, 0.6f, 2.0f}) {
