@@ -41,7 +41,7 @@ base::Groups membersOf(const std::vector<std::array<Index, 2>>& pairs, std::size
 
 void Partition::build(const Surface& surface, const PartSize& size, float share, base::Job& job) {
   begin(surface, job);
-  countSamples(surface, size.samples, job);
+  if (!surface.isWhole && surface.owner.size() > size.samples) countSamples(surface, job);
   Tree tree = split(0, static_cast<Index>(items_.size()), kEverywhere, size, share, job);
   nodes_ = std::move(tree.nodes);
   boxes_ = std::move(tree.boxes);
@@ -69,9 +69,7 @@ void Partition::begin(const Surface& surface, base::Job& job) {
   ranges_.assign(1, 0);
 }
 
-// Those of a surface that is whole are at its vertices, as many in all parts.
-void Partition::countSamples(const Surface& surface, std::size_t most, base::Job& job) {
-  if (surface.isWhole || surface.owner.size() <= most) return;
+void Partition::countSamples(const Surface& surface, base::Job& job) {
   samplesAt_.assign(surface.position.size(), 0);
   for (std::size_t r = 0; r < surface.owner.size(); ++r) {
     job.pollCancelled(r);
@@ -80,7 +78,8 @@ void Partition::countSamples(const Surface& surface, std::size_t most, base::Job
   }
 }
 
-// Whether some items may be a part.
+// Whether some items may be a part. Samples of a surface that is whole are at its vertices: as many
+// in all parts.
 bool Partition::isSmall(Index begin, Index end, const PartSize& size) const {
   if (end - begin > size.vertices) return false;
   if (samplesAt_.empty() || end - begin <= size.leastVertices) return true;

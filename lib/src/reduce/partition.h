@@ -15,7 +15,7 @@ struct PartSize {
   Index vertices = 8192;
   /// Reference vertices that its triangles own, so that the last phases of a large mesh are not one
   /// part's, and one thread's.
-  std::size_t samples = std::size_t{1} << 19;
+  std::size_t samples = std::size_t{1} << 18;
   /// Parts have more samples rather than fewer vertices: those at borders stay for a phase.
   Index leastVertices = 1024;
 };
@@ -112,7 +112,7 @@ class Partition {
     Index add(const Tree& other);
   };
   void begin(const Surface& surface, base::Job& job);
-  void countSamples(const Surface& surface, std::size_t most, base::Job& job);
+  void countSamples(const Surface& surface, base::Job& job);
   [[nodiscard]] bool isSmall(Index begin, Index end, const PartSize& size) const;
   void finish(const Surface& surface, base::Job& job);
   [[nodiscard]] Index moveBelow(Index begin, Index end, int axis, float plane);

@@ -123,7 +123,7 @@ class Reduction {
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
 
  private:
-  static constexpr int kPhases = 8;      ///< most at one tolerance
+  static constexpr int kPhases = 16;     ///< most at one tolerance
   static constexpr int kRampPhases = 2;  ///< at one on the way to a larger one
   /// Voxels. Where a larger tolerance gave little, the shape of triangles is in the way: slivers,
   /// fans and turns are allowed from then on.
