@@ -36,10 +36,10 @@ class WayForth {
   void vertices(std::size_t begin, std::size_t end, Measured& measured) const {
     for (std::size_t r = begin; r < end; ++r) {
       if (owner_[r] == kNone) continue;
-      const float d = distance(reference_.positions()[r], owner_[r]);
+      const float limit = limits_.atVertex(static_cast<Index>(r));
+      const float d = distanceWithin(limit, reference_.positions()[r], owner_[r]);
       measured.sum += static_cast<double>(d);
       regions_.see(owner_[r], d);
-      const float limit = limits_.atVertex(static_cast<Index>(r));
       if (d > std::min(measured.largest, limit)) {
         measured.see(d, reference_.cornerOf(static_cast<Index>(r)) / 3, limit);
       }
@@ -106,7 +106,7 @@ class WayForth {
     constexpr std::size_t kMost = 6;
     std::vector<std::pair<float, Index>> found;
     for (const Index t : triangles) {
-      const float d = distance(p, t);
+      const float d = distanceWithin(limit, p, t);
       if (d <= limit) found.emplace_back(d, t);
     }
     std::sort(found.begin(), found.end());
@@ -130,6 +130,14 @@ class WayForth {
   [[nodiscard]] float distance(Vec3f p, Index t) const {
     return std::sqrt(
         squaredDistanceToTriangle(p, s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2)));
+  }
+
+  // What seems too far is measured again in double precision: it may be near a sliver.
+  [[nodiscard]] float distanceWithin(float limit, Vec3f p, Index t) const {
+    const float d = distance(p, t);
+    if (d <= limit) return d;
+    return static_cast<float>(std::sqrt(
+        exactSquaredDistanceToTriangle(p, s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2))));
   }
 
   // Whether t is an owner or touches two of them: what lies between, where a map may jump.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/vec3.h"
 #include "base/vec3f.h"
 
 namespace tufa::reduce {
@@ -22,31 +23,42 @@ using base::Vec3f;
 // Distances, after Ericson, Real-Time Collision Detection (2005), 5.1. Inline: they are asked for
 // so often that calls would show.
 
-/// The point of a triangle that is nearest to p.
-[[nodiscard]] inline Vec3f closestOnTriangle(Vec3f p, Vec3f a, Vec3f b, Vec3f c) {
-  const Vec3f ab = b - a, ac = c - a, ap = p - a;
-  const float d1 = dot(ab, ap), d2 = dot(ac, ap);
+[[nodiscard]] inline double dot(const Vec3& a, const Vec3& b) { return a.dot(b); }
+
+/// The point of a triangle that is nearest to p. `V`: Vec3f or Vec3. Of a sliver a hundred times as
+/// long as it is wide single precision may give another point, but one of the triangle.
+template <class V>
+[[nodiscard]] inline V closestOnTriangle(const V& p, const V& a, const V& b, const V& c) {
+  const V ab = b - a, ac = c - a, ap = p - a;
+  const auto d1 = dot(ab, ap), d2 = dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return a;
-  const Vec3f bp = p - b;
-  const float d3 = dot(ab, bp), d4 = dot(ac, bp);
+  const V bp = p - b;
+  const auto d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return b;
-  const float vc = d1 * d4 - d3 * d2;
+  const auto vc = d1 * d4 - d3 * d2;
   if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
-  const Vec3f cp = p - c;
-  const float d5 = dot(ab, cp), d6 = dot(ac, cp);
+  const V cp = p - c;
+  const auto d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return c;
-  const float vb = d5 * d2 - d1 * d6;
+  const auto vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
-  const float va = d3 * d6 - d5 * d4;
+  const auto va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
     return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
   }
-  const float s = 1 / (va + vb + vc);
+  if (!(va > 0 && vb > 0 && vc > 0)) return a;  // of a sliver
+  const auto s = 1 / (va + vb + vc);
   return a + ab * (vb * s) + ac * (vc * s);
 }
 
 [[nodiscard]] inline float squaredDistanceToTriangle(Vec3f p, Vec3f a, Vec3f b, Vec3f c) {
   return squaredLength(p - closestOnTriangle(p, a, b, c));
+}
+
+/// The same in double precision, for slivers.
+[[nodiscard]] inline double exactSquaredDistanceToTriangle(Vec3f p, Vec3f a, Vec3f b, Vec3f c) {
+  const Vec3 q(p);
+  return (q - closestOnTriangle(q, Vec3(a), Vec3(b), Vec3(c))).squaredLength();
 }
 
 /// Between the segments from p1 to q1 and from p2 to q2.

@@ -84,6 +84,25 @@ TEST(Certificate, SeesWhereEdgesCross) {
   EXPECT_LT(c.mean, 1e-6f);
 }
 
+// A vertex 0.028 from a sliver, of which single precision finds a point 0.13 away. As met with on
+// the edge of a plate.
+TEST(Certificate, IsNotTooLargeAtASliver) {
+  const Vec3f a(-93.0248f, 188.3711f, 90.7239f), b(-93.9874f, -40.7796f, 91.0132f),
+      c(-93.0284f, -110.1024f, 90.72f), p(-93.1259f, 39.5f, 90.7234f), below(-93.5f, 0, 60);
+  ASSERT_GT(std::sqrt(squaredDistanceToTriangle(p, a, b, c)), 0.12f);
+  const test::FineMesh mesh{{a, b, c, below}, {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}};
+  const test::FineMesh reference{
+      {a, b, c, below, p}, {{0, 1, 4}, {1, 2, 4}, {2, 0, 4}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}};
+  base::Job job(1, {});
+  const ReferenceMesh to(surfaceOf(reference, job), {}, job);
+  Surface surface = surfaceOf(mesh, job);
+  locateAll(surface, to, nearestVertices(mesh, reference), job);
+  surface.owner[4] = 0;
+  const Certificate found = certify(surface, to, 0.08f, job);
+  EXPECT_NEAR(found.largest, 0.0275f, 1e-3f);
+  EXPECT_TRUE(found.beyond.empty());
+}
+
 // What the mesh has in addition is no nearer for the reference's being near the mesh.
 TEST(Certificate, BoundsTheWayBackToo) {
   const test::FineMesh fine = test::subdivided(test::box(8, 8, 8), 2);

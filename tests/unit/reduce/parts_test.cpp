@@ -10,6 +10,7 @@
 #include "reduce/local_quadric.h"
 #include "reduce/partition.h"
 #include "reduce/reference_mesh.h"
+#include "reduce/triangles.h"
 #include "unit/reduce/meshes.h"
 
 namespace tufa::reduce {
@@ -239,6 +240,30 @@ TEST_F(ReferenceMeshTest, TellsWhereASectionPassesItsEnd) {
     EXPECT_NEAR(length(arrival.at - along), depth, 1e-4f);
     EXPECT_NEAR(reference.distance(arrival.face, start + along), depth, 1e-4f);
   }
+}
+
+// In single precision a point of a long sliver is found that need not be the nearest: no distance
+// is too small.
+TEST(Triangles, DistancesToSliversAreNeverTooSmall) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> share(0, 1);
+  float most = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3f a = randomPoint(random, 200), along = randomPoint(random, 100);
+    const Vec3f b = a + along, c = a + along * (2 * share(random)) + randomPoint(random, 0.1f);
+    const Vec3f p = a + along * share(random) + randomPoint(random, 0.1f);
+    const double exact = std::sqrt(exactSquaredDistanceToTriangle(p, a, b, c));
+    const float found = std::sqrt(squaredDistanceToTriangle(p, a, b, c));
+    EXPECT_GE(static_cast<double>(found), exact - 2e-4);
+    const double s = static_cast<double>(share(random)), t = (1 - s) * 0.5;
+    EXPECT_LE(exact, (Vec3(p) - (Vec3(a) + Vec3(b - a) * s + Vec3(c - a) * t)).length() + 1e-9);
+    most = std::max(most, found - static_cast<float>(exact));
+  }
+  EXPECT_GT(most, 0.05f);
+  // As found on the edge of a plate.
+  const Vec3f p(-93.1259f, 39.5f, 90.7234f), a(-93.0248f, 188.3711f, 90.7239f),
+      b(-93.9874f, -40.7796f, 91.0132f), c(-93.0284f, -110.1024f, 90.72f);
+  EXPECT_NEAR(std::sqrt(exactSquaredDistanceToTriangle(p, a, b, c)), 0.0275, 1e-3);
 }
 
 // A vertex on a part's border may not move.
