@@ -6,6 +6,7 @@
 #include "base/bits.h"
 #include "base/huge_pages.h"
 #include "base/parallel.h"
+#include "base/parallel_sort.h"
 
 namespace tufa::base {
 namespace {

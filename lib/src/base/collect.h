@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/parallel_sort.h"
 
 namespace tufa::base {
 

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <tbb/parallel_sort.h>
-
-#include <algorithm>
 #include <cstddef>
 #include <functional>
 
-// The only use of TBB. Memory order: a task sees what its caller wrote before, and after the call
-// the caller sees what the tasks wrote.
+// With parallel_sort.h the only use of TBB. Memory order: a task sees what its caller wrote before,
+// and after the call the caller sees what the tasks wrote.
 
 namespace tufa::base {
 
@@ -36,17 +33,5 @@ void runParts(std::size_t count, const std::function<void(std::size_t index)>& b
 
 /// Runs both, in parallel if a thread is free.
 void runBoth(const std::function<void()>& first, const std::function<void()>& second);
-
-/// Sorts a random access range. No two elements may be equivalent, else their order could depend on
-/// the number of threads.
-template <class Iterator, class Less>
-void parallelSort(Iterator begin, Iterator end, const Less& less) {
-#ifdef TUFA_THREAD_SANITIZER
-  // ThreadSanitizer would see only the half of TBB's sort that is in headers.
-  std::sort(begin, end, less);
-#else
-  tbb::parallel_sort(begin, end, less);
-#endif
-}
 
 }  // namespace tufa::base

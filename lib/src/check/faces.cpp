@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "check/exact.h"
 
 namespace tufa::checks {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/huge_pages.h"
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "uniform/uniform_surface.h"
 
 namespace tufa::extraction {

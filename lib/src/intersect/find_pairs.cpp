@@ -7,7 +7,7 @@
 
 #include "base/collect.h"
 #include "base/huge_pages.h"
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "intersect/surface.h"
 #include "intersect/triangle_pair.h"
 

@@ -26,7 +26,7 @@ void Part::load(const Surface& surface, const ReferenceMesh& reference, const Pa
   now_ = mergedNow_ = 0;
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
-    position_[i] = surface.position[v], axis_[i] = surface.axis[v];
+    position_[i] = surface.position[v], axis_[i] = surface.axis[v].vector();
     flags_[i] = surface.flags[v];
     face_[i] = faceOf(surface, reference, v), inner_[i] = partition.isInner(v);
   }
@@ -137,7 +137,7 @@ void Part::store(Surface& surface, std::vector<std::uint8_t>& dead) {
   const auto vertices = partition_->vertices(number_);
   for (Index i = 0; i < vertexCount_; ++i) {
     const Index v = vertices[i];
-    if (inner_[i] != 0) surface.axis[v] = axis_[i], surface.flags[v] = flags_[i];
+    if (inner_[i] != 0) surface.axis[v] = base::Direction(axis_[i]), surface.flags[v] = flags_[i];
     if (moved_[i] != 0) stored_.moved.push_back({v, position_[i], face_[i]});
   }
   for (Index t = 0; t < triangleCount_; ++t) {

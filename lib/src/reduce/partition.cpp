@@ -10,23 +10,7 @@
 namespace tufa::reduce {
 namespace {
 
-Box3f everywhere() {
-  Box3f all;
-  std::swap(all.lower, all.upper);
-  return all;
-}
-
-const Box3f kEverywhere = everywhere();
 constexpr std::size_t kGrain = 16384;
-
-// Runs both, at the same time where there is enough to do.
-template <class First, class Second>
-void both(Index items, const First& first, const Second& second) {
-  constexpr Index kEnough = 1 << 16;
-  if (items >= kEnough) return base::runBoth(first, second);
-  first();
-  second();
-}
 
 // Of pairs of a part and a member, the members of each part.
 base::Groups membersOf(const std::vector<std::array<Index, 2>>& pairs, std::size_t parts,
@@ -39,157 +23,50 @@ base::Groups membersOf(const std::vector<std::array<Index, 2>>& pairs, std::size
 
 }  // namespace
 
+// The vertices before are gone before there are others: they are much memory.
 void Partition::build(const Surface& surface, const PartSize& size, float share, base::Job& job) {
-  begin(surface, job);
-  if (!surface.isWhole && surface.owner.size() > size.samples) countSamples(surface, job);
-  Tree tree = split(0, static_cast<Index>(items_.size()), kEverywhere, size, share, job);
-  nodes_ = std::move(tree.nodes);
-  boxes_ = std::move(tree.boxes);
-  ranges_.insert(ranges_.end(), tree.ends.begin(), tree.ends.end());
-  base::release(samplesAt_);
-  finish(surface, job);
+  tree_ = {};
+  std::vector<Index> samplesAt;
+  if (!surface.isWhole && surface.owner.size() > size.samples) {
+    samplesAt = samplesAtVertices(surface, job);
+  }
+  tree_ = splitIntoParts(surface.position, samplesAt, size, share, job);
+  base::release(samplesAt);
+  this->share(surface, job);
 }
 
-void Partition::build(const Surface& surface, const std::vector<Node>& tree, base::Job& job) {
-  begin(surface, job);
-  nodes_ = tree;
-  const std::size_t parts = nodes_.size() / 2 + 1;
-  boxes_.resize(parts), ranges_.resize(parts + 1);
-  splitAlong(0, 0, static_cast<Index>(items_.size()), kEverywhere);
-  finish(surface, job);
+void Partition::build(const Surface& surface, const std::vector<PartTree::Node>& tree,
+                      base::Job& job) {
+  tree_ = {};
+  tree_ = splitAlong(surface.position, tree, job);
+  share(surface, job);
 }
 
-void Partition::begin(const Surface& surface, base::Job& job) {
-  base::resizeLarge(items_, surface.position.size(), job);
-  job.forRanges(items_.size(), kGrain, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      items_[i] = {surface.position[i], static_cast<Index>(i)};
-    }
-  });
-  ranges_.assign(1, 0);
-}
-
-void Partition::countSamples(const Surface& surface, base::Job& job) {
-  samplesAt_.assign(surface.position.size(), 0);
+// How many samples the triangles own, each counted at one vertex of its owner.
+std::vector<Index> Partition::samplesAtVertices(const Surface& surface, base::Job& job) {
+  std::vector<Index> samples(surface.position.size(), 0);
   for (std::size_t r = 0; r < surface.owner.size(); ++r) {
     job.pollCancelled(r);
     const Index owner = surface.owner[r];
-    if (owner != kNone) ++samplesAt_[surface.triangles[owner].vertices[0]];
+    if (owner != kNone) ++samples[surface.triangles[owner].vertices[0]];
   }
+  return samples;
 }
 
-// Whether some items may be a part. Samples of a surface that is whole are at its vertices: as many
-// in all parts.
-bool Partition::isSmall(Index begin, Index end, const PartSize& size) const {
-  if (end - begin > size.vertices) return false;
-  if (samplesAt_.empty() || end - begin <= size.leastVertices) return true;
-  std::size_t samples = 0;
-  for (Index i = begin; i < end; ++i) samples += samplesAt_[items_[i].vertex];
-  return samples <= size.samples;
-}
-
-void Partition::finish(const Surface& surface, base::Job& job) {
+void Partition::share(const Surface& surface, base::Job& job) {
   numberVertices(job);
   shareTriangles(surface, job);
   shareForms(surface, job);
   if (!surface.isWhole) shareSamples(surface, job);
 }
 
-// Items below a plane go first; the end of them. Those on it are the upper side's, but may not
-// move.
-Index Partition::moveBelow(Index begin, Index end, int axis, float plane) {
-  const auto middle = std::partition(items_.begin() + begin, items_.begin() + end,
-                                     [&](const Item& i) { return i.p[axis] < plane; });
-  return static_cast<Index>(middle - items_.begin());
-}
-
-// A plane between the items before `end` and others from `least` on: on it, the vertices of a face
-// across the axis could not move.
-float Partition::planeBelow(float least, int axis, Index begin, Index end) const {
-  float most = items_[begin].p[axis];
-  for (Index i = begin; i < end; ++i) most = std::max(most, items_[i].p[axis]);
-  const float middle = most + (least - most) / 2;
-  return middle > most ? middle : least;
-}
-
-Partition::Tree Partition::split(Index begin, Index end, const Box3f& box, const PartSize& size,
-                                 float share, base::Job& job) {
-  const Tree part{{{-1, 0, 0, 0}}, {box}, {end}};
-  if (isSmall(begin, end, size)) return part;
-  job.checkCancelled(0, 1);
-  Box3f bounds;
-  for (Index i = begin; i < end; ++i) bounds.add(items_[i].p);
-  const Vec3f d = bounds.upper - bounds.lower;
-  const int axis = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
-  const auto first = items_.begin() + begin, last = items_.begin() + end;
-  const auto middle = first + static_cast<std::ptrdiff_t>(static_cast<float>(end - begin) * share);
-  std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
-    return a.p[axis] < b.p[axis] || (a.p[axis] == b.p[axis] && a.vertex < b.vertex);
-  });
-  const float least = middle->p[axis];  // of the upper side
-  const Index cut = moveBelow(begin, end, axis, least);
-  if (cut == begin) return part;
-  const float plane = planeBelow(least, axis, begin, cut);
-  Box3f lower = box, upper = box;
-  lower.upper[axis] = plane, upper.lower[axis] = plane;
-  Tree low, high;
-  both(
-      end - begin, [&] { low = split(begin, cut, lower, size, share, job); },
-      [&] { high = split(cut, end, upper, size, share, job); });
-  Tree all{{{axis, plane, 0, 0}}, {}, {}};
-  all.nodes[0].low = all.add(low);
-  all.nodes[0].high = all.add(high);
-  return all;
-}
-
-// Returns where its root is now.
-Index Partition::Tree::add(const Tree& other) {
-  const auto root = static_cast<Index>(nodes.size()), parts = static_cast<Index>(boxes.size());
-  for (Node node : other.nodes) {
-    node.low += node.axis < 0 ? parts : root;
-    node.high += node.axis < 0 ? 0 : root;
-    nodes.push_back(node);
-  }
-  boxes.insert(boxes.end(), other.boxes.begin(), other.boxes.end());
-  ends.insert(ends.end(), other.ends.begin(), other.ends.end());
-  return root;
-}
-
-void Partition::splitAlong(Index node, Index begin, Index end, const Box3f& box) {
-  const Node n = nodes_[node];
-  if (n.axis < 0) {
-    boxes_[n.low] = box, ranges_[n.low + 1] = end;
-    return;
-  }
-  const Index cut = moveBelow(begin, end, n.axis, n.at);
-  Box3f low = box, high = box;
-  low.upper[n.axis] = n.at, high.lower[n.axis] = n.at;
-  both(
-      end - begin, [&] { splitAlong(n.low, begin, cut, low); },
-      [&] { splitAlong(n.high, cut, end, high); });
-}
-
-// Items, the largest array here, are gone before the others are made.
 void Partition::numberVertices(base::Job& job) {
-  const std::size_t count = items_.size();
-  const auto forParts = [&](const auto& body) {
-    job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p)
-        body(static_cast<Index>(p), ranges_[p], ranges_[p + 1]);
-    });
-  };
-  base::shrinkTo(vertices_, count, job);
-  forParts([&](Index, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) vertices_[i] = items_[i].vertex;
-    std::sort(vertices_.begin() + begin, vertices_.begin() + end);
-  });
-  base::release(items_);
-  base::shrinkTo(partOf_, count, job);
-  base::shrinkTo(localVertex_, count, job);
-  forParts([&](Index part, Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) {
-      partOf_[vertices_[i]] = part;
-      localVertex_[vertices_[i]] = i - begin;
+  base::shrinkTo(partOf_, tree_.vertices.size(), job);
+  base::shrinkTo(localVertex_, tree_.vertices.size(), job);
+  job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (auto p = static_cast<Index>(begin); p < end; ++p) {
+      Index next = 0;
+      for (const Index v : vertices(p)) partOf_[v] = p, localVertex_[v] = next++;
     }
   });
 }
@@ -221,6 +98,11 @@ void Partition::shareTriangles(const Surface& surface, base::Job& job) {
     forPartsAt(box, [&](Index part) { reached.push_back({part, t}); });
   }
   foreign_ = membersOf(reached, size(), job);
+}
+
+float Partition::innerShare() const {
+  const auto inner = std::count(inner_.begin(), inner_.end(), 1);
+  return inner_.empty() ? 1 : static_cast<float>(inner) / static_cast<float>(inner_.size());
 }
 
 void Partition::findRuns(const Surface& surface, base::Job& job) {

@@ -6,19 +6,10 @@
 #include "base/group.h"
 #include "base/job.h"
 #include "reduce/box3f.h"
+#include "reduce/part_tree.h"
 #include "reduce/surface.h"
 
 namespace tufa::reduce {
-
-/// What a part has at most.
-struct PartSize {
-  Index vertices = 8192;
-  /// Reference vertices that its triangles own, so that the last phases of a large mesh are not one
-  /// part's, and one thread's.
-  std::size_t samples = std::size_t{1} << 18;
-  /// Parts have more samples rather than fewer vertices: those at borders stay for a phase.
-  Index leastVertices = 1024;
-};
 
 /// The k-d parts of a surface that a phase works on one by one, in parallel.
 ///
@@ -29,25 +20,21 @@ struct PartSize {
 /// the result.
 class Partition {
  public:
-  /// Cuts across the longest extent leave `share` of the vertices on their lower side, until parts
-  /// are small enough. Depends on the surface alone. Cost: n log n.
+  /// Parts as splitIntoParts() makes them. Depends on the surface alone.
   void build(const Surface& surface, const PartSize& size, float share, base::Job& job);
 
   /// The tree of the parts.
-  struct Node {
-    int axis;  ///< -1: a part, whose number is `low`
-    float at;
-    Index low, high;
-  };
-  [[nodiscard]] const std::vector<Node>& tree() const { return nodes_; }
+  [[nodiscard]] const std::vector<PartTree::Node>& tree() const { return tree_.nodes; }
   /// Cuts as a tree did, wherever the vertices are: so what changes in one place of a surface does
   /// not change the parts elsewhere.
-  void build(const Surface& surface, const std::vector<Node>& tree, base::Job& job);
+  void build(const Surface& surface, const std::vector<PartTree::Node>& tree, base::Job& job);
 
-  [[nodiscard]] std::size_t size() const { return boxes_.size(); }
-  [[nodiscard]] const Box3f& box(Index part) const { return boxes_[part]; }
+  [[nodiscard]] std::size_t size() const { return tree_.size(); }
+  [[nodiscard]] const Box3f& box(Index part) const { return tree_.boxes[part]; }
   /// Vertices of a part, in rising order. Numbers in the part are places in these lists.
-  [[nodiscard]] std::span<const Index> vertices(Index p) const { return of(vertices_, ranges_, p); }
+  [[nodiscard]] std::span<const Index> vertices(Index p) const {
+    return of(tree_.vertices, tree_.ranges, p);
+  }
   /// Triangles with all corners in a part, in rising order.
   [[nodiscard]] std::vector<Index> triangles(Index p) const {
     std::vector<Index> all;
@@ -79,21 +66,19 @@ class Partition {
   [[nodiscard]] Index localSample(Index sample) const { return localSample_[sample]; }
   /// Whether all triangles at a vertex are triangles of its part, and none of its edges is open.
   [[nodiscard]] bool isInner(Index vertex) const { return inner_[vertex] != 0; }
+  /// The share of the vertices that are inner ones.
+  [[nodiscard]] float innerShare() const;
 
   /// f(part) for each part that a box reaches into.
   template <class F>
   void forPartsAt(const Box3f& box, F&& f, Index node = 0) const {
-    const Node& n = nodes_[node];
+    const PartTree::Node& n = tree_.nodes[node];
     if (n.axis < 0) return void(f(n.low));
     if (box.lower[n.axis] <= n.at) forPartsAt(box, f, n.low);
     if (box.upper[n.axis] >= n.at) forPartsAt(box, f, n.high);
   }
 
  private:
-  struct Item {
-    Vec3f p;
-    Index vertex;
-  };
   /// Triangles of a part one behind the other: most are, as neighbours mostly are neighbours in the
   /// order of triangles too.
   struct Run {
@@ -104,22 +89,8 @@ class Partition {
                                Index part) {
     return {all.data() + first[part], all.data() + first[part + 1]};
   }
-  /// A part of the tree, with its own parts, by their numbers in it.
-  struct Tree {
-    std::vector<Node> nodes;
-    std::vector<Box3f> boxes;
-    std::vector<Index> ends;  ///< of the items of each part
-    Index add(const Tree& other);
-  };
-  void begin(const Surface& surface, base::Job& job);
-  void countSamples(const Surface& surface, base::Job& job);
-  [[nodiscard]] bool isSmall(Index begin, Index end, const PartSize& size) const;
-  void finish(const Surface& surface, base::Job& job);
-  [[nodiscard]] Index moveBelow(Index begin, Index end, int axis, float plane);
-  [[nodiscard]] float planeBelow(float least, int axis, Index begin, Index end) const;
-  [[nodiscard]] Tree split(Index begin, Index end, const Box3f& box, const PartSize& size,
-                           float share, base::Job& job);
-  void splitAlong(Index node, Index begin, Index end, const Box3f& box);
+  [[nodiscard]] static std::vector<Index> samplesAtVertices(const Surface& surface, base::Job& job);
+  void share(const Surface& surface, base::Job& job);
   void numberVertices(base::Job& job);
   /// That of all its corners, or kNone.
   [[nodiscard]] Index partOfTriangle(const Triangle& triangle) const {
@@ -134,11 +105,8 @@ class Partition {
   void sortSamples(const Surface& surface, std::size_t part, std::vector<Index>& next,
                    std::vector<Index>& sorted);
 
-  std::vector<Item> items_;
-  std::vector<Index> samplesAt_;  ///< each at one vertex of its owner; empty once there are parts
-  std::vector<Node> nodes_;
-  std::vector<Box3f> boxes_;
-  std::vector<Index> vertices_, ranges_, partOf_, localVertex_;
+  PartTree tree_;
+  std::vector<Index> partOf_, localVertex_;
   std::vector<Index> localTriangle_, localSample_;
   std::vector<Run> runs_;
   std::vector<Index> firstRun_;  ///< of each part

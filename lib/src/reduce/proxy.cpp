@@ -59,7 +59,8 @@ void handOver(Surface& s, const ReferenceMesh& reference, const Proxy& proxy,
       if (s.face[v] == kNone) continue;
       const Index face = nearestOwner(reference.vertices(s.face[v]), proxy.owners, proxy.positions,
                                       proxy.triangles, s.position[v]);
-      s.face[v] = face == kNone ? kNone : locateNear(proxyMesh, face, s.position[v], s.axis[v]);
+      s.face[v] =
+          face == kNone ? kNone : locateNear(proxyMesh, face, s.position[v], s.axis[v].vector());
     }
   });
   s.owner = std::move(owners);

@@ -31,6 +31,11 @@ constexpr float kLargeErrorShare = 1.4f;
 // Phases that contract clusters. The second and third ones find them along borders of parts before,
 // but make slivers: where none are wanted there is one.
 constexpr int kClusterPhases = 3;
+// Where so few of the vertices are inside parts, as large triangles lie across the borders, parts
+// of the next phases may have so many times as many vertices before they are split for their
+// samples.
+constexpr float kFewInner = 0.6f;
+constexpr Index kFewerParts = 2;
 // On the way to a large tolerance each is this share of the next, down to kRampEnd voxels.
 constexpr float kRamp = 0.25f;
 constexpr float kRampEnd = 0.09f;
@@ -253,6 +258,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   }
   limits.isLoose = tolerance > kLooseTolerance && attempt_ == 0;
   limits.switchedOff = options_.switchedOff;
+  PartSize size = options_.partSize;
   for (int i = 0, left = phases; left > 0 && triangleCount() > count; ++i, --left) {
     const bool isLast = left == 1 && phases == kPhases;
     limits.distance = tolerance * kMargin * (i == 0 ? kFirstShare : 1);
@@ -261,7 +267,10 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
     limits.clusters = options_.clusters && isFirst && lines_ == LineMode::Free &&
                       i < (limits.keepsAngle() ? 1 : kClusterPhases);
     const Index before = triangleCount();
-    buildParts();
+    buildParts(size);
+    if (partition_.innerShare() < kFewInner) {
+      size.leastVertices = std::min(size.leastVertices * kFewerParts, size.vertices);
+    }
     if (i == 0) markNarrow(surface_, partition_, kClearance * tolerance, job_);
     runPhase(limits, count);
     const bool isMore = lastCounts_.overQuota > 0 && triangleCount() < before;
@@ -272,9 +281,9 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
 
 // The parts of a further attempt are those of the first one, so that it takes another course only
 // near what is held.
-void Reduction::buildParts() {
+void Reduction::buildParts(const PartSize& size) {
   if (nextTree_ == trees_.size()) {
-    partition_.build(surface_, options_.partSize, shareOf(phaseNumber_), job_);
+    partition_.build(surface_, size, shareOf(phaseNumber_), job_);
     trees_.push_back(partition_.tree());
   } else {
     partition_.build(surface_, trees_[nextTree_], job_);
@@ -363,7 +372,7 @@ ReducedMesh Reduction::mesh() const {
                    {s.region.begin(), s.region.end()}};
   if (original_) {
     for (Index v = 0; v < s.position.size(); ++v) {
-      mesh.faces[v] = faceBelow(*original_, *proxy_, s.face[v], s.position[v], s.axis[v]);
+      mesh.faces[v] = faceBelow(*original_, *proxy_, s.face[v], s.position[v], s.axis[v].vector());
     }
   }
   if (!s.isWhole) return mesh;

@@ -154,7 +154,7 @@ class Reduction {
   /// How far a distance to the present reference may be from that to the one that came in.
   [[nodiscard]] float proxyError() const { return original_ ? proxy_->largest : 0; }
   bool findCount(Index count, float mostTolerance);
-  void buildParts();
+  void buildParts(const PartSize& size);
   void beginLines();
   void measureWithin(float expected);
   void addFacesNear(const std::vector<Index>& triangles, std::vector<Index>& faces) const;
@@ -187,7 +187,7 @@ class Reduction {
   Certificate certificate_;                        ///< of the distance to the present reference
   float largestScale_;  ///< what tolerances from outside are multiplied with
   bool isReference_;    ///< the mesh is the reference still
-  std::vector<std::vector<Partition::Node>> trees_;  ///< of the phases at the present tolerance
+  std::vector<std::vector<PartTree::Node>> trees_;  ///< of the phases at the present tolerance
   std::size_t nextTree_ = 0;
   int attempt_ = 0;  ///< at the present tolerance, from 0 on
   LineMode lines_ = LineMode::Free;

@@ -51,7 +51,7 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
   }
   if (sum != 0) setFlag(s.flags[v], kBorder);
   float leastCosine = -1;
-  if (n > 0 && !isTooMany) s.axis[v] = commonAxis(normals, n, leastCosine);
+  if (n > 0 && !isTooMany) s.axis[v] = base::Direction(commonAxis(normals, n, leastCosine));
   if (isSteep || leastCosine < kSteepCosine) setFlag(s.flags[v], kSteep);
   if (leastCosine >= kLeastCosine) return;
   s.axis[v] = {};
@@ -77,7 +77,7 @@ void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index
   job.forRanges(s.position.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) {
       if (s.face[v] == kNone || !s.hasAxis(v)) continue;
-      const Index f = reference.locate(s.face[v], s.position[v], s.axis[v]);
+      const Index f = reference.locate(s.face[v], s.position[v], s.axis[v].vector());
       if (f != kNone) s.face[v] = f;
     }
   });

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/direction.h"
 #include "base/job.h"
 #include "base/shared_array.h"
 #include "reduce/corners.h"
@@ -31,10 +32,10 @@ struct Surface {
 
   // For each vertex.
   base::SharedArray<Vec3f> position;
-  std::vector<Vec3f> axis;          ///< all triangles at the vertex face it; 0 if there is none
-  std::vector<std::uint8_t> flags;  ///< of VertexFlag
-  std::vector<Index> source;        ///< the input's vertex that it still is, or kNone
-  std::vector<Index> face;          ///< of the reference, at the vertex seen along its axis
+  std::vector<base::Direction> axis;  ///< all triangles at the vertex face it; may be none
+  std::vector<std::uint8_t> flags;    ///< of VertexFlag
+  std::vector<Index> source;          ///< the input's vertex that it still is, or kNone
+  std::vector<Index> face;            ///< of the reference, at the vertex seen along its axis
 
   base::SharedArray<Triangle> triangles;
   /// For each reference vertex its owner: the triangle that answers for it. kNone for those without
@@ -70,7 +71,7 @@ struct Surface {
   [[nodiscard]] Index sourceOf(Index v) const { return isWhole ? v : source[v]; }
   [[nodiscard]] bool hasLines() const { return !lineKind.empty(); }
   [[nodiscard]] bool isOnLine(Index v) const { return hasLines() && lineKind[v] != LineKind::Off; }
-  [[nodiscard]] bool hasAxis(Index v) const { return squaredLength(axis[v]) != 0; }
+  [[nodiscard]] bool hasAxis(Index v) const { return !axis[v].isNone(); }
   [[nodiscard]] const Vec3f& corner(Index triangle, std::size_t i) const {
     return position[triangles[triangle].vertices[i]];
   }

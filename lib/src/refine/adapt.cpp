@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/huge_pages.h"
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "base/polygons.h"
 #include "base/small_angles.h"
 #include "intersect/cut_candidates.h"

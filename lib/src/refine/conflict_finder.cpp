@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/collect.h"
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "base/sort_unique.h"
 #include "intersect/candidates.h"
 #include "uniform/block_ranges.h"

@@ -26,6 +26,8 @@ class SurfaceModel {
   /// Frees what is known of cells, and the quads once faces have been made of them: some thirty
   /// bytes a cell. Neither view() nor buildClusters() may be called from then on.
   void releaseCells();
+  /// The normals of the mesh, which has none from then on.
+  [[nodiscard]] std::vector<Normal> takeNormals() { return std::move(surface_.mesh.normals); }
   /// Frees the positions of the mesh.
   void releasePositions();
   /// The surface with what is known of its cells, which is made again if it was released; quads are

@@ -26,24 +26,14 @@ constexpr std::size_t kGrain = 16384;
 SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& rule, base::Job& job)
     : model_(model), rule_(rule), job_(job) {
   const Mesh& mesh = model.mesh();
-  base::Box box = base::Box::empty();
-  for (const Position& p : mesh.positions) box.add(Vec3(p));
-  middle_ = box.centre();
-  size_ = box.size().length() / model.affine().voxelSize();
-  std::vector<Vec3f> positions;
-  base::resizeLarge(positions, mesh.positions.size(), job);
-  const double perVoxel = 1 / model.affine().voxelSize();
-  job.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      positions[i] = Vec3f((Vec3(mesh.positions[i]) - middle_) * perVoxel);
-    }
-  });
-  positions_ = std::move(positions);
-  faces_ = base::triangulate(mesh, job);
   std::vector<float> scales = scalesOf(mesh, model.affine(), rule, job);
   closeVertices_ = intersect::verticesOf(mesh, intersect::distinctPolygonsOf(model.closePairs()));
   for (const VertexIndex v : closeVertices_) closePositions_.push_back(mesh.positions[v]);
+  // One array after the other, so that few are there twice.
+  takeNormals(model.takeNormals());
+  faces_ = base::triangulate(mesh, job);
   model.releaseCells();
+  takePositions(mesh.positions);
   keepsExact_ = model.report().openEdges > 0 ||
                 rule.tolerance < static_cast<double>(reduce::kLeastTolerance) ||
                 std::any_of(scales.begin(), scales.end(), [](float scale) { return scale == 0; });
@@ -55,6 +45,22 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
   }
   reduction_.emplace(input, input, std::span<const reduce::Index>(), std::move(scales),
                      std::move(options), job);
+}
+
+void SurfaceReduction::takePositions(const std::vector<Position>& exact) {
+  base::Box box = base::Box::empty();
+  for (const Position& p : exact) box.add(Vec3(p));
+  middle_ = box.centre();
+  size_ = box.size().length() / model_.affine().voxelSize();
+  std::vector<Vec3f> positions;
+  base::resizeLarge(positions, exact.size(), job_);
+  const double perVoxel = 1 / model_.affine().voxelSize();
+  job_.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      positions[i] = Vec3f((Vec3(exact[i]) - middle_) * perVoxel);
+    }
+  });
+  positions_ = std::move(positions);
 }
 
 Position SurfaceReduction::positionAt(const Vec3f& local) const {
@@ -72,13 +78,28 @@ Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
   return closePositions_[static_cast<std::size_t>(found - closeVertices_.begin())];
 }
 
+// A vertex has its normal for one result in a hundred; kept in four bytes, it takes a third.
+void SurfaceReduction::takeNormals(const std::vector<Normal>& normals) {
+  base::resizeLarge(normals_, normals.size(), job_);
+  job_.forRanges(normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      normals_[i] = base::Direction(Vec3f(normals[i].x, normals[i].y, normals[i].z));
+    }
+  });
+}
+
+// Of the uniform mesh.
+Normal SurfaceReduction::normalAt(reduce::Index vertex) const {
+  const Vec3f normal = normals_[vertex].vector();
+  return {normal.x, normal.y, normal.z};
+}
+
 Normal SurfaceReduction::normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const {
-  const std::vector<Normal>& normals = model_.mesh().normals;
   const reduce::Index source = reduced.sources[vertex];
-  if (source != reduce::kNone) return normals[source];
+  if (source != reduce::kNone) return normalAt(source);
   const auto& [a, b, c] = faces_[reduced.faces[vertex]].vertices;
   return base::interpolatedNormal({Vec3(positions_[a]), Vec3(positions_[b]), Vec3(positions_[c])},
-                                  {normals[a], normals[b], normals[c]},
+                                  {normalAt(a), normalAt(b), normalAt(c)},
                                   Vec3(reduced.positions[vertex]));
 }
 

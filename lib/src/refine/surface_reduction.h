@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/direction.h"
 #include "base/job.h"
 #include "base/shared_array.h"
 #include "base/vec3.h"
@@ -27,7 +28,7 @@ namespace tufa::refine {
 class SurfaceReduction {
  public:
   /// The rule's scale holds for all tolerances. All arguments must outlive this. Releases the
-  /// model's cells, and its positions.
+  /// model's cells and normals, and its positions.
   SurfaceReduction(SurfaceModel& model, const octree::CutRule& rule, base::Job& job);
 
   /// As few triangles as can be found within a tolerance, voxels. `drop`: leave out components
@@ -46,8 +47,11 @@ class SurfaceReduction {
     bool isTold = false;  ///< that it was left out
   };
 
+  void takeNormals(const std::vector<Normal>& normals);
+  void takePositions(const std::vector<Position>& exact);
   [[nodiscard]] Position positionAt(const base::Vec3f& local) const;
   [[nodiscard]] Position positionOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
+  [[nodiscard]] Normal normalAt(reduce::Index vertex) const;
   [[nodiscard]] Normal normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
   [[nodiscard]] reduce::ReducedMesh extract(AdaptiveMesh& adaptive) const;
@@ -67,6 +71,7 @@ class SurfaceReduction {
   // Of the uniform mesh; positions in voxels, from the middle.
   base::SharedArray<base::Vec3f> positions_;
   base::SharedArray<Triangle> faces_;
+  std::vector<base::Direction> normals_;
   bool keepsExact_ = true;  ///< the model has positions still
   // Else those of vertices of close polygons; the vertices rising.
   std::vector<VertexIndex> closeVertices_;

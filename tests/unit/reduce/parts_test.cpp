@@ -436,7 +436,7 @@ TEST(Partition, IsTheSameAlongItsOwnTreeAndForAnyThreads) {
         const Surface surface = surfaceOf(*mesh, job);
         partition.build(surface, {500}, 0.5f, job);
         found.push_back(verticesOf(partition));
-        const std::vector<Partition::Node> tree = partition.tree();
+        const std::vector<PartTree::Node> tree = partition.tree();
         partition.build(surface, tree, job);
         found.push_back(verticesOf(partition));
       }

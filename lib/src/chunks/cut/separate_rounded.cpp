@@ -13,7 +13,7 @@
 #include "base/atomic_bits.h"
 #include "base/collect.h"
 #include "base/huge_pages.h"
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "base/single_precision.h"
 #include "refine/repair/repair.h"
 

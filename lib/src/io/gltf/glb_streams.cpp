@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "io/gltf/glb.h"
 #include "io/mesh/file_attributes.h"
 #include "io/mesh/mesh_format.h"

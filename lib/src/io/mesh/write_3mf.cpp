@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "base/printable.h"
 #include "base/require_at_most.h"
 #include "io/checksum.h"
