@@ -359,7 +359,10 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
   ++phaseNumber_;
 }
 
+// Where large triangles hold many samples, parts are as much memory as the mesh.
 void Reduction::measureWithin(float expected) {
+  partition_ = {};
+  parts_.clear();
   certificate_ = isReference_ ? Certificate() : certify(surface_, reference_, expected, job_);
 }
 
