@@ -9,7 +9,7 @@ namespace tufa::reduce {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // triangles of a run, and vertices
+constexpr std::size_t kGrain = 4096;  // triangles of a block, and vertices
 // A range has so many vertices, or more where there would be too many ranges for a word.
 constexpr int kLeastShift = 15;
 constexpr std::size_t kMostRanges = 64;
@@ -77,13 +77,13 @@ CornerRanges::CornerRanges(std::size_t vertexCount, std::span<const Triangle> tr
   size_ = (vertexCount + (std::size_t{1} << shift_) - 1) >> shift_;
   reached_.resize((triangles.size() + kGrain - 1) / kGrain);
   job.forRanges(reached_.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t run = begin; run < end; ++run) {
-      const std::size_t last = std::min((run + 1) * kGrain, triangles.size());
+    for (std::size_t block = begin; block < end; ++block) {
+      const std::size_t last = std::min((block + 1) * kGrain, triangles.size());
       std::uint64_t reached = 0;
-      for (std::size_t t = run * kGrain; t < last; ++t) {
+      for (std::size_t t = block * kGrain; t < last; ++t) {
         for (const Index v : triangles[t].vertices) reached |= std::uint64_t{1} << (v >> shift_);
       }
-      reached_[run] = reached;
+      reached_[block] = reached;
     }
   });
 }
@@ -92,10 +92,10 @@ CornersOfVertices CornerRanges::operator[](std::size_t range) const {
   const auto begin = static_cast<Index>(range << shift_);
   const auto end = static_cast<Index>(std::min((range + 1) << shift_, vertexCount_));
   return {begin, end, triangles_, [&](const auto& body) {
-            for (std::size_t run = 0; run < reached_.size(); ++run) {
-              if (((reached_[run] >> range) & 1) == 0) continue;
-              const std::size_t last = std::min((run + 1) * kGrain, triangles_.size());
-              for (std::size_t t = run * kGrain; t < last; ++t) body(t);
+            for (std::size_t block = 0; block < reached_.size(); ++block) {
+              if (((reached_[block] >> range) & 1) == 0) continue;
+              const std::size_t last = std::min((block + 1) * kGrain, triangles_.size());
+              for (std::size_t t = block * kGrain; t < last; ++t) body(t);
             }
           }};
 }

@@ -56,7 +56,7 @@ class CornerRanges {
   std::span<const Triangle> triangles_;
   int shift_;
   std::size_t size_;
-  std::vector<std::uint64_t> reached_;  ///< of each run of triangles a bit for each range
+  std::vector<std::uint64_t> reached_;  ///< of each block of triangles a bit for each range
 };
 
 /// Calls body(corners) for ranges that all vertices are in, in parallel.

@@ -83,11 +83,9 @@ void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   base::shrinkTo(localTriangle_, surface.isWhole ? 0 : surface.triangles.size(), job);
   if (!surface.isWhole) {
     job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t p = begin; p < end; ++p) {
+      for (auto p = static_cast<Index>(begin); p < end; ++p) {
         Index next = 0;
-        for (const Run& run : of(runs_, firstRun_, static_cast<Index>(p))) {
-          for (Index t = run.begin; t < run.end; ++t) localTriangle_[t] = next++;
-        }
+        forTriangles(p, [&](Index t) { localTriangle_[t] = next++; });
       }
     });
   }
@@ -161,20 +159,18 @@ void Partition::shareSamples(const Surface& surface, base::Job& job) {
       [&](Index r, Index at) { localSample_[r] = at; }, job);
   job.forRanges(size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<Index> next, sorted;
-    for (std::size_t p = begin; p < end; ++p) sortSamples(surface, p, next, sorted);
+    for (auto p = static_cast<Index>(begin); p < end; ++p) sortSamples(surface, p, next, sorted);
   });
 }
 
 // Those of a triangle together, as they are read together. Where triangles have one or two, the
 // order of the reference serves as well.
-void Partition::sortSamples(const Surface& surface, std::size_t part, std::vector<Index>& next,
+void Partition::sortSamples(const Surface& surface, Index part, std::vector<Index>& next,
                             std::vector<Index>& sorted) {
   const std::span<Index> own{samples_.members.data() + samples_.first[part],
                              samples_.members.data() + samples_.first[part + 1]};
   std::size_t triangles = 0;
-  for (const Run& run : of(runs_, firstRun_, static_cast<Index>(part))) {
-    triangles += run.end - run.begin;
-  }
+  forTriangles(part, [&](Index) { ++triangles; });
   if (own.size() < 2 * triangles) return;
   next.assign(triangles + 1, 0);
   for (const Index r : own) ++next[localTriangle_[surface.owner[r]] + 1];

@@ -38,9 +38,7 @@ class Partition {
   /// Triangles with all corners in a part, in rising order.
   [[nodiscard]] std::vector<Index> triangles(Index p) const {
     std::vector<Index> all;
-    for (const Run& run : of(runs_, firstRun_, p)) {
-      for (Index t = run.begin; t < run.end; ++t) all.push_back(t);
-    }
+    forTriangles(p, [&](Index t) { all.push_back(t); });
     return all;
   }
   /// Triangles of several parts that reach into the box of a part.
@@ -89,6 +87,12 @@ class Partition {
                                Index part) {
     return {all.data() + first[part], all.data() + first[part + 1]};
   }
+  template <class F>
+  void forTriangles(Index p, const F& f) const {
+    for (const Run& run : of(runs_, firstRun_, p)) {
+      for (Index t = run.begin; t < run.end; ++t) f(t);
+    }
+  }
   [[nodiscard]] static std::vector<Index> samplesAtVertices(const Surface& surface, base::Job& job);
   void share(const Surface& surface, base::Job& job);
   void numberVertices(base::Job& job);
@@ -102,7 +106,7 @@ class Partition {
   void findRuns(const Surface& surface, base::Job& job);
   void shareForms(const Surface& surface, base::Job& job);
   void shareSamples(const Surface& surface, base::Job& job);
-  void sortSamples(const Surface& surface, std::size_t part, std::vector<Index>& next,
+  void sortSamples(const Surface& surface, Index part, std::vector<Index>& next,
                    std::vector<Index>& sorted);
 
   PartTree tree_;
