@@ -78,7 +78,8 @@ Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
   return closePositions_[static_cast<std::size_t>(found - closeVertices_.begin())];
 }
 
-// A vertex has its normal for one result in a hundred; kept in four bytes, it takes a third.
+// Few vertices are in a result, so the normals of all are kept in four bytes each in place of
+// twelve.
 void SurfaceReduction::takeNormals(const std::vector<Normal>& normals) {
   base::resizeLarge(normals_, normals.size(), job_);
   job_.forRanges(normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
