@@ -14,10 +14,7 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::Vec3d;
-
-constexpr std::size_t kGrain = 4096;
 
 using SampledTypes =
     openvdb::NumericGridTypes::Append<openvdb::Vec3GridTypes>::Append<openvdb::BoolGrid,
@@ -45,7 +42,7 @@ double component(const Value& value, int i) {
 /// which rounds what lies between integers.
 template <class Accessor>
 double sampleComponent(const Accessor& accessor, const Vec3d& place, int i) {
-  const Coord least = Coord::floor(place);
+  const openvdb::Coord least = openvdb::Coord::floor(place);
   const Vec3d share = place - least.asVec3d();
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -130,7 +127,7 @@ Attribute sampleAttribute(std::span<const Position> positions, const openvdb::Gr
     requireSound(attribute, grid);
     attribute.values.resize(positions.size() * static_cast<std::size_t>(attribute.width));
     job.run([&] {
-      job.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      job.forRanges(positions.size(), [&](std::size_t begin, std::size_t end) {
         sampleRange(typed, positions, options.factor, begin, end, attribute);
       });
     });

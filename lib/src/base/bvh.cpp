@@ -39,14 +39,13 @@ Bvh::Bvh(std::vector<Box> boxes, Job& job) {
 
   std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
   resizeLarge(codes, boxes.size(), job);
-  constexpr std::size_t kGrain = 4096;
-  job.forRanges(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(boxes.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       codes[i] = {mortonCode(boxes[i], all, scale), static_cast<std::uint32_t>(i)};
     }
   });
   parallelSort(codes.begin(), codes.end(), std::less<>());
-  job.forRanges(boxes.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(boxes.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       items_[i] = codes[i].second;
       boxes_[i] = boxes[items_[i]];

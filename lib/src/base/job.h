@@ -43,6 +43,9 @@ class Job {
   /// least `grain` indices where there are so many. Throws Error(Cancelled) when asked to stop.
   void forRanges(std::size_t count, std::size_t grain, const RangeBody& body);
 
+  /// The same where there is little to do for each index, as for each vertex.
+  void forRanges(std::size_t count, const RangeBody& body) { forRanges(count, kGrain, body); }
+
   /// Calls body(part, index) for each index below `count`, several at a time. Each has a job of its
   /// own: the progress of all is that of this job's stage, and the times of their stages are not
   /// kept. Throws what a body throws, the first of several; the others are stopped then.

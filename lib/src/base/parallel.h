@@ -8,6 +8,10 @@
 
 namespace tufa::base {
 
+/// Indices of one range where there is little to do for each: long enough to be worth a task's
+/// start, short enough that a small mesh keeps several threads at work.
+inline constexpr std::size_t kGrain = 8192;
+
 using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
 
 /// Runs `work` on this thread, out of reach of whoever cancels the group of tasks that it is called

@@ -8,10 +8,9 @@
 namespace tufa::base {
 
 bool roundToSingle(Mesh& mesh, double most, Job& job) {
-  constexpr std::size_t kGrain = 16384;
   double largest = 0;
   std::mutex mutex;
-  job.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(mesh.positions.size(), [&](std::size_t begin, std::size_t end) {
     double own = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Position& p = mesh.positions[i];
@@ -24,7 +23,7 @@ bool roundToSingle(Mesh& mesh, double most, Job& job) {
   const double rounding = 0.5 * std::numeric_limits<float>::epsilon() * largest;
   if (!(std::sqrt(3.0) * rounding <= most) || largest > std::numeric_limits<float>::max())
     return false;
-  job.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(mesh.positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = toSingle(mesh.positions[i]);
   });
   return true;

@@ -20,12 +20,11 @@ std::vector<Triangle> triangulate(const Mesh& mesh) {
 }
 
 std::vector<Triangle> base::triangulate(const Mesh& mesh, Job& job) {
-  constexpr std::size_t kGrain = 16384;
   const std::size_t first = mesh.triangles.size();
   std::vector<Triangle> triangles;
   base::resizeLarge(triangles, mesh.triangleCount(), job);
   std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles.begin());
-  job.forRanges(mesh.quads.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(mesh.quads.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& v = mesh.quads[i].vertices;
       triangles[first + 2 * i] = {v[0], v[1], v[2]};

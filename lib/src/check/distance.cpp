@@ -12,7 +12,7 @@ namespace tufa {
 namespace {
 
 // Share of the time.
-constexpr double kReferenceEnd = 0.2;
+constexpr double kSurfaceEnd = 0.2;
 
 DistanceReport measure(const Mesh& mesh, const openvdb::GridBase& grid,
                        const DistanceOptions& options, base::Job& job) {
@@ -22,9 +22,9 @@ DistanceReport measure(const Mesh& mesh, const openvdb::GridBase& grid,
   report.isovalue = iso.isovalue;
   report.voxelSize = frame.voxelSize();
 
-  const checks::SurfaceReference surface(grid, frame, iso, kReferenceEnd, job);
+  const checks::SurfaceReference surface(grid, frame, iso, kSurfaceEnd, job);
   const auto ignore = [](std::size_t, double) {};
-  surface.measure(mesh, options.samplesPerEdge, kReferenceEnd, job, ignore, report);
+  surface.measure(mesh, options.samplesPerEdge, kSurfaceEnd, job, ignore, report);
   return report;
 }
 

@@ -61,7 +61,7 @@ Faces sortFaces(const Mesh& mesh, bool weld, base::Job& job) {
   faces.triangleCount = all.size();
   enum : std::uint8_t { kInvalid, kCollapsed, kCollinear, kSolid };
   std::vector<std::uint8_t> kinds(all.size());
-  job.forRanges(all.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(all.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       if (!isValid(all[f], mesh.positions)) {
         kinds[f] = kInvalid;

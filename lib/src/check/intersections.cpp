@@ -11,7 +11,7 @@ namespace tufa::checks {
 Bvh buildFaceTree(const Faces& faces, base::Job& job) {
   const std::vector<Triangle>& solid = faces.solid();
   std::vector<Box> boxes(solid.size());
-  job.forRanges(solid.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(solid.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       boxes[f] = Box::empty();
       for (const VertexIndex v : solid[f].vertices) {

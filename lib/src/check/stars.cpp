@@ -124,14 +124,13 @@ VertexFaces::VertexFaces(const std::vector<Triangle>& faces, std::size_t vertexC
 
 std::vector<StarCounts> studyStars(const std::vector<Triangle>& faces, const VertexFaces& around,
                                    base::Job& job, std::vector<Edge>& boundaryEdges) {
-  constexpr std::size_t kGrain = 4096;
   std::vector<StarCounts> stars(around.vertexCount());
-  std::vector<std::vector<Edge>> boundaries((stars.size() + kGrain - 1) / kGrain);
-  job.forRanges(stars.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::vector<Edge>> boundaries((stars.size() + base::kGrain - 1) / base::kGrain);
+  job.forRanges(stars.size(), [&](std::size_t begin, std::size_t end) {
     Scratch scratch;
     for (std::size_t v = begin; v < end; ++v) {
       stars[v] = studyStar(static_cast<VertexIndex>(v), faces, around, scratch,
-                           boundaries[begin / kGrain]);
+                           boundaries[begin / base::kGrain]);
     }
   });
   for (const auto& part : boundaries) {

@@ -54,7 +54,7 @@ TriangleSoup::TriangleSoup(const Mesh& mesh, const grid::VoxelFrame& frame, base
 
 std::vector<Box> TriangleSoup::boxes(base::Job& job) const {
   std::vector<Box> result(triangles_.size());
-  job.forRanges(result.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(result.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       result[t] = Box::empty();
       for (const VertexIndex v : triangles_[t].vertices) result[t].add(points_[v]);

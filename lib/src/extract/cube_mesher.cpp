@@ -10,9 +10,6 @@ using uniform::SurfaceBlock;
 
 namespace {
 
-// Shares of the time that stages took on the sample volumes.
-constexpr double kVerticesEnd = 0.75, kTrianglesEnd = 0.95;
-
 class CubeMesher {
  public:
   CubeMesher(const grid::Volume& volume, const CubeCells& cells, base::Job& job)
@@ -33,6 +30,9 @@ class CubeMesher {
   }
 
  private:
+  // Shares of the time that stages took on the sample volumes.
+  static constexpr double kVerticesEnd = 0.75, kTrianglesEnd = 0.95;
+
   // The numbers of what a block adds to the mesh beside the vertices on edges.
   struct First {
     std::uint64_t triangle = 0;

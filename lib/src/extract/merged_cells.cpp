@@ -16,7 +16,6 @@ using uniform::SurfaceBlock;
 namespace {
 
 using Place = std::array<int, 3>;
-constexpr int kMostLevel = 3;
 
 // Of each two cells along each axis of a block the level of their leaf: it has 2^level cells along
 // an edge. Cells in none are leaves of their own.
@@ -105,6 +104,8 @@ class CellMerger {
   }
 
  private:
+  static constexpr int kMostLevel = 3;
+
   // Calls body(index, cells, table) for each surface block.
   template <class Body>
   void forBlocks(const Body& body) {

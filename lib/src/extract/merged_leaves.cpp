@@ -13,9 +13,8 @@ using uniform::SurfaceBlock;
 
 namespace {
 
-constexpr int kMostLevel = 3;
-constexpr int kMargin = kBlockSize / 2;  ///< samples around a block that leaves look at
-constexpr int kSide = kBlockSize + 2 * kMargin;
+constexpr int kAround = kBlockSize / 2;  ///< samples around a block that leaves look at
+constexpr int kSide = kBlockSize + 2 * kAround;
 
 /// An affine field around a centre.
 struct Affine {
@@ -77,15 +76,17 @@ class Merger {
   }
 
  private:
+  static constexpr int kMostLevel = 3;
+
   using Place = std::array<int, 3>;
 
   void gather(const SurfaceBlock& block) {
     const grid::SampleReader reader(volume_.blocks, volume_.scale, block.block, block.neighbours,
                                     *accessor_);
     float* to = samples_.data();
-    for (int x = -kMargin; x < kBlockSize + kMargin; ++x) {
-      for (int y = -kMargin; y < kBlockSize + kMargin; ++y) {
-        for (int z = -kMargin; z < kBlockSize + kMargin; ++z) {
+    for (int x = -kAround; x < kBlockSize + kAround; ++x) {
+      for (int y = -kAround; y < kBlockSize + kAround; ++y) {
+        for (int z = -kAround; z < kBlockSize + kAround; ++z) {
           *to++ = static_cast<float>(reader.at(x, y, z));
         }
       }
@@ -101,8 +102,8 @@ class Merger {
     for (int x = -half; x < size + half; ++x) {
       for (int y = -half; y < size + half; ++y) {
         const float* row = samples_.data() +
-                           ((at[0] + x + kMargin) * kSide + at[1] + y + kMargin) * kSide + at[2] +
-                           kMargin;
+                           ((at[0] + x + kAround) * kSide + at[1] + y + kAround) * kSide + at[2] +
+                           kAround;
         for (int z = -half; z < size + half; ++z) {
           if (!body(Vec3(x - centre, y - centre, z - centre), row[z])) return false;
         }

@@ -22,9 +22,6 @@ using uniform::SurfaceBlock;
 
 namespace {
 
-// Shares of the time that stages took on the sample volumes.
-constexpr double kCellsEnd = 0.2, kLeavesEnd = 0.6, kVerticesEnd = 0.8, kTrianglesEnd = 0.95;
-
 class OctreeMesher {
  public:
   OctreeMesher(const grid::Volume& volume, const ContourOptions& options, base::Job& job)
@@ -55,6 +52,10 @@ class OctreeMesher {
   }
 
  private:
+  // Shares of the time that stages took on the sample volumes.
+  static constexpr double kCellsEnd = 0.2, kLeavesEnd = 0.6, kVerticesEnd = 0.8,
+                          kTrianglesEnd = 0.95;
+
   /// Adds the blocks next to surface blocks: leaves of these may bring surface into them.
   void addBlocksBeside() {
     const auto accessor = volume_.blocks.accessor();

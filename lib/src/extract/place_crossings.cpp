@@ -113,7 +113,7 @@ void dropUnused(Mesh& mesh, base::Job& job) {
   }
   mesh.positions.resize(kept);
   if (!mesh.normals.empty()) mesh.normals.resize(kept);
-  job.forRanges(mesh.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(mesh.triangles.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (VertexIndex& vertex : mesh.triangles[i].vertices) vertex = moved[vertex];
     }

@@ -19,7 +19,6 @@ namespace {
 constexpr double kLeastEdge = 0.125;  // voxels: halves are the finest
 // Each halves edges of a voxel or two: far more than there are. What is left then is reported.
 constexpr int kMostRounds = 64;
-constexpr std::size_t kGrain = 1024;
 constexpr VertexIndex kUnsplit = ~VertexIndex{0};
 
 class Refiner {
@@ -52,7 +51,7 @@ class Refiner {
   /// Calls body(surface, index) for each index below `count`, in parallel.
   template <class Body>
   void forEach(std::size_t count, const Body& body) {
-    job_.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(count, 1024, [&](std::size_t begin, std::size_t end) {
       TrilinearSurface surface(volume_);
       for (std::size_t i = begin; i < end; ++i) body(surface, i);
     });
@@ -312,7 +311,7 @@ class Refiner {
     std::vector<Triangle> split;
     base::resizeLarge(split, first.back(), job_);
     std::vector<std::uint8_t> isNew(split.size(), 0);
-    job_.forRanges(mesh_.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(mesh_.triangles.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         writeParts(edges, i, split.data() + first[i]);
         if (first[i + 1] - first[i] == 1) continue;

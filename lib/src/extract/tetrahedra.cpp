@@ -19,9 +19,6 @@ using uniform::SurfaceBlock;
 
 namespace {
 
-// Shares of the time that stages took on the sample volumes.
-constexpr double kCellsEnd = 0.2, kCasesEnd = 0.4, kVerticesEnd = 0.75, kTrianglesEnd = 0.95;
-
 template <class Split>
 class TetrahedraMesher {
   using L = TetrahedraLattice<Split>;
@@ -56,6 +53,10 @@ class TetrahedraMesher {
   }
 
  private:
+  // Shares of the time that stages took on the sample volumes.
+  static constexpr double kCellsEnd = 0.2, kCasesEnd = 0.4, kVerticesEnd = 0.75,
+                          kTrianglesEnd = 0.95;
+
   // 1 for cells whose coordinates have an odd sum; blocks start at even ones.
   static int parityOf(int x, int bit) { return (x + (bit >> 3) + (bit & 7)) & 1; }
 

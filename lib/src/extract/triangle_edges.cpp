@@ -9,8 +9,6 @@
 namespace tufa::extraction {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
-
 // A side of a triangle.
 struct Use {
   std::uint64_t ends;  // the lower vertex in the upper half
@@ -22,7 +20,7 @@ struct Use {
 TriangleEdges::TriangleEdges(const std::vector<Triangle>& triangles, base::Job& job) {
   std::vector<Use> uses;
   base::resizeLarge(uses, 3 * triangles.size(), job);
-  job.forRanges(triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(triangles.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t side = 0; side < 3; ++side) {
         const VertexIndex a = triangles[i].vertices[side];

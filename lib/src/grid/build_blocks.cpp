@@ -11,7 +11,7 @@
 namespace tufa::grid {
 namespace {
 
-using Leaf = openvdb::FloatTree::LeafNodeType;
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
 
 /// Side of the cubes that one task fills: small enough to share the work evenly, large enough that
 /// the culling above it costs nothing.
@@ -69,15 +69,15 @@ std::vector<Cube> collectTasks(const BlockSource& source) {
   return tasks;
 }
 
-std::vector<std::unique_ptr<Leaf>> fillTask(const Cube& task, float background) {
-  std::vector<std::unique_ptr<Leaf>> leaves;
-  auto leaf = std::make_unique<Leaf>(task.origin, background);
-  forCubes(task, kTaskSide, static_cast<int>(Leaf::DIM), [&](const Cube& cube) {
+std::vector<std::unique_ptr<FloatLeaf>> fillTask(const Cube& task, float background) {
+  std::vector<std::unique_ptr<FloatLeaf>> leaves;
+  auto leaf = std::make_unique<FloatLeaf>(task.origin, background);
+  forCubes(task, kTaskSide, static_cast<int>(FloatLeaf::DIM), [&](const Cube& cube) {
     leaf->setOrigin(cube.origin);
     cube.source->fill(*leaf);
     if (leaf->isEmpty()) return;
     leaves.push_back(std::move(leaf));
-    leaf = std::make_unique<Leaf>(task.origin, background);
+    leaf = std::make_unique<FloatLeaf>(task.origin, background);
   });
   return leaves;
 }
@@ -86,7 +86,7 @@ std::vector<std::unique_ptr<Leaf>> fillTask(const Cube& task, float background) 
 
 void buildBlocks(openvdb::FloatTree& tree, const BlockSource& source, base::Job& job) {
   const std::vector<Cube> tasks = collectTasks(source);
-  std::vector<std::vector<std::unique_ptr<Leaf>>> filled(tasks.size());
+  std::vector<std::vector<std::unique_ptr<FloatLeaf>>> filled(tasks.size());
   job.run([&] {
     job.forRanges(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) {

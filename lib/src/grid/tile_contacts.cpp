@@ -10,8 +10,6 @@
 namespace tufa::grid {
 namespace {
 
-using openvdb::Coord;
-
 // Finds where tiles of different sides touch, over faces, edges or corners. Only tiles on the other
 // side than the background are visited: of two touching tiles of different sides one is such a
 // tile, and there are finitely many, whereas the background is everywhere. The smallest tiles have
@@ -35,7 +33,7 @@ class TileContacts {
   TileContacts(const TreeT& tree, const IsoChoice& iso)
       : tree_(tree), iso_(iso), walked_(!isInside(tree.background(), iso)) {}
 
-  std::vector<Coord> find(base::Job& job) {
+  std::vector<openvdb::Coord> find(base::Job& job) {
     for (auto tile = tree_.root().cbeginValueAll(); tile; ++tile) {
       if (isInside(*tile, iso_) == walked_) collectRootTile(tile.getCoord());
     }
@@ -50,13 +48,13 @@ class TileContacts {
     }
     job.forRanges(bigTiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
       Accessor accessor(tree_);
-      std::vector<Coord> found;
+      std::vector<openvdb::Coord> found;
       for (std::size_t i = begin; i < end; ++i) walkBigTile(bigTiles_[i], accessor, found);
       keep(found);
     });
     job.forRanges(lowers.size(), 4, [&](std::size_t begin, std::size_t end) {
       Accessor accessor(tree_);
-      std::vector<Coord> found;
+      std::vector<openvdb::Coord> found;
       for (std::size_t i = begin; i < end; ++i) walkLowerNode(*lowers[i], accessor, found);
       keep(found);
     });
@@ -65,14 +63,14 @@ class TileContacts {
   }
 
  private:
-  void keep(const std::vector<Coord>& found) {
+  void keep(const std::vector<openvdb::Coord>& found) {
     const std::scoped_lock lock(mutex_);
     found_.insert(found_.end(), found.begin(), found.end());
   }
 
   // Collects the outer parts, of the size of a lower node, of a root tile: the inner ones touch
   // nothing else.
-  void collectRootTile(const Coord& origin) {
+  void collectRootTile(const openvdb::Coord& origin) {
     for (int i = 0; i < kUpperChildren; ++i) {
       for (int j = 0; j < kUpperChildren; ++j) {
         const bool shell = i == 0 || j == 0 || i == kUpperChildren - 1 || j == kUpperChildren - 1;
@@ -84,26 +82,28 @@ class TileContacts {
   }
 
   // A sample of a block is a corner of cells in the block itself and in the seven blocks below it.
-  static void addWithLowerBlocks(const Coord& block, std::vector<Coord>& found) {
+  static void addWithLowerBlocks(const openvdb::Coord& block, std::vector<openvdb::Coord>& found) {
     for (int corner = 0; corner < 8; ++corner) {
       found.push_back(block.offsetBy(-kBlockSize * (corner >> 2), -kBlockSize * ((corner >> 1) & 1),
                                      -kBlockSize * (corner & 1)));
     }
   }
 
-  State stateAt(const Coord& block, Accessor& accessor) const {
+  State stateAt(const openvdb::Coord& block, Accessor& accessor) const {
     if (accessor.getValueDepth(block) == kLeafDepth) return State::Leaf;
     return isInside(accessor.getValue(block), iso_) ? State::Inside : State::Outside;
   }
 
   // Compares the outer blocks of a tile as large as a lower node with what lies around it, in each
   // of 26 directions.
-  void walkBigTile(const Coord& origin, Accessor& accessor, std::vector<Coord>& found) const {
+  void walkBigTile(const openvdb::Coord& origin, Accessor& accessor,
+                   std::vector<openvdb::Coord>& found) const {
     const State other = walked_ ? State::Outside : State::Inside;
     for (int direction = 0; direction < 27; ++direction) {
       const std::array<int, 3> d = {direction / 9 - 1, direction / 3 % 3 - 1, direction % 3 - 1};
       if (direction == 13) continue;
-      const Coord around = origin.offsetBy(d[0] * kLowerSize, d[1] * kLowerSize, d[2] * kLowerSize);
+      const openvdb::Coord around =
+          origin.offsetBy(d[0] * kLowerSize, d[1] * kLowerSize, d[2] * kLowerSize);
       // A whole tile of the same side as large as this one: the common case inside a solid.
       if (accessor.getValueDepth(around) < kLeafDepth - 1 &&
           isInside(accessor.getValue(around), iso_) == walked_) {
@@ -117,7 +117,8 @@ class TileContacts {
       for (int i = first[0]; i <= last[0]; ++i) {
         for (int j = first[1]; j <= last[1]; ++j) {
           for (int k = first[2]; k <= last[2]; ++k) {
-            const Coord block = origin.offsetBy(i * kBlockSize, j * kBlockSize, k * kBlockSize);
+            const openvdb::Coord block =
+                origin.offsetBy(i * kBlockSize, j * kBlockSize, k * kBlockSize);
             if (touches(block, other, accessor)) addWithLowerBlocks(block, found);
           }
         }
@@ -125,9 +126,9 @@ class TileContacts {
     }
   }
 
-  bool touches(const Coord& block, State other, Accessor& accessor) const {
+  bool touches(const openvdb::Coord& block, State other, Accessor& accessor) const {
     for (int direction = 0; direction < 27; ++direction) {
-      const Coord around =
+      const openvdb::Coord around =
           block.offsetBy((direction / 9 - 1) * kBlockSize, (direction / 3 % 3 - 1) * kBlockSize,
                          (direction % 3 - 1) * kBlockSize);
       if (stateAt(around, accessor) == other) return true;
@@ -137,7 +138,8 @@ class TileContacts {
 
   // Compares a lower node's own tiles with their neighbours. The states of its blocks and of one
   // layer around it are read into an array first, so each is looked up once and not 26 times.
-  void walkLowerNode(const LowerNode& node, Accessor& accessor, std::vector<Coord>& found) const {
+  void walkLowerNode(const LowerNode& node, Accessor& accessor,
+                     std::vector<openvdb::Coord>& found) const {
     const State mine = walked_ ? State::Inside : State::Outside;
     const State other = walked_ ? State::Outside : State::Inside;
     const auto at = [](int i, int j, int k) { return (i * kPadded + j) * kPadded + k; };
@@ -145,7 +147,7 @@ class TileContacts {
     states.fill(State::Leaf);
     bool some = false;
     forTiles(node, [&](openvdb::Index place, auto value) {
-      Coord local;
+      openvdb::Coord local;
       LowerNode::offsetToLocalCoord(place, local);
       const State state = isInside(value, iso_) ? State::Inside : State::Outside;
       states[at(local[0] + 1, local[1] + 1, local[2] + 1)] = state;
@@ -177,15 +179,15 @@ class TileContacts {
     }
   }
 
-  static Coord blockOf(const LowerNode& node, int i, int j, int k) {
+  static openvdb::Coord blockOf(const LowerNode& node, int i, int j, int k) {
     return node.origin().offsetBy((i - 1) * kBlockSize, (j - 1) * kBlockSize, (k - 1) * kBlockSize);
   }
 
   const TreeT& tree_;
   IsoChoice iso_;
   bool walked_;  // side of the tiles to visit: inside or not
-  std::vector<Coord> bigTiles_;
-  std::vector<Coord> found_;
+  std::vector<openvdb::Coord> bigTiles_;
+  std::vector<openvdb::Coord> found_;
   std::mutex mutex_;
 };
 

@@ -10,15 +10,13 @@
 namespace tufa::grid {
 namespace {
 
-using openvdb::Coord;
-
 /// The origin of the tile beside one of that size, if there are such coordinates.
-std::optional<Coord> beside(const Coord& origin, std::int64_t size, int face) {
+std::optional<openvdb::Coord> beside(const openvdb::Coord& origin, std::int64_t size, int face) {
   using Limits = std::numeric_limits<std::int32_t>;
   const int axis = face / 2;
   const std::int64_t place = origin[axis] + (face % 2 == 0 ? -size : size);
   if (place < Limits::min() || place > Limits::max()) return std::nullopt;
-  Coord next = origin;
+  openvdb::Coord next = origin;
   next[axis] = static_cast<std::int32_t>(place);
   return next;
 }
@@ -66,7 +64,7 @@ class TileFaces {
 
   /// Of a tile in place of a node.
   template <class Node>
-  std::uint64_t facesOf(const Coord& origin, Accessor& accessor) const {
+  std::uint64_t facesOf(const openvdb::Coord& origin, Accessor& accessor) const {
     std::uint64_t sum = 0;
     for (int face = 0; face < 6; ++face) {
       if (const auto next = beside(origin, Node::DIM, face)) {
@@ -79,7 +77,7 @@ class TileFaces {
   /// Of a tile towards what lies beyond one of its faces, in a cube as large as the tile: a tile as
   /// large or larger, or the outer layer of a node.
   template <class Node>
-  std::uint64_t facesTowards(const Coord& cube, int face, Accessor& accessor) const {
+  std::uint64_t facesTowards(const openvdb::Coord& cube, int face, Accessor& accessor) const {
     constexpr std::uint64_t kSize = Node::DIM;
     constexpr int kDepth = static_cast<int>(TreeT::DEPTH) - 2 - static_cast<int>(Node::LEVEL);
     if (accessor.getValueDepth(cube) <= kDepth) {
@@ -90,7 +88,7 @@ class TileFaces {
       using Child = typename Node::ChildNodeType;
       const int axis = face / 2, second = (axis + 1) % 3, third = (axis + 2) % 3;
       constexpr int kStep = Child::DIM;
-      Coord part = cube;
+      openvdb::Coord part = cube;
       if (face % 2 == 0) part[axis] += static_cast<int>(kSize) - kStep;
       for (int i = 0; i < static_cast<int>(kSize); i += kStep) {
         part[second] = cube[second] + i;

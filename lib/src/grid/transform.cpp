@@ -52,9 +52,8 @@ Transform transformOf(const openvdb::GridBase& grid) { return Transform(grid.tra
 
 std::vector<Coord> cellsOf(const std::vector<Position>& positions, const Transform& transform,
                            base::Job& job) {
-  constexpr std::size_t kGrain = 4096;
   std::vector<Coord> cells(positions.size());
-  job.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 index = transform.worldToIndex(positions[i]);
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -115,7 +115,7 @@ std::vector<std::uint32_t> findCandidates(const uniform::SurfaceView& context, c
       });
     }
   };
-  return base::collectSorted(job, context.topology.blocks.size(), 32, add);
+  return base::collectSorted(job, context.topology.blocks.size(), add, 32);
 }
 
 std::vector<std::uint32_t> findCandidatesAmong(const std::vector<std::uint32_t>& quads,
@@ -131,7 +131,7 @@ std::vector<std::uint32_t> findCandidatesAmong(const std::vector<std::uint32_t>&
       });
     }
   };
-  return base::collectSorted(job, ranges.size(), 32, add);
+  return base::collectSorted(job, ranges.size(), add, 32);
 }
 
 }  // namespace tufa::intersect

@@ -15,7 +15,6 @@ namespace {
 using uniform::QuadPlace;
 using uniform::SurfaceBlock;
 
-constexpr std::size_t kGrain = 4096;
 // Voxels from the rim of a face at which a segment must pass it: more than any rounding.
 constexpr double kOffRim = 1e-3;
 
@@ -51,7 +50,7 @@ class CutEnvelopes {
  private:
   void findCells() {
     base::resizeLarge(cells_, cut_.clusters.size(), job_);
-    job_.forRanges(cells_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(cells_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const octree::ClusterRef& ref = cut_.clusters[i];
         cells_[i] = ref.level == 0 ? unitCell(ref.cluster) : largerCell(ref);

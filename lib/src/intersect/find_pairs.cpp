@@ -66,13 +66,13 @@ bool intersectElsewhere(std::span<const Position> positions, Corners a, Corners 
 
 std::vector<PolygonPair> intersectingAmong(const std::vector<PolygonPair>& pairs, const Mesh& mesh,
                                            std::span<const Position> positions, base::Job& job) {
-  constexpr std::size_t kGrain = 1024;
+  const auto intersect = [&](std::uint32_t k) {
+    const auto& [a, b] = pairs[k];
+    return intersectElsewhere(positions, base::cornersOf(mesh, a), base::cornersOf(mesh, b),
+                              a == b);
+  };
   std::vector<PolygonPair> found;
-  for (const std::uint32_t i : base::collectIf(job, pairs.size(), kGrain, [&](std::uint32_t k) {
-         const auto& [a, b] = pairs[k];
-         return intersectElsewhere(positions, base::cornersOf(mesh, a), base::cornersOf(mesh, b),
-                                   a == b);
-       })) {
+  for (const std::uint32_t i : base::collectIf(job, pairs.size(), intersect, 1024)) {
     found.push_back(pairs[i]);
   }
   return found;

@@ -15,8 +15,6 @@ namespace {
 // arrays are allocated, few enough that threads are kept busy.
 constexpr std::size_t kBlocksInRange = 64;
 
-constexpr int kTop = ClusterForest::kBlockLevel;
-
 // Copies `from` into `to` from index `begin` on, each element as map() gives it.
 template <class T, class Map>
 void copyTo(const std::vector<T>& from, std::size_t begin, std::vector<T>& to, const Map& map) {
@@ -35,7 +33,7 @@ class RangeJoiner {
     for (std::size_t r = 0; r < ranges.size(); ++r) {
       Begin& next = begins_[r + 1];
       next = begins_[r];
-      for (int l = 0; l < kTop; ++l) {
+      for (int l = 0; l < ClusterForest::kBlockLevel; ++l) {
         next.cells[l] += ranges[r].levels[l].cells.size();
         next.clusters[l] += ranges[r].levels[l].clusters.size();
       }
@@ -45,8 +43,8 @@ class RangeJoiner {
 
   void join(std::size_t blockCount) {
     const Begin& total = begins_.back();
-    forest_.levels.resize(kTop);
-    for (int l = 0; l < kTop; ++l) {
+    forest_.levels.resize(ClusterForest::kBlockLevel);
+    for (int l = 0; l < ClusterForest::kBlockLevel; ++l) {
       ClusterLevel& level = forest_.levels[l];
       level.level = l + 1;
       base::resizeLarge(level.cells, total.cells[l], job_);
@@ -54,16 +52,16 @@ class RangeJoiner {
       base::resizeLarge(level.first, total.cells[l] + 1, job_);
       base::resizeLarge(level.clusters, total.clusters[l], job_);
       level.first.back() = static_cast<std::uint32_t>(total.clusters[l]);
-      if (l + 1 == kTop) break;
+      if (l + 1 == ClusterForest::kBlockLevel) break;
       base::resizeLarge(level.parentCells, total.cells[l], job_);
       level.occupied.resize(blockCount);
       level.firstInBlock.resize(blockCount);
     }
     base::resizeLarge(forest_.parents, total.vertices, job_);
-    base::resizeLarge(patches_, total.clusters[kTop - 1], job_);
+    base::resizeLarge(patches_, total.clusters[ClusterForest::kBlockLevel - 1], job_);
     job_.forRanges(ranges_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t r = begin; r < end; ++r) {
-        for (int l = 0; l < kTop; ++l) joinLevel(r, l);
+        for (int l = 0; l < ClusterForest::kBlockLevel; ++l) joinLevel(r, l);
         joinRest(r);
         ranges_[r] = {};
       }
@@ -79,7 +77,7 @@ class RangeJoiner {
  private:
   // How many elements precede those of a range.
   struct Begin {
-    std::array<std::size_t, kTop> cells{}, clusters{};
+    std::array<std::size_t, ClusterForest::kBlockLevel> cells{}, clusters{};
     std::size_t vertices = 0;
   };
 
@@ -89,7 +87,7 @@ class RangeJoiner {
     ClusterLevel& to = forest_.levels[l];
     const auto cells = static_cast<std::uint32_t>(begin.cells[l]);
     const auto clusters = static_cast<std::uint32_t>(begin.clusters[l]);
-    const bool last = l + 1 == kTop;
+    const bool last = l + 1 == ClusterForest::kBlockLevel;
     const auto cellsAbove = last ? 0 : static_cast<std::uint32_t>(begin.cells[l + 1]);
     const auto clustersAbove = last ? 0 : static_cast<std::uint32_t>(begin.clusters[l + 1]);
     copyTo(from.cells, cells, to.cells, [](const Coord& cell) { return cell; });
@@ -113,8 +111,8 @@ class RangeJoiner {
     const auto clusters = static_cast<std::uint32_t>(begins_[range].clusters[0]);
     copyTo(ranges_[range].parents, begins_[range].vertices, forest_.parents,
            [&](std::uint32_t parent) { return parent == kNone ? kNone : parent + clusters; });
-    copyTo(ranges_[range].patches, begins_[range].clusters[kTop - 1], patches_,
-           [](const Patch& patch) { return patch; });
+    copyTo(ranges_[range].patches, begins_[range].clusters[ClusterForest::kBlockLevel - 1],
+           patches_, [](const Patch& patch) { return patch; });
   }
 
   std::vector<BlockLevels>& ranges_;

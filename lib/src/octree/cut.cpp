@@ -47,7 +47,7 @@ class Numbering {
       std::vector<Leaf>& leaves = leaves_[level - 1];
       base::resizeLarge(leaves, own.clusters.size(), job_);
       base::resizeLarge(numbers_[level - 1], own.clusters.size(), job_);
-      job_.forRanges(own.clusters.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      job_.forRanges(own.clusters.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
           numbers_[level - 1][c] = kNone;
           const Cluster& cluster = own.clusters[c];

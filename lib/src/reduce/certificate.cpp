@@ -17,8 +17,6 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr std::size_t kGrain = 8192;
-
 // Bounds the way from the reference to the surface.
 class WayForth {
  public:
@@ -205,15 +203,16 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
   const Limits limits(reference, expected);
   WayForth forth(s, reference, limits, regions, job);
   const std::size_t vertices = s.owner.size(), faces = reference.faceCount();
-  const std::size_t a = (vertices + kGrain - 1) / kGrain, b = (faces + kGrain - 1) / kGrain;
+  const std::size_t a = (vertices + base::kGrain - 1) / base::kGrain,
+                    b = (faces + base::kGrain - 1) / base::kGrain;
   std::vector<Measured> parts(a + b);  // their limits, and so the sums, do not depend on threads
   job.forRanges(a + b, 1, [&](std::size_t firstPart, std::size_t endPart) {
     for (std::size_t i = firstPart; i < endPart; ++i) {
-      const std::size_t begin = (i < a ? i : i - a) * kGrain;
+      const std::size_t begin = (i < a ? i : i - a) * base::kGrain;
       if (i < a) {
-        forth.vertices(begin, std::min(vertices, begin + kGrain), parts[i]);
+        forth.vertices(begin, std::min(vertices, begin + base::kGrain), parts[i]);
       } else {
-        forth.faces(begin, std::min(faces, begin + kGrain), parts[i]);
+        forth.faces(begin, std::min(faces, begin + base::kGrain), parts[i]);
       }
     }
   });

@@ -9,7 +9,6 @@ namespace tufa::reduce {
 
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // triangles of a block, and vertices
 // A range has so many vertices, or more where there would be too many ranges for a word.
 constexpr int kLeastShift = 15;
 constexpr std::size_t kMostRanges = 64;
@@ -20,7 +19,7 @@ std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
                                    const CornersOfVertices& corners, base::Job& job) {
   std::vector<Index> opposite;
   base::resizeLarge(opposite, 3 * triangles.size(), job);
-  job.forRanges(corners.end(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(corners.end(), [&](std::size_t begin, std::size_t end) {
     forOppositeCorners(triangles, corners, static_cast<Index>(begin), static_cast<Index>(end),
                        [&](Index corner, Index other) { opposite[corner] = other; });
   });
@@ -75,12 +74,12 @@ CornerRanges::CornerRanges(std::size_t vertexCount, std::span<const Triangle> tr
     : vertexCount_(vertexCount), triangles_(triangles), shift_(kLeastShift) {
   while (vertexCount > kMostRanges << shift_) ++shift_;
   size_ = (vertexCount + (std::size_t{1} << shift_) - 1) >> shift_;
-  reached_.resize((triangles.size() + kGrain - 1) / kGrain);
+  reached_.resize((triangles.size() + base::kGrain - 1) / base::kGrain);
   job.forRanges(reached_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
-      const std::size_t last = std::min((block + 1) * kGrain, triangles.size());
+      const std::size_t last = std::min((block + 1) * base::kGrain, triangles.size());
       std::uint64_t reached = 0;
-      for (std::size_t t = block * kGrain; t < last; ++t) {
+      for (std::size_t t = block * base::kGrain; t < last; ++t) {
         for (const Index v : triangles[t].vertices) reached |= std::uint64_t{1} << (v >> shift_);
       }
       reached_[block] = reached;
@@ -94,8 +93,8 @@ CornersOfVertices CornerRanges::operator[](std::size_t range) const {
   return {begin, end, triangles_, [&](const auto& body) {
             for (std::size_t block = 0; block < reached_.size(); ++block) {
               if (((reached_[block] >> range) & 1) == 0) continue;
-              const std::size_t last = std::min((block + 1) * kGrain, triangles_.size());
-              for (std::size_t t = block * kGrain; t < last; ++t) body(t);
+              const std::size_t last = std::min((block + 1) * base::kGrain, triangles_.size());
+              for (std::size_t t = block * base::kGrain; t < last; ++t) body(t);
             }
           }};
 }

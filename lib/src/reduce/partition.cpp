@@ -10,8 +10,6 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
-
 // Of pairs of a part and a member, the members of each part.
 base::Groups membersOf(const std::vector<std::array<Index, 2>>& pairs, std::size_t parts,
                        base::Job& job) {
@@ -73,7 +71,7 @@ void Partition::numberVertices(base::Job& job) {
 
 void Partition::shareTriangles(const Surface& surface, base::Job& job) {
   base::shrinkTo(inner_, surface.position.size(), job);
-  job.forRanges(inner_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(inner_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) inner_[v] = (surface.flags[v] & kBorder) == 0;
   });
   findRuns(surface, job);
@@ -108,13 +106,14 @@ void Partition::findRuns(const Surface& surface, base::Job& job) {
     Index part;
     Run run;
   };
-  const std::size_t count = surface.triangles.size(), blocks = (count + kGrain - 1) / kGrain;
+  const std::size_t count = surface.triangles.size(),
+                    blocks = (count + base::kGrain - 1) / base::kGrain;
   std::vector<std::vector<RunOf>> found(blocks);
   job.forRanges(blocks, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       std::vector<RunOf>& own = found[block];
-      const auto last = static_cast<Index>(std::min((block + 1) * kGrain, count));
-      for (auto t = static_cast<Index>(block * kGrain); t < last; ++t) {
+      const auto last = static_cast<Index>(std::min((block + 1) * base::kGrain, count));
+      for (auto t = static_cast<Index>(block * base::kGrain); t < last; ++t) {
         const Index part = partOfTriangle(surface.triangles[t]);
         if (own.empty() || own.back().part != part) own.push_back({part, {t, t}});
         own.back().run.end = t + 1;

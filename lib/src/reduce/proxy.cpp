@@ -9,8 +9,6 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
-
 // Of the owners of a face's corners the one that is nearest to p, among triangles over positions.
 Index nearestOwner(const std::array<Index, 3>& corners, const std::vector<Index>& owners,
                    const base::SharedArray<Vec3f>& positions,
@@ -47,14 +45,14 @@ ReferenceMesh makeReference(const Proxy& proxy, base::Job& job) {
 void handOver(Surface& s, const ReferenceMesh& reference, const Proxy& proxy,
               const ReferenceMesh& proxyMesh, base::Job& job) {
   std::vector<Index> owners(proxy.positions.size(), kNone);
-  job.forRanges(owners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(owners.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       if (proxy.faces[r] == kNone) continue;
       owners[r] = nearestOwner(reference.vertices(proxy.faces[r]), s.owner, s.position, s.triangles,
                                proxy.positions[r]);
     }
   });
-  job.forRanges(s.position.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(s.position.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       if (s.face[v] == kNone) continue;
       const Index face = nearestOwner(reference.vertices(s.face[v]), proxy.owners, proxy.positions,

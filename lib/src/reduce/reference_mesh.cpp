@@ -6,9 +6,7 @@
 #include "base/huge_pages.h"
 
 namespace tufa::reduce {
-namespace {
-constexpr std::size_t kGrain = 16384;
-}
+namespace {}
 
 ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job)
     : positions_(input.position), faces_(input.triangles), scales_(std::move(scales)) {
@@ -29,7 +27,7 @@ ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, ba
 bool ReferenceMesh::areAllPaired(base::Job& job) const {
   if (faces_.size() % 2 != 0) return false;
   std::atomic<bool> all = true;
-  job.forRanges(faces_.size() / 2, kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(faces_.size() / 2, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && all; ++i) {
       const auto &a = faces_[2 * i].vertices, &b = faces_[2 * i + 1].vertices;
       if (a[0] != b[0] || a[2] != b[1]) all = false;

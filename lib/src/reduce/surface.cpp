@@ -17,7 +17,6 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr std::size_t kGrain = 16384;
 constexpr float kSteepCosine = 0.65f;
 constexpr float kFar = std::numeric_limits<float>::max();
 
@@ -74,7 +73,7 @@ void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index
       if (d < nearest[v]) nearest[v] = d, s.face[v] = f;
     }
   }
-  job.forRanges(s.position.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(s.position.size(), [&](std::size_t begin, std::size_t end) {
     for (Index v = static_cast<Index>(begin); v < end; ++v) {
       if (s.face[v] == kNone || !s.hasAxis(v)) continue;
       const Index f = reference.locate(s.face[v], s.position[v], s.axis[v].vector());
@@ -85,7 +84,7 @@ void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index
 
 void findChords(Surface& s, base::Job& job) {
   s.chords.clear();
-  const std::vector<Index> some = base::collectIf(job, s.triangles.size(), kGrain, [&](Index t) {
+  const std::vector<Index> some = base::collectIf(job, s.triangles.size(), [&](Index t) {
     const auto& v = s.triangles[t].vertices;
     return s.isOnLine(v[0]) + s.isOnLine(v[1]) + s.isOnLine(v[2]) > 1;
   });
@@ -113,7 +112,7 @@ std::vector<CornerAt> cornersOnLines(const Surface& s, base::Job& job) {
   std::vector<Index> regionAt;  // one of them
   base::resizeLarge(regionAt, s.position.size(), job, kNone);
   base::AtomicBits several(s.position.size());
-  job.forRanges(s.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(s.triangles.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       for (const Index v : s.triangles[t].vertices) {
         const std::atomic_ref<Index> at(regionAt[v]);
@@ -127,7 +126,7 @@ std::vector<CornerAt> cornersOnLines(const Surface& s, base::Job& job) {
   });
   const auto vertexAt = [&](Index c) { return s.triangles[c / 3].vertices[c % 3]; };
   const std::vector<Index> some = base::collectIf(
-      job, 3 * s.triangles.size(), kGrain, [&](Index c) { return several.has(vertexAt(c)); });
+      job, 3 * s.triangles.size(), [&](Index c) { return several.has(vertexAt(c)); });
   std::vector<CornerAt> corners;
   corners.reserve(some.size());
   for (const Index c : some) corners.emplace_back(vertexAt(c), c);
@@ -177,7 +176,7 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
   s.isWhole = standsFor.empty();
   base::resizeLarge(s.owner, reference.positions().size(), job, kNone);
   if (s.isWhole) {
-    job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job.forRanges(s.owner.size(), [&](std::size_t begin, std::size_t end) {
       for (Index v = static_cast<Index>(begin); v < end; ++v) s.owner[v] = faceOf(s, reference, v);
     });
     return;
@@ -186,7 +185,7 @@ void locateAll(Surface& s, const ReferenceMesh& reference, std::span<const Index
   s.source.resize(s.position.size());
   std::iota(s.source.begin(), s.source.end(), 0);
   const CornersOfVertices corners(s.position.size(), s.triangles, job);
-  job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(s.owner.size(), [&](std::size_t begin, std::size_t end) {
     for (Index r = static_cast<Index>(begin); r < end; ++r) {
       float nearest = kFar;
       for (const Index c : corners.of(standsFor[r])) {
@@ -270,7 +269,7 @@ void apply(Surface& s, const ReferenceMesh& reference, const std::vector<Surface
   for (Triangle& t : triangles) {
     for (Index& v : t.vertices) v = leftVertices.rank(v);
   }
-  job.forRanges(s.owner.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(s.owner.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
       if (s.owner[r] != kNone) s.owner[r] = leftTriangles.rank(s.owner[r]);
     }

@@ -14,7 +14,6 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr std::size_t kGrain = 8192;
 constexpr int kTries = 16;  // vertices of a component
 
 // Whether the map reaches every point of a component; unknown if there is no vertex around which
@@ -124,11 +123,12 @@ class Finder {
   // With their components, in order.
   [[nodiscard]] std::vector<std::pair<Index, Index>> facesNearSeeds() const {
     const std::size_t count = reference_.faceCount();
-    std::vector<std::vector<std::pair<Index, Index>>> lists((count + kGrain - 1) / kGrain);
+    std::vector<std::vector<std::pair<Index, Index>>> lists((count + base::kGrain - 1) /
+                                                            base::kGrain);
     job_.forRanges(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t list = begin; list < end; ++list) {
-        const std::size_t last = std::min((list + 1) * kGrain, count);
-        for (std::size_t face = list * kGrain; face < last; ++face) {
+        const std::size_t last = std::min((list + 1) * base::kGrain, count);
+        for (std::size_t face = list * base::kGrain; face < last; ++face) {
           const Index seed = seedOf(static_cast<Index>(face));
           if (seed == kNone || !isNear(static_cast<Index>(face), seed)) continue;
           lists[list].emplace_back(componentOf_[seed], face);

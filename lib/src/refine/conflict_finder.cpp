@@ -29,15 +29,13 @@ constexpr double kSamePoint = 0.03;
 constexpr double kSameCrease = 0.15;
 // Square voxels; a smaller face that is folded over, as beside vertices that stand close together
 // on a crease, is let be: to move them off the crease would change the surface more.
-constexpr double kLeastArea = 0.02;
+constexpr double kLeastFace = 0.02;
 // Sheets of a smaller cosine (140 degrees apart) may have faces that are a fold.
-constexpr double kSharpSheets = -0.766;
+constexpr double kAcuteSheets = -0.766;
 // And a fold sharper than they are by less than this, in its cosine: 3 degrees at 145.
 constexpr double kAsSharp = 0.03;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
-
-constexpr std::size_t kGrain = 4096;
 
 }  // namespace
 
@@ -80,7 +78,7 @@ std::vector<Conflict> ConflictFinder::findCoincident() {
       if (any) found.push_back(quad);
     }
   };
-  for (const std::uint32_t quad : base::collectSorted(job_, mesh_.quads.size(), kGrain, add)) {
+  for (const std::uint32_t quad : base::collectSorted(job_, mesh_.quads.size(), add)) {
     visit(quad, [&](VertexIndex a, VertexIndex b) {
       conflicts.push_back({Conflict::Kind::SamePoint, {quad, quad}, {a, b}});
     });
@@ -94,7 +92,7 @@ std::vector<Conflict> ConflictFinder::findEverywhere() {
     const auto add = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& off) {
       for (auto quad = static_cast<std::uint32_t>(begin); quad < end; ++quad) addOff(quad, off);
     };
-    addFolds(base::collectSorted(job_, mesh_.quads.size(), kGrain, add), conflicts);
+    addFolds(base::collectSorted(job_, mesh_.quads.size(), add), conflicts);
   }
   candidates_ = intersect::findCandidates(surface_.view(), mesh_, margin_, job_);
   addPairs(intersect::findClosePairs(polygons_, candidates_, margin_, job_), conflicts);
@@ -248,7 +246,7 @@ bool ConflictFinder::isTurnedOver(std::uint32_t quad, const Trial& trial) const 
 
 bool ConflictFinder::isFold(const EdgeFace& a, const EdgeFace& b, const Trial& trial) const {
   const Vec3 na = normalOf(a.face, trial), nb = normalOf(b.face, trial);
-  const double least = 2 * kLeastArea * std::pow(surface_.affine().voxelSize(), 2);
+  const double least = 2 * kLeastFace * std::pow(surface_.affine().voxelSize(), 2);
   if (std::min(na.squaredLength(), nb.squaredLength()) < least * least) return false;
   const double cosine = na.dot(nb);
   if (cosine >= 0 || cosine * cosine < kFold * kFold * na.squaredLength() * nb.squaredLength())
@@ -274,7 +272,7 @@ bool ConflictFinder::isSharpAt(VertexIndex vertex, const Vec3& na, const Vec3& n
   const int first = sheetOf(na), second = sheetOf(nb);
   if (first < 0 || second < 0 || first == second) return false;
   const double sharp = Vec3(sheets.normals[first]).dot(Vec3(sheets.normals[second]));
-  return sharp < kSharpSheets && na.dot(nb) > (sharp - kAsSharp) * na.length() * nb.length();
+  return sharp < kAcuteSheets && na.dot(nb) > (sharp - kAsSharp) * na.length() * nb.length();
 }
 
 Involved ConflictFinder::involvedIn(const Conflict& conflict) const {

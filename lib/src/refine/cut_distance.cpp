@@ -20,8 +20,6 @@ namespace {
 using base::Vec3f;
 using reduce::Index;
 
-constexpr std::size_t kGrain = 4096;
-constexpr std::uint32_t kNone = octree::kNone;
 // Where more than one in so many vertices is of a cell that must be split, faces are not measured:
 // most would have to be again.
 constexpr std::size_t kOften = 100;
@@ -60,11 +58,11 @@ class Measure {
   // Calls body(i, list) for all i, and adds the lists up to coarse_ in their order.
   template <class Body>
   void collectCoarse(std::size_t count, const Body& body) {
-    std::vector<std::vector<VertexIndex>> lists((count + kGrain - 1) / kGrain);
+    std::vector<std::vector<VertexIndex>> lists((count + base::kGrain - 1) / base::kGrain);
     owners_.job.forRanges(lists.size(), 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t list = first; list < last; ++list) {
-        const std::size_t end = std::min((list + 1) * kGrain, count);
-        for (std::size_t i = list * kGrain; i < end; ++i) body(i, lists[list]);
+        const std::size_t end = std::min((list + 1) * base::kGrain, count);
+        for (std::size_t i = list * base::kGrain; i < end; ++i) body(i, lists[list]);
       }
     });
     for (const auto& list : lists) coarse_.insert(coarse_.end(), list.begin(), list.end());
@@ -82,12 +80,12 @@ class Measure {
     std::vector<std::uint8_t> isNear(count, 0);
     forEach(owners_.job, count, [&](std::size_t r) {
       std::uint32_t& owner = owners_.owner[r];
-      if (owner == kNone) {
+      if (owner == octree::kNone) {
         isNear[r] = touched[cut_.vertexOf[r]];
         return;
       }
       const base::PolygonIndex polygon = overlay_.polygonOf(owner);
-      bool isGone = polygon == kNone || changed[cut_.vertexOf[r]] != 0 ||
+      bool isGone = polygon == octree::kNone || changed[cut_.vertexOf[r]] != 0 ||
                     owners_.distance[r] > owners_.toleranceAt(r);
       if (!isGone) {
         Triangle storage;
@@ -96,7 +94,7 @@ class Measure {
       }
       if (!isGone) return;
       isNear[r] = 1;
-      owner = kNone;
+      owner = octree::kNone;
     });
     isDirty_.assign(2 * owners_.base.mesh.quads.size(), 0);
     wanted_.assign(count, 0);
@@ -131,7 +129,7 @@ class Measure {
     const reduce::CornersOfVertices& corners = overlay_.corners();
     const CutTriangles& triangles = overlay_.triangles();
     collectCoarse(wanted_.size(), [&](std::size_t r, std::vector<VertexIndex>& coarse) {
-      if (wanted_[r] == 0 || owners_.owner[r] != kNone) return;
+      if (wanted_[r] == 0 || owners_.owner[r] != octree::kNone) return;
       const VertexIndex own = cut_.vertexOf[r];
       if (overlay_.isFine(static_cast<VertexIndex>(r)) && !corners.of(own).empty()) {
         owners_.owner[r] = triangles.ids[corners.of(own).front() / 3];
@@ -181,7 +179,7 @@ class Measure {
       bound = kFarOff;
       bool isFar = false;
       for (const VertexIndex v : r.vertices) {
-        if (owners_.owner[v] == kNone) {
+        if (owners_.owner[v] == octree::kNone) {
           for (const VertexIndex c : r.vertices) coarse.push_back(cut_.vertexOf[c]);
           return;
         }

@@ -12,7 +12,6 @@ namespace {
 using base::Vec3f;
 using reduce::Index;
 
-constexpr std::size_t kGrain = 16384;
 // Cosine of 149 degrees and area in square voxels: positions are still to be rounded.
 constexpr float kFoldCosine = -0.857f;
 constexpr float kLeastArea = 0.048f;
@@ -21,7 +20,7 @@ constexpr double kSharpSheets = -0.848;
 // But faces that turn by more than 149.9 degrees only those that do so by more than 150.5.
 constexpr double kOver = -0.8652, kOverSheets = -0.87;
 // A face within this cosine (25 degrees) of a sheet lies on it.
-constexpr double kOnSheet = 0.906;
+constexpr double kSameSideCosine = 0.906;
 
 struct Fold {
   std::array<Index, 2> triangles;
@@ -35,7 +34,7 @@ struct Fold {
 std::vector<Vec3f> normalsOf(const CutTriangles& triangles, base::Job& job) {
   std::vector<Vec3f> normals;
   base::resizeLarge(normals, triangles.corners.size(), job);
-  job.forRanges(normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(normals.size(), [&](std::size_t begin, std::size_t end) {
     for (Index t = static_cast<Index>(begin); t < end; ++t) {
       const Vec3f a = triangles(t, 0);
       const Vec3f normal = cross(triangles(t, 1) - a, triangles(t, 2) - a);
@@ -52,8 +51,7 @@ std::vector<Fold> foldsOf(const CutTriangles& triangles, base::Job& job) {
     return dot(normals[corner / 3], normals[across / 3]);
   };
   std::vector<Fold> folds;
-  for (const Index corner :
-       base::collectIf(job, triangles.opposite.size(), kGrain, [&](Index corner) {
+  for (const Index corner : base::collectIf(job, triangles.opposite.size(), [&](Index corner) {
          const Index across = triangles.opposite[corner];
          return across != reduce::kNone && across / 3 >= corner / 3 &&
                 cosineAt(corner, across) < kFoldCosine;
@@ -74,8 +72,8 @@ bool haveSheets(const Fold& fold, const uniform::MeetingSheets& sheets) {
   for (int i = 0; i < sheets.count; ++i) {
     for (int j = 0; j < sheets.count; ++j) {
       const Vec3 a(sheets.normals[i]), b(sheets.normals[j]);
-      if (a.dot(b) < least && a.dot(fold.normals[0]) > kOnSheet &&
-          b.dot(fold.normals[1]) > kOnSheet) {
+      if (a.dot(b) < least && a.dot(fold.normals[0]) > kSameSideCosine &&
+          b.dot(fold.normals[1]) > kSameSideCosine) {
         return true;
       }
     }

@@ -11,16 +11,13 @@ namespace {
 using base::Vec3f;
 using reduce::Index;
 
-constexpr std::size_t kGrain = 4096;
-constexpr std::uint32_t kNone = octree::kNone;
-
 }  // namespace
 
 std::vector<std::uint8_t> grown(const Mesh& mesh, const std::vector<std::uint8_t>& marks,
                                 base::Job& job) {
   std::vector<std::uint8_t> more = marks;
   const std::size_t count = mesh.quads.size() + mesh.triangles.size();
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const base::Corners v = base::cornersOf(mesh, static_cast<base::PolygonIndex>(i));
       if (std::none_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; })) continue;
@@ -32,7 +29,7 @@ std::vector<std::uint8_t> grown(const Mesh& mesh, const std::vector<std::uint8_t
 
 CutOverlay::CutOverlay(const CutOwners& owners, const octree::Cut& cut, const octree::CutMesh& made)
     : owners_(owners), cut_(cut), made_(made), mesh_(made.mesh) {
-  base::resizeLarge(polygonOf_, owners_.base.mesh.quads.size(), owners_.job, kNone);
+  base::resizeLarge(polygonOf_, owners_.base.mesh.quads.size(), owners_.job, octree::kNone);
   forEach(owners_.job, mesh_.quads.size() + mesh_.triangles.size(), [&](std::size_t i) {
     const auto polygon = static_cast<base::PolygonIndex>(i);
     polygonOf_[made_.sourceOf(polygon)] = polygon;
@@ -41,7 +38,7 @@ CutOverlay::CutOverlay(const CutOwners& owners, const octree::Cut& cut, const oc
 
 base::Corners CutOverlay::cornersOf(std::uint32_t id, Triangle& storage) const {
   const base::PolygonIndex polygon = polygonOf_[id / 2];
-  if (polygon == kNone) return {};
+  if (polygon == octree::kNone) return {};
   const base::Corners v = base::cornersOf(mesh_, polygon);
   if (id % 2 == 0) {
     storage = {v[0], v[1], v[2]};
@@ -75,7 +72,7 @@ void CutOverlay::collectTriangles(const std::vector<std::uint8_t>& isCorner) {
   forEach(owners_.job, isCorner.size(), [&](std::size_t r) {
     if (isCorner[r] == 0) return;
     mark(marks, cut_.vertexOf[r]);
-    if (owners_.owner[r] == kNone) return;
+    if (owners_.owner[r] == octree::kNone) return;
     Triangle storage;
     for (const VertexIndex v : cornersOf(owners_.owner[r], storage)) mark(marks, v);
   });
@@ -93,15 +90,15 @@ void CutOverlay::collectTriangles(const std::vector<std::uint8_t>& isCorner) {
 void CutOverlay::addMarked(const std::vector<std::uint8_t>& marks) {
   const std::size_t count = mesh_.quads.size() + mesh_.triangles.size();
   const auto forMarked = [&](std::size_t range, const auto& body) {
-    const std::size_t end = std::min((range + 1) * kGrain, count);
-    for (std::size_t i = range * kGrain; i < end; ++i) {
+    const std::size_t end = std::min((range + 1) * base::kGrain, count);
+    for (std::size_t i = range * base::kGrain; i < end; ++i) {
       const auto polygon = static_cast<base::PolygonIndex>(i);
       const base::Corners v = base::cornersOf(mesh_, polygon);
       if (std::any_of(v.begin(), v.end(), [&](VertexIndex c) { return marks[c] != 0; }))
         body(polygon, v);
     }
   };
-  const std::size_t ranges = (count + kGrain - 1) / kGrain;
+  const std::size_t ranges = (count + base::kGrain - 1) / base::kGrain;
   std::vector<Index> first(ranges + 1);
   owners_.job.forRanges(ranges, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t range = begin; range < end; ++range) {

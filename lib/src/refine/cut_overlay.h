@@ -75,8 +75,7 @@ class CutOverlay {
 /// Calls body(i) for each index below `count`, in parallel.
 template <class Body>
 void forEach(base::Job& job, std::size_t count, const Body& body) {
-  constexpr std::size_t kGrain = 4096;
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }

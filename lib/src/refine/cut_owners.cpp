@@ -10,7 +10,6 @@
 namespace tufa::refine {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
 // Voxels; faces need no tighter bound, as rounding may take as much.
 constexpr float kRounding = 1e-4f;
 
@@ -28,7 +27,7 @@ CutOwners::CutOwners(const uniform::SurfaceView& view, const octree::CutRule& ru
   for (const Position& p : base.mesh.positions) box.add(Vec3(p));
   middle = box.centre();
   base::resizeLarge(points, count, job);
-  job.forRanges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = toVoxels(base.mesh.positions[i]);
   });
   base::resizeLarge(owner, count, job, octree::kNone);

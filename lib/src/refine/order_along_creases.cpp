@@ -30,7 +30,7 @@ constexpr double kSameDirection = 0.97;
 constexpr double kSameLine = 0.15;
 // A vertex is on a sheet within so many voxels of it, and if it has a normal, within so many
 // degrees (25) of the sheet's.
-constexpr double kOnSheet = 0.25;
+constexpr double kMostAcross = 0.25;
 constexpr double kSameNormal = 0.9;
 // A vertex that is nearer to the crease than this, in voxels, does not tell on which side of it the
 // sheet lies.
@@ -130,7 +130,7 @@ class CreaseOrder {
     Vec3 found(0);
     for (int i = 0; i < at.count; ++i) {
       const Vec3 normal(at.normals[i]);
-      if (std::abs(normal.dot(way)) > kOnSheet) continue;
+      if (std::abs(normal.dot(way)) > kMostAcross) continue;
       if (own.count == 1 && normal.dot(Vec3(own.normals[0])) < kSameNormal) continue;
       if (!(found == Vec3(0))) return Vec3(0);
       found = normal;
@@ -141,7 +141,7 @@ class CreaseOrder {
   // All quads at creases: those on a sheet give orders, those between two sheets are kept.
   void findAtSheets() {
     std::mutex mutex;
-    job_.forRanges(mesh_.quads.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(mesh_.quads.size(), [&](std::size_t begin, std::size_t end) {
       std::vector<Order> found;
       std::vector<std::uint32_t> between;
       for (std::size_t q = begin; q < end; ++q) {

@@ -19,8 +19,6 @@ namespace {
 
 using base::Vec3f;
 
-constexpr std::size_t kGrain = 16384;
-
 }  // namespace
 
 SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& rule, base::Job& job)
@@ -55,7 +53,7 @@ void SurfaceReduction::takePositions(const std::vector<Position>& exact) {
   std::vector<Vec3f> positions;
   base::resizeLarge(positions, exact.size(), job_);
   const double perVoxel = 1 / model_.affine().voxelSize();
-  job_.forRanges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job_.forRanges(positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       positions[i] = Vec3f((Vec3(exact[i]) - middle_) * perVoxel);
     }
@@ -82,7 +80,7 @@ Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
 // twelve.
 void SurfaceReduction::takeNormals(const std::vector<Normal>& normals) {
   base::resizeLarge(normals_, normals.size(), job_);
-  job_.forRanges(normals.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job_.forRanges(normals.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       normals_[i] = base::Direction(Vec3f(normals[i].x, normals[i].y, normals[i].z));
     }
@@ -110,7 +108,7 @@ Normal SurfaceReduction::normalOf(const reduce::ReducedMesh& reduced, std::size_
 std::vector<reduce::Index> SurfaceReduction::findIntersecting(const reduce::ReducedMesh& reduced) {
   Mesh mesh;
   mesh.positions.resize(reduced.positions.size());
-  job_.forRanges(mesh.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  job_.forRanges(mesh.positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = positionOf(reduced, i);
   });
   (void)takeToWorld(mesh, model_.affine(), job_);

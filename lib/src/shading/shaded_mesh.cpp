@@ -16,7 +16,6 @@ namespace tufa::shading {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr std::size_t kGrain = 4096;
 
 /// Finds the smooth groups of faces around each vertex. A corner is a place in the index list: 3 t
 /// + k is corner k of triangle t.
@@ -80,7 +79,7 @@ class CreaseSplitter {
 
   template <class Body>
   void forVertices(Body&& body) {
-    job_.forRanges(mesh_.positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(mesh_.positions.size(), [&](std::size_t begin, std::size_t end) {
       Star star;
       for (std::size_t v = begin; v < end; ++v) body(v, star);
     });
@@ -93,7 +92,7 @@ class CreaseSplitter {
 
   void findFaceNormals() {
     normals_.resize(triangles_.size());
-    job_.forRanges(triangles_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(triangles_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto& v = triangles_[t].vertices;
         const Vec3 a = point(v[0]);

@@ -66,7 +66,7 @@ std::vector<std::uint32_t> quadsAt(const CellTopology& topology, const Mesh& mes
       }
     }
   };
-  return base::collectSorted(job, blocks.size(), 32, add);
+  return base::collectSorted(job, blocks.size(), add, 32);
 }
 
 }  // namespace tufa::uniform

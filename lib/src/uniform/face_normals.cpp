@@ -30,7 +30,7 @@ void setFaceNormals(Mesh& mesh, base::Job& job) {
     }
   }
   base::resizeLarge(mesh.normals, mesh.positions.size(), job);
-  job.forRanges(sums.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(sums.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Vec3 n = sums[i];
       if (!n.normalize()) n = Vec3(0);

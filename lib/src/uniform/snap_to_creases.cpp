@@ -160,7 +160,7 @@ class CreaseSnapper {
   static std::vector<Move> findMovesAmong(std::size_t count, base::Job& job, const Find& find) {
     std::vector<Move> moves;
     std::mutex mutex;
-    job.forRanges(count, 4096, [&](std::size_t begin, std::size_t end) {
+    job.forRanges(count, [&](std::size_t begin, std::size_t end) {
       std::vector<Move> found;
       for (std::size_t i = begin; i < end; ++i) find(i, found);
       const std::scoped_lock lock(mutex);

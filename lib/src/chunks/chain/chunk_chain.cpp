@@ -16,7 +16,6 @@ namespace {
 
 using base::Vec3f;
 
-constexpr std::size_t kGrain = 16384;
 // Voxels that vertices inside a chunk keep from its faces, unless they were nearer before.
 constexpr double kDepth = 2e-3;
 
@@ -40,7 +39,7 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
   const auto localsOf = [&](const std::vector<Position>& from) {
     std::vector<Vec3f> local;
     base::resizeLarge(local, from.size(), job);
-    job.forRanges(local.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job.forRanges(local.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) local[i] = localOf(from[i]);
     });
     return local;

@@ -95,7 +95,7 @@ ShadedLevel shade(const ChainLevel& level, const CurveNormals& curves, double cr
   };
   out.triangles.resize(level.triangles.size());
   out.changed.resize(level.triangles.size());
-  job.forRanges(level.triangles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(level.triangles.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Triangle forms[2] = {level.triangles[t], changed(level, level.triangles[t])};
       for (const bool isChanged : {false, true}) {

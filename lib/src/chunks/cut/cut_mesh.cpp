@@ -35,8 +35,6 @@ constexpr double kRoundedEdges[] = {2e-3, 4e-3, 8e-3};
 // Voxels; lower caps are flipped.
 constexpr double kLeastHeight = 1e-4;
 
-constexpr std::size_t kGrain = 16384;
-
 class Cutter {
  public:
   Cutter(Mesh uniform, const grid::Affine& affine, int size, bool singlePrecision, base::Job& job)
@@ -117,7 +115,7 @@ class Cutter {
     };
     make(at_), make(place_), make(moved_), make(out_.isNew);
     if (hasNormals_) base::growLarge(out_.mesh.normals, room);
-    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(at_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         at_[v] = affine_.latticePoint(uniform_[v], affine_.origin());
       }
@@ -127,7 +125,7 @@ class Cutter {
   // Of all vertices: those that were made on planes of other axes too.
   void setPlaces(int axis) {
     const auto a = static_cast<std::size_t>(axis);
-    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(at_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) place_[v][a] = planes_.placeOf(axis, at_[v][axis]);
     });
   }
@@ -235,7 +233,7 @@ class Cutter {
   void cut(int axis) {
     std::vector<Triangle> rest = std::move(out_.mesh.triangles), done;
     const std::vector<std::uint32_t> passing =
-        base::collectIf(job_, rest.size(), kGrain, [&](std::uint32_t t) {
+        base::collectIf(job_, rest.size(), [&](std::uint32_t t) {
           const auto [low, high] = rangeOf(rest[t], axis);
           return low + 2 - (low & 1) < high;
         });
@@ -334,7 +332,7 @@ class Cutter {
   void finish() {
     Mesh& mesh = out_.mesh;
     base::resizeLarge(mesh.positions, at_.size(), job_);
-    job_.forRanges(at_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(at_.size(), [&](std::size_t begin, std::size_t end) {
       for (auto v = static_cast<VertexIndex>(begin); v < end; ++v) {
         mesh.positions[v] = positionOf(v);
       }
@@ -342,7 +340,7 @@ class Cutter {
     base::release(uniform_);
     std::vector<Coord> chunkOf;
     base::resizeLarge(chunkOf, mesh.triangles.size(), job_);
-    job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(chunkOf.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) chunkOf[t] = chunkAt(mesh.triangles[t]);
     });
     // Neighbours are mostly of one chunk.
@@ -351,7 +349,7 @@ class Cutter {
     out_.chunks.erase(std::unique(out_.chunks.begin(), out_.chunks.end()), out_.chunks.end());
     std::vector<std::uint32_t> placeOf;
     base::resizeLarge(placeOf, chunkOf.size(), job_);
-    job_.forRanges(chunkOf.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job_.forRanges(chunkOf.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto found = std::lower_bound(out_.chunks.begin(), out_.chunks.end(), chunkOf[t]);
         placeOf[t] = static_cast<std::uint32_t>(found - out_.chunks.begin());

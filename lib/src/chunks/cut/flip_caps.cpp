@@ -16,7 +16,6 @@ constexpr int kMostPasses = 4;
 constexpr double kHigher = 8;
 // The square of a height over that of a cap's, above all rounding.
 constexpr double kClearlyHigh = 1.001;
-constexpr std::size_t kGrain = 16384;
 
 using MayFlip = std::function<bool(const std::array<VertexIndex, 4>&)>;
 
@@ -35,7 +34,7 @@ class CapFlipper {
 
   double run(std::span<const std::uint8_t> marks) {
     std::vector<std::uint32_t> caps =
-        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+        base::collectIf(job_, triangles_.size(), [&](std::uint32_t t) {
           const auto& v = triangles_[t].vertices;
           return (marks.empty() || (marks[v[0]] | marks[v[1]] | marks[v[2]]) != 0) && isCap(t);
         });
@@ -60,7 +59,7 @@ class CapFlipper {
     }
     behind_.clear();
     const std::vector<std::uint32_t> near =
-        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+        base::collectIf(job_, triangles_.size(), [&](std::uint32_t t) {
           const auto& v = triangles_[t].vertices;
           return (isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0;
         });

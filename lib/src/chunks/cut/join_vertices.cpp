@@ -13,7 +13,6 @@ namespace {
 
 using Edge = std::pair<VertexIndex, VertexIndex>;
 
-constexpr std::size_t kGrain = 16384;
 // Triangles may turn by the angle of this cosine, and shrink to this share.
 constexpr double kTurnCosine = 0.5;
 constexpr double kLeastShare = 0.1;
@@ -75,7 +74,7 @@ class Joiner {
       }
     };
     const std::vector<std::uint32_t> some =
-        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+        base::collectIf(job_, triangles_.size(), [&](std::uint32_t t) {
           const auto& v = triangles_[t].vertices;
           bool isAny = false;
           if (!marks.empty() && (marks[v[0]] | marks[v[1]] | marks[v[2]]) == 0) return false;
@@ -97,7 +96,7 @@ class Joiner {
       isEnd[a] = isEnd[b] = 1;
     }
     const std::vector<std::uint32_t> near =
-        base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+        base::collectIf(job_, triangles_.size(), [&](std::uint32_t t) {
           const auto& v = triangles_[t].vertices;
           return (isEnd[v[0]] | isEnd[v[1]] | isEnd[v[2]]) != 0;
         });

@@ -26,7 +26,6 @@ struct Move {
 constexpr Move kMoves[] = {{5e-3, 0.9, 0.25}, {5e-4, 0.05, 0.02}, {2e-5, -2, 0}};
 
 constexpr double kStays = std::numeric_limits<double>::infinity();
-constexpr std::size_t kGrain = 16384;
 
 class PlaneMover {
  public:
@@ -35,7 +34,7 @@ class PlaneMover {
       : planes_(planes), axis_(axis), triangles_(triangles), points_(points), job_(job) {}
 
   std::vector<MovedVertex> run() {
-    near_ = base::collectIf(job_, points_.size(), kGrain, [&](std::uint32_t v) {
+    near_ = base::collectIf(job_, points_.size(), [&](std::uint32_t v) {
       const double x = points_[v][axis_], off = std::abs(planes_.nearest(axis_, x) - x);
       return off > 0 && off < kMoves[0].distance;
     });
@@ -59,7 +58,7 @@ class PlaneMover {
   void findTouched() {
     std::vector<std::uint8_t> isNear(points_.size(), 0);
     for (const VertexIndex v : near_) isNear[v] = 1;
-    touched_ = base::collectIf(job_, triangles_.size(), kGrain, [&](std::uint32_t t) {
+    touched_ = base::collectIf(job_, triangles_.size(), [&](std::uint32_t t) {
       const auto& v = triangles_[t].vertices;
       return (isNear[v[0]] | isNear[v[1]] | isNear[v[2]]) != 0;
     });

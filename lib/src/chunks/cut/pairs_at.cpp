@@ -13,7 +13,6 @@
 namespace tufa::chunks {
 namespace {
 
-constexpr std::size_t kGrain = 8192;
 // Of more than one triangle in so many, others are mostly near.
 constexpr std::size_t kMany = 8;
 // Places in the table of cubes for each of some triangles. Many of these share a cube of some fifty
@@ -63,7 +62,7 @@ std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
   for (const std::uint32_t t : some) {
     (void)visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] = 1, false; });
   }
-  return base::collectIf(job, triangles.size(), kGrain, [&](std::uint32_t t) {
+  return base::collectIf(job, triangles.size(), [&](std::uint32_t t) {
     return visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] != 0; });
   });
 }
@@ -96,7 +95,7 @@ std::vector<intersect::PolygonPair> findPairsAt(const std::vector<Triangle>& tri
                                                 const std::vector<std::uint8_t>& marks,
                                                 base::Job& job) {
   const std::vector<std::uint32_t> touched =
-      base::collectIf(job, triangles.size(), kGrain, [&](std::uint32_t t) {
+      base::collectIf(job, triangles.size(), [&](std::uint32_t t) {
         const auto& v = triangles[t].vertices;
         return (marks[v[0]] | marks[v[1]] | marks[v[2]]) != 0;
       });

@@ -20,7 +20,7 @@
 namespace tufa::chunks {
 namespace {
 
-using Place = std::array<double, 3>;
+using RoundedPlace = std::array<double, 3>;
 
 double nextAbove(double x, bool singlePrecision) {
   if (!singlePrecision) return std::nextafter(x, std::numeric_limits<double>::infinity());
@@ -31,7 +31,7 @@ double nextAbove(double x, bool singlePrecision) {
 // counts as taken.
 class TakenPlaces {
  public:
-  using Entry = std::pair<Place, VertexIndex>;
+  using Entry = std::pair<RoundedPlace, VertexIndex>;
 
   // `placeOf` tells the place of a vertex; those without triangles do not count: collapses have
   // left them.
@@ -40,20 +40,20 @@ class TakenPlaces {
               base::Job& job)
       : size_(std::bit_ceil(8 * vertices + 1)), taken_(size_) {
     base::AtomicBits used(vertices), several(size_);
-    job.forRanges(triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    job.forRanges(triangles.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         for (const VertexIndex v : triangles[t].vertices) used.add(v);
       }
     });
-    job.forRanges(vertices, kGrain, [&](std::size_t begin, std::size_t end) {
+    job.forRanges(vertices, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         if (!used.has(v)) continue;
         if (const std::size_t at = slotOf(placeOf(v)); taken_.add(at)) several.add(at);
       }
     });
-    const std::vector<VertexIndex> some = base::collectIf(
-        job, vertices, kGrain,
-        [&](VertexIndex v) { return used.has(v) && several.has(slotOf(placeOf(v))); });
+    const std::vector<VertexIndex> some = base::collectIf(job, vertices, [&](VertexIndex v) {
+      return used.has(v) && several.has(slotOf(placeOf(v)));
+    });
     std::vector<std::pair<std::uint64_t, VertexIndex>> hashes;
     hashes.reserve(some.size());
     for (const VertexIndex v : some) {
@@ -72,13 +72,11 @@ class TakenPlaces {
 
   // The vertices whose places may be those of others, by place; these are few.
   [[nodiscard]] const std::vector<Entry>& shared() const { return shared_; }
-  [[nodiscard]] bool has(const Place& place) const { return taken_.has(slotOf(place)); }
-  void add(const Place& place) { taken_.add(slotOf(place)); }
+  [[nodiscard]] bool has(const RoundedPlace& place) const { return taken_.has(slotOf(place)); }
+  void add(const RoundedPlace& place) { taken_.add(slotOf(place)); }
 
  private:
-  static constexpr std::size_t kGrain = 16384;
-
-  [[nodiscard]] static std::uint64_t hashOf(const Place& place) {
+  [[nodiscard]] static std::uint64_t hashOf(const RoundedPlace& place) {
     // The low bits of numbers in single precision are 0, so that multiplying alone mixes too few.
     std::uint64_t hash = 0;
     for (const double x : place) {
@@ -89,7 +87,7 @@ class TakenPlaces {
     }
     return hash;
   }
-  [[nodiscard]] std::size_t slotOf(const Place& place) const {
+  [[nodiscard]] std::size_t slotOf(const RoundedPlace& place) const {
     return static_cast<std::size_t>(hashOf(place)) & (size_ - 1);
   }
 
@@ -105,7 +103,7 @@ void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, b
   const auto placeOf = [&](const Position& position) {
     const Position world = affine.toWorld(position);
     const Position p = singlePrecision ? base::toSingle(world) : world;
-    return Place{p.x, p.y, p.z};
+    return RoundedPlace{p.x, p.y, p.z};
   };
   const auto placeAt = [&](std::size_t v) { return placeOf(positions[v]); };
   TakenPlaces taken(cut.mesh.triangles, positions.size(), placeAt, job);
@@ -135,7 +133,7 @@ void separateRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecis
   Mesh rounded;
   base::resizeLarge(rounded.positions, positions.size(), job);
   base::copyLarge(cut.mesh.triangles, rounded.triangles, job);
-  job.forRanges(positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Position world = affine.toWorld(positions[v]);
       rounded.positions[v] = singlePrecision ? base::toSingle(world) : world;
