@@ -14,15 +14,8 @@ namespace tufa::extraction {
 
 namespace {
 
-// Shares of the time that stages took on the sample volumes.
-constexpr double kVerticesEnd = 0.6, kFacesEnd = 0.7, kFeaturesEnd = 0.85, kTrianglesEnd = 0.95;
-
 // The number of an arc of the face at a cell's lower end across an axis.
 constexpr int arcPart(int axis, int arc) { return 2 * axis + arc; }
-
-Vec3 toVec3(const uniform::Vector& v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
 
 // Where the crease at a point of a cell passes the face at a height along an axis, counted from the
 // middle of the cell. Of more than two sheets, those are meant that are most like the tangent
@@ -34,14 +27,15 @@ std::optional<FacePoint> creaseAt(const uniform::CreasePlacement& crease, int ax
   std::array<int, 2> nearest{};
   for (int end = 0; end < 2; ++end) {
     for (int sheet = 1; sheet < crease.planes; ++sheet) {
-      const auto likeness = [&](int k) { return toVec3(crease.sheets[k]).dot(ends[end]); };
+      const auto likeness = [&](int k) { return uniform::toVec3(crease.sheets[k]).dot(ends[end]); };
       if (likeness(sheet) > likeness(nearest[end])) nearest[end] = sheet;
     }
   }
   if (nearest[0] == nearest[1]) return std::nullopt;
-  const Vec3 way = toVec3(crease.sheets[nearest[0]]).cross(toVec3(crease.sheets[nearest[1]]));
+  const Vec3 way =
+      uniform::toVec3(crease.sheets[nearest[0]]).cross(uniform::toVec3(crease.sheets[nearest[1]]));
   if (!(std::abs(way[axis]) > kLeastSine * way.length())) return std::nullopt;
-  const Vec3 point = toVec3(crease.point);
+  const Vec3 point = uniform::toVec3(crease.point);
   const Vec3 there = point + way * ((height - point[axis]) / way[axis]);
   const auto [u, v] = uniform::otherAxes(axis);
   return FacePoint{0.5 + there[u], 0.5 + there[v]};
@@ -84,6 +78,10 @@ class SquaresMesher {
   }
 
  private:
+  // Shares of the time that stages took on the sample volumes.
+  static constexpr double kVerticesEnd = 0.6, kFacesEnd = 0.7, kFeaturesEnd = 0.85,
+                          kTrianglesEnd = 0.95;
+
   // The crossing of an edge, seen in a face across an axis. The same numbers for both cells there.
   [[nodiscard]] FaceCrossing crossingAt(const WalkedCell& cell, int edge, int axis) const {
     const VertexIndex vertex = cell.vertexAt(edge);

@@ -10,9 +10,6 @@ namespace tufa::extraction {
 
 namespace {
 
-// Shares of the time that stages took on the sample volumes.
-constexpr double kVerticesEnd = 0.65, kFeaturesEnd = 0.8, kTrianglesEnd = 0.95;
-
 class SharpMesher {
  public:
   SharpMesher(const grid::Volume& volume, const CubeCells& cells, double sharpAngle, base::Job& job)
@@ -36,6 +33,9 @@ class SharpMesher {
   }
 
  private:
+  // Shares of the time that stages took on the sample volumes.
+  static constexpr double kVerticesEnd = 0.65, kFeaturesEnd = 0.8, kTrianglesEnd = 0.95;
+
   // The feature of the loop that shares the arc from a crossing to the next, if the edge between
   // the two features is to take the place of the arc's.
   [[nodiscard]] std::optional<VertexIndex> featureBeyond(const WalkedCell& cell, int edge) const {

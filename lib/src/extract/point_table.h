@@ -96,15 +96,15 @@ class PointTable {
   template <int kKind>
   void fillKind(const grid::BlockSamples& samples, const Rows& ofCells) {
     constexpr PointsAround kAround{HalfPlace{kKind >> 2, kKind >> 1 & 1, kKind & 1}};
-    constexpr bool kBeyond = kKind == 7 && Lattice::kCentresBeyond;
-    constexpr int kFirstZ = kBeyond ? -1 : 0;
-    constexpr int kLanes = grid::kBlockSize + (kBeyond ? 2 : (kKind & 1) != 0 ? 0 : 1);
+    constexpr bool kIsBeyond = kKind == 7 && Lattice::kCentresBeyond;
+    constexpr int kFirstZ = kIsBeyond ? -1 : 0;
+    constexpr int kLanes = grid::kBlockSize + (kIsBeyond ? 2 : (kKind & 1) != 0 ? 0 : 1);
     for (int x = -1; x <= grid::kBlockSize; ++x) {
       const auto rowsAt = [&](int at) {
         return at < -1 || at > grid::kBlockSize ? 0 : ofCells[at + 1];
       };
       std::uint32_t rows = rowsAt(x);
-      if (kBeyond) rows |= rows << 1 | rows >> 1 | rowsAt(x - 1) | rowsAt(x + 1);
+      if (kIsBeyond) rows |= rows << 1 | rows >> 1 | rowsAt(x - 1) | rowsAt(x + 1);
       if ((kKind & 4) == 0) rows |= rowsAt(x - 1);
       if ((kKind & 2) == 0) rows |= rows << 1;
       for (int y = -1; y <= grid::kBlockSize; ++y) {

@@ -16,7 +16,6 @@
 namespace tufa::filter {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using Label = std::int32_t;  ///< from 1; 0: outside
 using LabelTree = openvdb::Int32Tree;
@@ -25,7 +24,7 @@ using LabelLeaf = LabelTree::LeafNodeType;
 constexpr std::array<std::array<int, 3>, 6> kSteps = {
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-Coord neighbour(const Coord& at, std::size_t side) {
+openvdb::Coord neighbour(const openvdb::Coord& at, std::size_t side) {
   return at.offsetBy(kSteps[side][0], kSteps[side][1], kSteps[side][2]);
 }
 
@@ -130,11 +129,11 @@ class Labelling {
       labels->setValueOn(first, label);
       flood_.assign(1, first);
       while (!flood_.empty()) {
-        const Coord at = Leaf::offsetToLocalCoord(flood_.back());
+        const openvdb::Coord at = Leaf::offsetToLocalCoord(flood_.back());
         flood_.pop_back();
         sets_.addVoxel(label);
         for (std::size_t side = 0; side < kSteps.size(); ++side) {
-          const Coord next = neighbour(at, side);
+          const openvdb::Coord next = neighbour(at, side);
           if (!isLocal(next)) continue;
           const openvdb::Index offset = Leaf::coordToOffset(next);
           if (labels->getValue(offset) != 0 || !isInside(leaf.getValue(offset))) continue;
@@ -145,7 +144,7 @@ class Labelling {
     }
   }
 
-  static bool isLocal(const Coord& at) {
+  static bool isLocal(const openvdb::Coord& at) {
     constexpr int kDim = LabelLeaf::DIM;
     return at[0] >= 0 && at[0] < kDim && at[1] >= 0 && at[1] < kDim && at[2] >= 0 && at[2] < kDim;
   }
@@ -159,9 +158,9 @@ class Labelling {
       for (openvdb::Index i = 0; i < LabelLeaf::SIZE; ++i) {
         const Label label = leaf->getValue(i);
         if (label == 0) continue;
-        const Coord local = LabelLeaf::offsetToLocalCoord(i);
+        const openvdb::Coord local = LabelLeaf::offsetToLocalCoord(i);
         for (std::size_t side = 0; side < kSteps.size(); ++side) {
-          const Coord next = neighbour(local, side);
+          const openvdb::Coord next = neighbour(local, side);
           if (isLocal(next)) continue;
           const Label other = accessor.getValue(leaf->origin() + next);
           if (other != 0) sets_.join(label, other);
@@ -180,7 +179,7 @@ class Labelling {
       const Label label = accessor.getValue(tile.min());
       for (int axis = 0; axis < 3; ++axis) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        Coord at = tile.min();
+        openvdb::Coord at = tile.min();
         at[axis] = tile.max()[axis] + 1;
         for (at[u] = tile.min()[u]; at[u] <= tile.max()[u]; at[u] += kStride) {
           pollInterrupter(done++);
@@ -233,7 +232,7 @@ class BandShares {
   BandShares(const GridT& grid, LabelTree& labels) : active_(grid.tree()), labels_(labels) {}
 
   void share(const Verdict& verdict, ProgressInterrupter& interrupter) {
-    std::vector<Coord> stays, goes;
+    std::vector<openvdb::Coord> stays, goes;
     for (auto label = std::as_const(tree()).cbeginValueOn(); label; ++label) {
       if (!label.isVoxelValue()) continue;
       (verdict.goes(*label) ? goes : stays).push_back(label.getCoord());
@@ -248,11 +247,11 @@ class BandShares {
  private:
   LabelTree& tree() { return labels_.tree(); }
 
-  std::vector<Coord> claimAround(const std::vector<Coord>& front, Label label) {
-    std::vector<Coord> claimed;
-    for (const Coord& at : front) {
+  std::vector<openvdb::Coord> claimAround(const std::vector<openvdb::Coord>& front, Label label) {
+    std::vector<openvdb::Coord> claimed;
+    for (const openvdb::Coord& at : front) {
       for (std::size_t side = 0; side < kSteps.size(); ++side) {
-        const Coord next = neighbour(at, side);
+        const openvdb::Coord next = neighbour(at, side);
         if (labels_.getValue(next) != 0 || !active_.isValueOn(next)) continue;
         labels_.setValueOnly(next, label);
         claimed.push_back(next);

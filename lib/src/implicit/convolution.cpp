@@ -12,19 +12,13 @@
 #include "implicit/formula_field.h"
 #include "implicit/kernel_profile.h"
 #include "implicit/near_field.h"
+#include "implicit/triple.h"
 
 namespace tufa::implicit {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-template <class T>
-using Triple = std::array<T, 3>;
-
-template <class T>
-T dot(const Vec3& a, const Triple<T>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 template <class T>
 Triple<T> minus(const Triple<T>& p, const Vec3& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};

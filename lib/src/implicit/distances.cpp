@@ -7,17 +7,11 @@
 #include "implicit/fields.h"
 #include "implicit/formula_field.h"
 #include "implicit/spans.h"
+#include "implicit/triple.h"
 
 namespace tufa::implicit {
 namespace {
 
-template <class T>
-using Triple = std::array<T, 3>;
-
-template <class T>
-T dot(const Vec3& a, const Triple<T>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 template <class T>
 T length(const T& x, const T& y) {
   return sqrt(square(x) + square(y));

@@ -18,8 +18,6 @@
 namespace tufa::implicit {
 namespace {
 
-using Line = Expression::Line;
-
 constexpr std::size_t kMostSteps = 10000;
 constexpr std::size_t kDeepest = 200;  ///< parentheses in each other: the parser calls itself
 
@@ -30,6 +28,8 @@ constexpr std::size_t kDeepest = 200;  ///< parentheses in each other: the parse
 ///     power   = atom ('^' sign)?             -2^2 is -4, 2^3^2 is 2^9
 ///     atom    = number | name | name '(' sum (',' sum)? ')' | '(' sum ')'
 class Parser {
+  using Line = Expression::Line;
+
  public:
   explicit Parser(std::string_view text) : text_(text) {}
 
@@ -257,7 +257,7 @@ Expression::Expression(std::string_view text) : lines_(Parser(text).parse()) {}
 bool Expression::mayLackValues(const Interval& x, const Interval& y, const Interval& z) const {
   return withRoom<Interval>([&](Interval* values) {
     run(values, x, y, z);
-    return std::any_of(lines_.begin(), lines_.end(), [&](const Line& line) {
+    return std::any_of(lines_.begin(), lines_.end(), [&](const Expression::Line& line) {
       return mayMakeNaN(line.step, values[line.first], values[line.second]);
     });
   });

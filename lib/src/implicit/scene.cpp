@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostNodes = 1000000;
-constexpr std::size_t kDeepest = 500;  ///< objects in each other: functions call themselves
+constexpr std::size_t kDeepestScene = 500;  ///< objects in each other: functions call themselves
 
 /// Rows of the rotation about a unit axis (Rodrigues).
 Affine rotation(const Vec3& axis, double degrees) {
@@ -170,8 +170,8 @@ class SceneReader {
   }
 
   ReadField readObject(const SceneValue& value, std::size_t depth) {
-    if (depth > kDeepest) {
-      value.fail("lies in more than " + std::to_string(kDeepest) + " other objects");
+    if (depth > kDeepestScene) {
+      value.fail("lies in more than " + std::to_string(kDeepestScene) + " other objects");
     }
     SceneObject object(value);
     ReadField read = readType(object, depth);

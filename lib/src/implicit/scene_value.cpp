@@ -7,7 +7,7 @@
 namespace tufa::implicit {
 namespace {
 
-constexpr double kMost = 1e12;
+constexpr double kMostNumber = 1e12;
 
 }  // namespace
 
@@ -29,10 +29,10 @@ void SceneValue::failWith(const std::string& due) const {
 
 double SceneValue::number() const {
   const std::string due =
-      "a number from " + base::numberText(-kMost) + " to " + base::numberText(kMost);
+      "a number from " + base::numberText(-kMostNumber) + " to " + base::numberText(kMostNumber);
   if (!json_->is_number()) failWith(due);
   const auto number = json_->get<double>();
-  if (!(std::abs(number) <= kMost)) failWith(due);
+  if (!(std::abs(number) <= kMostNumber)) failWith(due);
   return number;
 }
 

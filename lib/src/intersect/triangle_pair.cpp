@@ -12,7 +12,7 @@
 namespace tufa::intersect {
 namespace {
 
-using Corners = std::array<Position, 3>;
+using TrianglePlaces = std::array<Position, 3>;
 
 // Above the rounding of a scalar product of differences, at most 4 half ulps or 4.5e-16, relative
 // to its terms.
@@ -42,7 +42,7 @@ int alignShared(std::array<VertexIndex, 3>& a, std::array<VertexIndex, 3>& b) {
 
 // A quick answer for triangles at a common edge: certainly not folded over, as the third corners
 // lie on opposite sides of the edge.
-bool isUnfolded(const Corners& a, const Corners& b) {
+bool isUnfolded(const TrianglePlaces& a, const TrianglePlaces& b) {
   const Vec3 edge = between(a[0], a[1]), own = between(a[0], a[2]), other = between(a[0], b[2]);
   const Vec3 across = own * edge.squaredLength() - edge * own.dot(edge);
   if (across.length() < kClearly * edge.squaredLength() * own.length()) return false;
@@ -50,7 +50,7 @@ bool isUnfolded(const Corners& a, const Corners& b) {
 }
 
 // An axis along which the triangle is seen with an area; -1 if its corners lie on a line. Exact.
-int facingAxis(const Corners& t) {
+int facingAxis(const TrianglePlaces& t) {
   for (int axis = 0; axis < 3; ++axis) {
     if (orientationAcross(axis, t[0], t[1], t[2]) != 0) return axis;
   }
@@ -59,7 +59,7 @@ int facingAxis(const Corners& t) {
 
 // A segment and a triangle in one plane. Two convex figures are disjoint exactly if a line along an
 // edge of one separates them, so the edges of the triangle and the segment itself are tried.
-bool intersectsInPlane(const Position& p, const Position& q, const Corners& t) {
+bool intersectsInPlane(const Position& p, const Position& q, const TrianglePlaces& t) {
   const int axis = facingAxis(t);
   if (axis < 0) return false;
   const int turn = orientationAcross(axis, t[0], t[1], t[2]);
@@ -80,7 +80,7 @@ bool intersectsInPlane(const Position& p, const Position& q, const Corners& t) {
 // through them crosses the plane in one point of the segment. That point is in the triangle unless
 // the line has one edge of it on its left and another on its right. An end in the plane and a line
 // through an edge or a vertex give zeros, which count as touching.
-bool segmentIntersects(const Position& p, const Position& q, const Corners& t) {
+bool segmentIntersects(const Position& p, const Position& q, const TrianglePlaces& t) {
   const int sideP = orientation(t[0], t[1], t[2], p), sideQ = orientation(t[0], t[1], t[2], q);
   if (sideP == sideQ) return sideP == 0 && intersectsInPlane(p, q, t);
   bool left = false, right = false;
@@ -94,7 +94,7 @@ bool segmentIntersects(const Position& p, const Position& q, const Corners& t) {
 
 // Whether all corners of b but the first `skip` are strictly on one side of the plane of a: then
 // they have at most those `skip` corners in common.
-bool isBeside(const Corners& a, const Corners& b, int skip) {
+bool isBeside(const TrianglePlaces& a, const TrianglePlaces& b, int skip) {
   const int side = orientation(a[0], a[1], a[2], b[skip]);
   if (side == 0) return false;
   for (int i = skip + 1; i < 3; ++i) {
@@ -105,7 +105,7 @@ bool isBeside(const Corners& a, const Corners& b, int skip) {
 
 // Two triangles intersect exactly if an edge of one touches the other. Both plane tests come first:
 // they settle most pairs with three determinants each.
-bool intersectAnywhere(const Corners& a, const Corners& b) {
+bool intersectAnywhere(const TrianglePlaces& a, const TrianglePlaces& b) {
   if (isBeside(a, b, 0) || isBeside(b, a, 0)) return false;
   for (int i = 0; i < 3; ++i) {
     if (segmentIntersects(a[i], a[(i + 1) % 3], b) || segmentIntersects(b[i], b[(i + 1) % 3], a))
@@ -116,14 +116,14 @@ bool intersectAnywhere(const Corners& a, const Corners& b) {
 
 // Triangles at a common vertex: where they intersect beyond it, the intersection ends at the far
 // edge of one of them.
-bool intersectBeyondVertex(const Corners& a, const Corners& b) {
+bool intersectBeyondVertex(const TrianglePlaces& a, const TrianglePlaces& b) {
   if (isBeside(a, b, 1) || isBeside(b, a, 1)) return false;
   return segmentIntersects(b[1], b[2], a) || segmentIntersects(a[1], a[2], b);
 }
 
 // Triangles at a common edge intersect beyond it only in one plane and on the same side of the
 // edge.
-bool isFoldedOver(const Corners& a, const Corners& b) {
+bool isFoldedOver(const TrianglePlaces& a, const TrianglePlaces& b) {
   if (isUnfolded(a, b)) return false;
   if (orientation(a[0], a[1], a[2], b[2]) != 0) return false;
   const int axis = facingAxis(a);
@@ -194,8 +194,8 @@ bool intersectElsewhere(std::span<const Position> positions, const Triangle& a, 
   auto va = a.vertices;
   auto vb = b.vertices;
   const int shared = alignShared(va, vb);
-  const Corners pa{positions[va[0]], positions[va[1]], positions[va[2]]};
-  const Corners pb{positions[vb[0]], positions[vb[1]], positions[vb[2]]};
+  const TrianglePlaces pa{positions[va[0]], positions[va[1]], positions[va[2]]};
+  const TrianglePlaces pb{positions[vb[0]], positions[vb[1]], positions[vb[2]]};
   const std::size_t skip = shared == 1 ? 1 : 0;
   if (shared <= 1 && areSeparatedAt(pa[0], std::span(pa).subspan(skip), std::span(pb).subspan(skip),
                                     shared == 1)) {

@@ -18,8 +18,6 @@ using Kind = uniform::VertexSheets::Kind;
 
 namespace {
 
-constexpr int kTop = ClusterForest::kBlockLevel;
-
 // The child of a cell at position `child` of its eight, in cells of the level below.
 Coord childOf(const Coord& cell, int child) {
   return (cell << 1).offsetBy(child >> 2, (child >> 1) & 1, child & 1);
@@ -35,12 +33,12 @@ void BlockLevelsBuilder::append(std::size_t index, BlockLevels& out) {
   }
   forbidden1_ = 0;
   readVertices(index);
-  for (int level = 1; level <= kTop; ++level) {
+  for (int level = 1; level <= ClusterForest::kBlockLevel; ++level) {
     firstCluster_[level] = static_cast<std::uint32_t>(out.levels[level - 1].clusters.size());
     buildLevel(level, level > 1 ? &out.levels[level - 2] : nullptr, out.levels[level - 1], index);
   }
   for (const std::uint32_t parent : parents_) out.parents.push_back(parent);
-  const std::vector<Patch>& top = levels_[kTop].patches;
+  const std::vector<Patch>& top = levels_[ClusterForest::kBlockLevel].patches;
   out.patches.insert(out.patches.end(), top.begin(), top.end());
 }
 
@@ -50,7 +48,7 @@ void BlockLevelsBuilder::append(std::size_t index, BlockLevels& out) {
 // and gets no patches, so a refused cell costs nothing on the levels above.
 void BlockLevelsBuilder::buildLevel(int level, ClusterLevel* below, ClusterLevel& out,
                                     std::size_t index) {
-  const int cells = 1 << (kTop - level);
+  const int cells = 1 << (ClusterForest::kBlockLevel - level);
   Patches& own = levels_[level];
   const Coord firstCell = base_.origin(index) >> level;
   const auto firstOfBlock = static_cast<std::uint32_t>(out.cells.size());
@@ -70,7 +68,7 @@ void BlockLevelsBuilder::buildLevel(int level, ClusterLevel* below, ClusterLevel
     out.safe.push_back(safe ? 1 : 0);
   }
   if (below != nullptr) {
-    const int bits = kTop - level;
+    const int bits = ClusterForest::kBlockLevel - level;
     const std::uint64_t occupied = levels_[level - 1].occupied;
     base::forEachBit(occupied, [&](int slot) {
       const int mask = (2 << bits) - 1, shift = bits + 1;
@@ -81,7 +79,7 @@ void BlockLevelsBuilder::buildLevel(int level, ClusterLevel* below, ClusterLevel
                                    static_cast<std::uint32_t>(base::countBits(before)));
     });
   }
-  if (level == kTop) return;
+  if (level == ClusterForest::kBlockLevel) return;
   out.occupied.push_back(own.occupied);
   out.firstInBlock.push_back(firstOfBlock);
 }

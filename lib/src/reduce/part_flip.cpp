@@ -12,7 +12,7 @@ constexpr float kFlipSine2 = 0.18f;  // squared sine of 25 degrees: larger angle
 constexpr float kBetter = 1.2f;      // by this factor the squared sine must grow
 constexpr float kFlipTurnCosine = 0.9f;
 constexpr float kFlipFoldCosine = -0.5f;
-constexpr float kLeastLength = 1e-6f;
+constexpr float kLeastFlipLength = 1e-6f;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ Outcome Part::tryFlip(Index c) {
   if (!(after > kBetter * before + 1e-6f)) return Outcome::Worthless;
   const Vec3f n0 = cross(u - y, x - y), n1 = cross(w - x, y - x);
   const float l0 = length(n0), l1 = length(n1);
-  if (!(l0 > kLeastLength && l1 > kLeastLength)) return Outcome::Flat;
+  if (!(l0 > kLeastFlipLength && l1 > kLeastFlipLength)) return Outcome::Flat;
   const Vec3f n[2] = {n0 * (1 / l0), n1 * (1 / l1)};
   const Vec3f o0 = cross(u - y, w - y), o1 = cross(w - x, u - x);
   // What turns that far at the edge is a shape of the solid, which would be lost.

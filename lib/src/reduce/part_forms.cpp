@@ -8,9 +8,9 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr float kGap = 1e-3f;           // voxels between triangles without a common vertex
-constexpr float kLeastSine = 1e-3f;     // of the angle between those that share one, about it
-constexpr float kFoldCosine = 0.9999f;  // of that at a common edge: folded onto each other
+constexpr float kFormGap = 1e-3f;         // voxels between triangles without a common vertex
+constexpr float kLeastSine = 1e-3f;       // of the angle between those that share one, about it
+constexpr float kFoldedCosine = 0.9999f;  // of that at a common edge: folded onto each other
 
 // Whether a plane through their common vertex, the first of both, certainly parts two triangles,
 // but for one edge of each or all of one that may lie in it. All planes that could be the only one
@@ -53,13 +53,13 @@ bool isFolded(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 3>& b) {
     const Vec3f d = p - a[0];
     return unit(d - edge * dot(d, edge));
   };
-  return !(dot(across(a[2]), across(b[2])) < kFoldCosine);
+  return !(dot(across(a[2]), across(b[2])) < kFoldedCosine);
 }
 
 // Whether two triangles may meet elsewhere than in what they share.
 bool mayMeet(Form a, Form b) {
   Box3f box = boxOf(a.corners.data());
-  box.growBy(kGap);
+  box.growBy(kFormGap);
   if (!box.meets(boxOf(b.corners.data()))) return false;
   std::size_t shared = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -71,7 +71,7 @@ bool mayMeet(Form a, Form b) {
       break;
     }
   }
-  if (shared == 0) return !planeParts(a.corners.data(), b.corners.data(), kGap);
+  if (shared == 0) return !planeParts(a.corners.data(), b.corners.data(), kFormGap);
   if (shared == 1) return !isSeparatedAtVertex(a.corners, b.corners);
   return shared == 3 || isFolded(a.corners, b.corners);
 }

@@ -18,7 +18,6 @@ namespace {
 constexpr float kShort = 0.25f;                          // voxels: an edge of a knot
 constexpr std::array kRadii = {0.2f, 0.4f, 0.8f, 1.6f};  // around a vertex of it, voxels
 constexpr std::size_t kMostMembers = 32;
-constexpr float kWorstSine2 = 3e-4f;  // squared sine of 1 degree
 
 }  // namespace
 

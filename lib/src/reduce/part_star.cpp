@@ -8,7 +8,6 @@
 namespace tufa::reduce {
 namespace {
 
-constexpr float kWorstSine2 = 3e-4f;   // squared sine of 1 degree: no new sliver is as sharp
 constexpr float kNoNormal = 0.001f;    // of 1.8 degrees: the normal of such a sliver says little
 constexpr float kFoldFace2 = 0.01f;    // of faces of 0.05 square voxels, whose folds show
 constexpr float kLeastLength = 1e-4f;  // of a cross product, in squared voxels: no area at all

@@ -19,6 +19,8 @@ inline constexpr float kLeastCosine = 0.2f;
 inline constexpr float kFoldCosine = -0.8f;
 /// And by less than this, 170 degrees, where the star was as sharp before, as on a thin wedge.
 inline constexpr float kSharpestCosine = -0.985f;
+/// The squared sine of 1 degree: no new sliver is as sharp.
+inline constexpr float kWorstSine2 = 3e-4f;
 /// Square of a cross product of two edges: faces of less than 0.02 square voxels make no fold.
 inline constexpr float kTinyFace2 = 0.0016f;
 /// Where an operation takes more slivers than it makes, its sharpest angle may be smaller by this

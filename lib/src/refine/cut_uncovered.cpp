@@ -19,8 +19,6 @@ namespace {
 using base::Vec3f;
 using reduce::Index;
 
-constexpr std::uint32_t kNone = octree::kNone;
-
 class Finder {
  public:
   Finder(const CutOwners& owners, const octree::Cut& cut, const octree::CutMesh& made)
@@ -44,7 +42,7 @@ class Finder {
     for (VertexIndex component = 0; component < seedOf.size(); ++component) {
       const auto first = next;
       while (next != faces.end() && next->first == component) ++next;
-      if (seedOf[component] == kNone) continue;
+      if (seedOf[component] == octree::kNone) continue;
       const std::optional<int> degree = degreeAt(seedOf[component], {first, next});
       if (degree == 1) continue;
       found.isAny = true;
@@ -67,10 +65,10 @@ class Finder {
   // Of each closed component a vertex of a larger cell, none where all is as in the uniform mesh.
   [[nodiscard]] std::vector<VertexIndex> findSeeds(
       const std::vector<VertexIndex>& componentOf) const {
-    std::vector<VertexIndex> seedOf(componentOf.size(), kNone);
+    std::vector<VertexIndex> seedOf(componentOf.size(), octree::kNone);
     base::forPolygons(made_.mesh, [&](base::PolygonIndex, base::Corners v) {
       VertexIndex& seed = seedOf[componentOf[v[0]]];
-      if (seed != kNone) return;
+      if (seed != octree::kNone) return;
       const auto large = std::find_if(v.begin(), v.end(),
                                       [&](VertexIndex k) { return cut_.clusters[k].level > 0; });
       if (large != v.end()) seed = *large;
@@ -78,7 +76,7 @@ class Finder {
     if (owners_.base.topology.openEdges == 0) return seedOf;
     const std::vector<std::uint64_t> oddEdges = oddEdgesOf(componentOf);
     for (std::size_t i = 0; i < seedOf.size(); ++i) {
-      if (oddEdges[i] != 0) seedOf[i] = kNone;
+      if (oddEdges[i] != 0) seedOf[i] = octree::kNone;
     }
     return seedOf;
   }
@@ -105,7 +103,7 @@ class Finder {
     forEach(owners_.job, isNear_.size(), [&](std::size_t face) {
       const Triangle r = owners_.faceOf(face);
       const VertexIndex seed = seedOf[componentOf[cut_.vertexOf[r.vertices[0]]]];
-      if (seed == kNone) return;
+      if (seed == octree::kNone) return;
       const auto& [a, b, c] = r.vertices;
       const std::array<Vec3f, 3> p{owners_.points[a], owners_.points[b], owners_.points[c]};
       const Vec3f at = owners_.toVoxels(made_.mesh.positions[seed]);
@@ -116,7 +114,7 @@ class Finder {
       if (reduce::squaredDistanceToTriangle(at, p[0], p[1], p[2]) > limit * limit) return;
       if (overlay_.isInMesh(static_cast<std::uint32_t>(face), r)) return;
       if (std::any_of(r.vertices.begin(), r.vertices.end(),
-                      [&](VertexIndex v) { return owners_.owner[v] == kNone; }))
+                      [&](VertexIndex v) { return owners_.owner[v] == octree::kNone; }))
         return;
       isNear_[face] = 1;
       for (const VertexIndex v : r.vertices) mark(isCorner_, v);

@@ -19,7 +19,7 @@ constexpr float kSameSide = 0.95F;
 constexpr float kSameSheet = 0.25F;
 // A plane whose foot is farther than this from the cell, in voxels, tells nothing of it.
 constexpr float kReach = 1.25F;
-constexpr float kHalfCell = 0.5F;
+constexpr float kCellFace = 0.5F;
 // How far a vertex may leave its cell, in voxels, where its crossings lie on sheets that meet
 // outside.
 constexpr float kBeyond = 1.0F;
@@ -95,7 +95,7 @@ bool moveOntoAll(const std::array<TangentPlane, 3>& planes, Vector& point) {
 }
 
 float outside(const Vector& p) {
-  return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) - kHalfCell;
+  return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) - kCellFace;
 }
 
 // Moves a point along a line into the cube of that half size around the cell's middle; false if the
@@ -411,7 +411,7 @@ bool CreaseCell::placeOnCrease(const Vector& massPoint, bool beyond,
       const Vector direction =
           cross(tangentAt(sheets_[i], point).normal, tangentAt(sheets_[j], point).normal);
       const Vector before = point;
-      if (!slideInto(kHalfCell + (beyond ? mostBeyond(i, j) : 0), direction, point)) continue;
+      if (!slideInto(kCellFace + (beyond ? mostBeyond(i, j) : 0), direction, point)) continue;
       if (point != before) followBends(point, {i, j});
       const Vector apart = plus(point, massPoint, -1);
       if (dot(apart, apart) >= nearest || !isBelieved(point)) continue;
@@ -431,7 +431,7 @@ bool CreaseCell::placeOnSide(const Vector& massPoint, CreasePlacement& placement
     // Into the cell and onto the plane alternately: converges to a point of both, if there is one.
     Vector point = massPoint;
     for (int step = 0; step < kProjections; ++step) {
-      for (float& p : point) p = std::clamp(p, -kHalfCell, kHalfCell);
+      for (float& p : point) p = std::clamp(p, -kCellFace, kCellFace);
       point = plus(point, sheets_[i].normal, sheets_[i].offset - dot(sheets_[i].normal, point));
     }
     if (outside(point) > kSideSlack) continue;

@@ -4,9 +4,13 @@
 #include <cstddef>
 #include <optional>
 
+#include "base/vec3.h"
+
 namespace tufa::uniform {
 
 using Vector = std::array<float, 3>;
+
+[[nodiscard]] inline Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 inline float dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

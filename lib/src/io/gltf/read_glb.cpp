@@ -15,8 +15,6 @@
 namespace tufa::io {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::size_t kTriangles = 4;
 constexpr std::size_t kTriangleStrip = 5;
 constexpr std::size_t kTriangleFan = 6;
@@ -28,7 +26,7 @@ class GlbReader {
 
   Mesh read() {
     refuseUnknownExtensions();
-    const Json& nodes = arrayAt(json_, "nodes", input_);
+    const nlohmann::json& nodes = arrayAt(json_, "nodes", input_);
     visited_.assign(nodes.size(), false);
     for (const std::size_t root : rootNodes(nodes)) addNode(nodes, root, glb::NodeTransform());
     return std::move(mesh_);
@@ -36,7 +34,7 @@ class GlbReader {
 
  private:
   void refuseUnknownExtensions() {
-    for (const Json& extension : arrayAt(json_, "extensionsRequired", input_)) {
+    for (const nlohmann::json& extension : arrayAt(json_, "extensionsRequired", input_)) {
       const std::string name = extension.get<std::string>();
       const bool onlyLooks = name.starts_with("KHR_materials") || name.starts_with("KHR_texture") ||
                              name.starts_with("EXT_texture") || name.starts_with("KHR_lights");
@@ -46,19 +44,19 @@ class GlbReader {
     }
   }
 
-  [[nodiscard]] std::vector<std::size_t> rootNodes(const Json& nodes) const {
+  [[nodiscard]] std::vector<std::size_t> rootNodes(const nlohmann::json& nodes) const {
     std::vector<std::size_t> roots;
-    const Json& scenes = arrayAt(json_, "scenes", input_);
+    const nlohmann::json& scenes = arrayAt(json_, "scenes", input_);
     if (!scenes.empty()) {
-      const Json& scene = scenes.at(countAt(json_, "scene", 0, input_));
-      for (const Json& node : arrayAt(scene, "nodes", input_)) {
+      const nlohmann::json& scene = scenes.at(countAt(json_, "scene", 0, input_));
+      for (const nlohmann::json& node : arrayAt(scene, "nodes", input_)) {
         roots.push_back(countIn(node, input_));
       }
       return roots;
     }
     std::vector<bool> isChild(nodes.size(), false);
-    for (const Json& node : nodes) {
-      for (const Json& child : arrayAt(node, "children", input_)) {
+    for (const nlohmann::json& node : nodes) {
+      for (const nlohmann::json& child : arrayAt(node, "children", input_)) {
         const std::size_t number = countIn(child, input_);
         if (number >= nodes.size()) {
           input_.fail("a node has the child " + std::to_string(number) + " of " +
@@ -73,7 +71,7 @@ class GlbReader {
     return roots;
   }
 
-  static glb::NodeTransform transformOf(const Json& node) {
+  static glb::NodeTransform transformOf(const nlohmann::json& node) {
     glb::NodeTransform transform;
     if (node.contains("matrix")) {
       // Column-major for column vectors is row-major for row vectors.
@@ -98,25 +96,26 @@ class GlbReader {
     return transform;
   }
 
-  void addNode(const Json& nodes, std::size_t root, const glb::NodeTransform& rootTransform) {
+  void addNode(const nlohmann::json& nodes, std::size_t root,
+               const glb::NodeTransform& rootTransform) {
     std::vector<std::pair<std::size_t, glb::NodeTransform>> pending{{root, rootTransform}};
     while (!pending.empty()) {
       const auto [index, parent] = pending.back();
       pending.pop_back();
-      const Json& node = nodes.at(index);
+      const nlohmann::json& node = nodes.at(index);
       if (visited_[index]) input_.fail("node " + std::to_string(index) + " has two parents");
       visited_[index] = true;
       const glb::NodeTransform transform = transformOf(node).under(parent);
       if (node.contains("mesh"))
         addMesh(json_.at("meshes").at(countIn(node["mesh"], input_)), transform);
-      for (const Json& child : arrayAt(node, "children", input_)) {
+      for (const nlohmann::json& child : arrayAt(node, "children", input_)) {
         pending.emplace_back(countIn(child, input_), transform);
       }
     }
   }
 
-  void addMesh(const Json& mesh, const glb::NodeTransform& transform) {
-    for (const Json& primitive : mesh.at("primitives")) {
+  void addMesh(const nlohmann::json& mesh, const glb::NodeTransform& transform) {
+    for (const nlohmann::json& primitive : mesh.at("primitives")) {
       const std::size_t mode = countAt(primitive, "mode", kTriangles, input_);
       if (mode < kTriangles || mode > kTriangleFan) continue;  // points and lines
       if (primitive.contains("extensions") &&
@@ -127,7 +126,8 @@ class GlbReader {
     }
   }
 
-  void addPrimitive(const Json& primitive, std::size_t mode, const glb::NodeTransform& transform) {
+  void addPrimitive(const nlohmann::json& primitive, std::size_t mode,
+                    const glb::NodeTransform& transform) {
     const glb::View positions = file_.viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
     const std::size_t first = mesh_.positions.size();
     const std::vector<VertexIndex> vertices =
@@ -171,7 +171,7 @@ class GlbReader {
     return places;
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> indicesOf(const Json& primitive,
+  [[nodiscard]] std::vector<std::uint32_t> indicesOf(const nlohmann::json& primitive,
                                                      std::size_t positionCount) {
     if (primitive.contains("indices")) return file_.indicesOf(primitive["indices"], positionCount);
     std::vector<std::uint32_t> indices(positionCount);
@@ -181,7 +181,7 @@ class GlbReader {
 
   const InputBytes& input_;
   glb::File file_;
-  const Json& json_;
+  const nlohmann::json& json_;
   std::vector<bool> visited_;
   Mesh mesh_;
 };
@@ -191,7 +191,7 @@ class GlbReader {
 Mesh readGlb(const InputBytes& input) {
   try {
     return GlbReader(input).read();
-  } catch (const Json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     input.fail(std::string("its JSON is damaged: ") + error.what());
   }
 }

@@ -17,7 +17,6 @@
 namespace tufa::io {
 namespace {
 
-using openvdb::Coord;
 using openvdb::GridBase;
 using Fail = std::function<void(const std::string&)>;
 
@@ -174,7 +173,7 @@ class Converter {
     for (std::uint32_t n = 0; n < root.mTableSize; ++n) {
       const auto& tile = *root.tile(n);
       const auto key = RootData::KeyToCoord(tile.key);
-      const Coord origin(key[0], key[1], key[2]);
+      const openvdb::Coord origin(key[0], key[1], key[2]);
       if (tile.child != 0) {
         addUpper(sum(place, tile.child), origin);
       } else {
@@ -256,22 +255,22 @@ class Converter {
     grid_->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
   }
 
-  void addTile(int level, const Coord& origin, const Value& value, bool active) {
+  void addTile(int level, const openvdb::Coord& origin, const Value& value, bool active) {
     if (!active && value == grid_->background()) return;
     grid_->tree().addTile(static_cast<openvdb::Index>(level), origin, value, active);
   }
 
   /// Calls child(place of the node, its corner) or adds a tile for each of the cells of a node.
   template <class Node, class Child>
-  void forCells(std::int64_t place, const Coord& origin, int level, const Child& child) {
+  void forCells(std::int64_t place, const openvdb::Coord& origin, int level, const Child& child) {
     const auto& data = *visit<Node>(place)->data();
     constexpr std::uint32_t kBits = Node::LOG2DIM;
     constexpr std::uint32_t kMask = (1U << kBits) - 1;
     constexpr int kCell = 1 << Node::ChildNodeType::TOTAL;
     for (std::uint32_t n = 0; n < Node::SIZE; ++n) {
-      const Coord corner = origin.offsetBy(kCell * static_cast<int>(n >> 2 * kBits),
-                                           kCell * static_cast<int>(n >> kBits & kMask),
-                                           kCell * static_cast<int>(n & kMask));
+      const openvdb::Coord corner = origin.offsetBy(kCell * static_cast<int>(n >> 2 * kBits),
+                                                    kCell * static_cast<int>(n >> kBits & kMask),
+                                                    kCell * static_cast<int>(n & kMask));
       if (data.mChildMask.isOn(n)) {
         child(sum(place, data.mTable[n].child), corner);
       } else {
@@ -280,17 +279,17 @@ class Converter {
     }
   }
 
-  void addUpper(std::int64_t place, const Coord& origin) {
+  void addUpper(std::int64_t place, const openvdb::Coord& origin) {
     budget_.take(sizeof(OpenUpper));
-    forCells<Upper>(place, origin, 2, [&](std::int64_t lower, const Coord& corner) {
+    forCells<Upper>(place, origin, 2, [&](std::int64_t lower, const openvdb::Coord& corner) {
       budget_.take(sizeof(OpenLower));
-      forCells<Lower>(lower, corner, 1, [&](std::int64_t leaf, const Coord& leafCorner) {
+      forCells<Lower>(lower, corner, 1, [&](std::int64_t leaf, const openvdb::Coord& leafCorner) {
         addLeaf(leaf, leafCorner);
       });
     });
   }
 
-  void addLeaf(std::int64_t place, const Coord& origin) {
+  void addLeaf(std::int64_t place, const openvdb::Coord& origin) {
     const auto& data = *visit<Leaf>(place)->data();
     // Of those with bits of a width of their own, the values lie behind.
     requireInside(place, data.memUsage());

@@ -11,8 +11,6 @@
 
 namespace tufa::io {
 
-using openvdb::Coord;
-
 namespace {
 
 constexpr std::size_t kLeafLog2 = 3;
@@ -89,15 +87,15 @@ TreeWalker::Mask<Log2> TreeWalker::takeMask() {
   return mask;
 }
 
-Coord TreeWalker::takeOrigin() {
+openvdb::Coord TreeWalker::takeOrigin() {
   const auto origin = bytes_.take<std::array<std::int32_t, 3>>();
-  return Coord(origin[0], origin[1], origin[2]);
+  return openvdb::Coord(origin[0], origin[1], origin[2]);
 }
 
 /// OpenVDB looks for what the root holds at multiples of its children's size, and only there.
-Coord TreeWalker::takeRootOrigin() {
-  const Coord origin = takeOrigin();
-  if ((origin & (kRootChildDim - 1)) != Coord(0)) {
+openvdb::Coord TreeWalker::takeRootOrigin() {
+  const openvdb::Coord origin = takeOrigin();
+  if ((origin & (kRootChildDim - 1)) != openvdb::Coord(0)) {
     throw DamagedGrid("it has a node of 4096^3 voxels at index " + std::to_string(origin.x()) +
                       ", " + std::to_string(origin.y()) + ", " + std::to_string(origin.z()));
   }
@@ -137,7 +135,7 @@ void TreeWalker::walkTopology() {
                       std::to_string(children) + " nodes where " + std::to_string(bytes_.left()) +
                       " bytes are left");
   }
-  std::vector<Coord> origins;
+  std::vector<openvdb::Coord> origins;
   for (std::uint32_t n = 0; n < tiles; ++n) {
     origins.push_back(takeRootOrigin());
     takeRootValue();
@@ -157,7 +155,7 @@ void TreeWalker::walkTopology() {
 }
 
 template <std::size_t Log2>
-void TreeWalker::walkChild(const Coord& origin, Branch& branch) {
+void TreeWalker::walkChild(const openvdb::Coord& origin, Branch& branch) {
   if constexpr (Log2 == kUpperLog2) {
     walkInner<kLowerLog2>(origin, branch);
   } else {
@@ -169,7 +167,7 @@ void TreeWalker::walkChild(const Coord& origin, Branch& branch) {
 
 /// InternalNode::readTopology().
 template <std::size_t Log2>
-void TreeWalker::walkInner(const Coord& origin, Branch& branch) {
+void TreeWalker::walkInner(const openvdb::Coord& origin, Branch& branch) {
   const auto children = takeMask<Log2>();
   const auto active = takeMask<Log2>();
   for (std::size_t word = 0; word < children.words.size(); ++word) {
@@ -271,7 +269,7 @@ void TreeWalker::walkBuffers() {
 
 /// LeafNode::readBuffers(), of all types. The values' mask is there a second time, and is the one
 /// that counts.
-void TreeWalker::walkLeaf(const Coord* origin) {
+void TreeWalker::walkLeaf(const openvdb::Coord* origin) {
   const auto active = takeMask<kLeafLog2>();
   if (origin != nullptr && takeOrigin() != *origin) {
     throw DamagedGrid("a leaf claims another place than its parent");
