@@ -27,7 +27,7 @@ struct AdviseArguments {
   bool quiet = false;
 };
 
-Json toJson(const SamplingReport& report) {
+Json samplingJson(const SamplingReport& report) {
   return {{"isovalue", report.isovalue},
           {"inside", report.insideIsBelow ? "below" : "above"},
           {"distance_field", report.distanceField},
@@ -73,7 +73,7 @@ std::string whyNotEnough(const SamplingReport& report) {
   return text;
 }
 
-std::string describe(const SamplingReport& report, const AdviseOptions& options) {
+std::string describeSampling(const SamplingReport& report, const AdviseOptions& options) {
   std::string text;
   const auto line = [&text](const char* label, const std::string& value) {
     text += "  " + std::string(label) + value + "\n";
@@ -129,10 +129,11 @@ int adviseFile(const std::string& file, const AdviseArguments& arguments, FileLi
   }
   if (arguments.json) {
     Json json = {{"file", file}, {"grid", nameOf(*grid)}};
-    json.update(toJson(report));
+    json.update(samplingJson(report));
     files.add(std::move(json));
   } else if (!arguments.quiet) {
-    print(shownInput(file) + ", " + shownGrid(nameOf(*grid)) + "\n" + describe(report, options));
+    print(shownInput(file) + ", " + shownGrid(nameOf(*grid)) + "\n" +
+          describeSampling(report, options));
   }
   return report.enough() ? kDone : kPromiseBroken;
 }

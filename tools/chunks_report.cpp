@@ -57,13 +57,13 @@ Json toJson(const ChunksRun& run, const ChunksArguments& arguments) {
   json["inside"] = run.contour.insideIsBelow ? "below" : "above";
   json["active_voxels"] = run.contour.activeVoxels;
   json["non_finite_values"] = run.contour.nonFiniteValues;
-  if (!run.filters.reports.empty()) json["filters"] = tools::toJson(run.filters);
+  if (!run.filters.reports.empty()) json["filters"] = toJson(run.filters);
   json["voxel_size"] = run.index.voxelSize;
   json["chunk_size"] = run.index.chunkSize;
   json["step"] = run.index.step;
   json["chunks"] = run.index.chunks.size();
   if (!run.attributes.empty()) {
-    json["attributes"] = tools::toJson(run.attributes, arguments.attributes);
+    json["attributes"] = toJson(run.attributes, arguments.attributes);
   }
   json["levels"] = Json::array();
   for (std::size_t level = 0; level < run.index.tolerances.size(); ++level) {

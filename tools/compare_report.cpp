@@ -12,24 +12,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const TruthReport& truth) {
-  Json json = {{"mesh_to_truth", tools::toJson(truth.meshToTruth)}};
+Json truthJson(const TruthReport& truth) {
+  Json json = {{"mesh_to_truth", toJson(truth.meshToTruth)}};
   if (truth.pointsToMesh.samples == 0) return json;
-  json["creases_to_mesh"] = tools::toJson(truth.pointsToMesh);
+  json["creases_to_mesh"] = toJson(truth.pointsToMesh);
   json["creases_to_mesh"]["share_99"] = truth.pointsShare99;
   return json;
 }
 
-Json toJson(const MethodResult& result) {
+Json methodJson(const MethodResult& result) {
   Json json = {
       {"method", result.name}, {"seconds", result.seconds}, {"cpu_seconds", result.cpuSeconds}};
   json["extra_memory_bytes"] = result.extraBytes ? Json(*result.extraBytes) : Json(nullptr);
-  json["check"] = tools::toJson(result.check);
+  json["check"] = toJson(result.check);
   // Components are of the shape more than of the method.
   json["check"].erase("component_list");
   json["check"].erase("component_list_complete");
-  json["distance"] = tools::toJson(result.distance);
-  if (result.truth) json["truth"] = toJson(*result.truth);
+  json["distance"] = toJson(result.distance);
+  if (result.truth) json["truth"] = truthJson(*result.truth);
   return json;
 }
 
@@ -70,7 +70,7 @@ Json toJson(const CompareRun& run, const CompareArguments& arguments) {
                           {"difference_voxels", all.difference}};
   }
   json["methods"] = Json::array();
-  for (const MethodResult& result : all.methods) json["methods"].push_back(toJson(result));
+  for (const MethodResult& result : all.methods) json["methods"].push_back(methodJson(result));
   json["repeats"] = arguments.options.repeats;
   json["threads"] = resolveThreads(arguments.options.extract.contour.threads);
   json["seconds"] = run.seconds;

@@ -140,7 +140,7 @@ class Reader {
   double voxelSize_;
 };
 
-std::string describe(const FilterWord& word, const FilterReport& report) {
+std::string describeFilter(const FilterWord& word, const FilterReport& report) {
   std::string text = word.option + " " + word.value + ": ";
   if (report.components > 0) {
     text += formatCount(report.componentsKept) + " of " + formatCount(report.components) +
@@ -231,7 +231,7 @@ Json toJson(const FilterRun& run) {
 std::string describe(const FilterRun& run) {
   std::string text;
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
-    text += describe(run.words[i], run.reports[i]);
+    text += describeFilter(run.words[i], run.reports[i]);
   }
   return text;
 }

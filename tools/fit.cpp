@@ -31,7 +31,7 @@ struct FitArguments {
   bool quiet = false;
 };
 
-std::string describe(const BlobFit& fit) {
+std::string describeFit(const BlobFit& fit) {
   const auto share = [&](double distance) {
     return formatNumber(distance) + " (" + formatNumber(100 * distance / fit.diagonal) +
            "% of the diagonal)";
@@ -40,7 +40,7 @@ std::string describe(const BlobFit& fit) {
          ", largest " + share(fit.largestDistance) + "\n";
 }
 
-nlohmann::ordered_json toJson(const BlobFit& fit) {
+nlohmann::ordered_json fitJson(const BlobFit& fit) {
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
   for (const FitStep& step : fit.steps) {
     steps.push_back(
@@ -79,11 +79,11 @@ int runFit(const FitArguments& arguments) {
   const double writeSeconds = timed([&] { writeFile(sceneOf(fit), arguments.output); });
   if (arguments.json) {
     nlohmann::ordered_json json = {{"file", arguments.input}, {"output", arguments.output}};
-    json.update(toJson(fit));
+    json.update(fitJson(fit));
     json["seconds"] = seconds;
     print(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
-    print(describe(fit) + describeWritten({arguments.output}, writeSeconds));
+    print(describeFit(fit) + describeWritten({arguments.output}, writeSeconds));
   }
   return kDone;
 }

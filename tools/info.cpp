@@ -23,9 +23,9 @@ struct InfoArguments {
   bool json = false;
 };
 
-Json toJson(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json numberJson(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-Json toJson(const GridInfo& info) {
+Json gridJson(const GridInfo& info) {
   Json json;
   json["name"] = info.name;
   json["value_type"] = info.valueType;
@@ -38,8 +38,8 @@ Json toJson(const GridInfo& info) {
   json["memory_bytes"] = info.memoryBytes;
   json["bounds"] = {{"min", info.boundsMin}, {"max", info.boundsMax}};
   json["background"] = info.background;
-  json["min_value"] = toJson(info.minValue);
-  json["max_value"] = toJson(info.maxValue);
+  json["min_value"] = numberJson(info.minValue);
+  json["max_value"] = numberJson(info.maxValue);
   json["non_finite_values"] = info.nonFiniteValues;
   json["meshable"] = info.meshable;
   json["why_not"] = info.meshable ? Json(nullptr) : Json(info.whyNot);
@@ -55,7 +55,7 @@ std::string shownValue(const std::string& value) {
   return base::printable(value.substr(0, kMost)) + "... (" + formatCount(value.size()) + " bytes)";
 }
 
-std::string describe(const GridInfo& info) {
+std::string describeGrid(const GridInfo& info) {
   const auto triple = [](const auto& v, const auto& format) {
     return format(v[0]) + " " + format(v[1]) + " " + format(v[2]);
   };
@@ -89,18 +89,18 @@ std::string describe(const GridInfo& info) {
   return text;
 }
 
-Json toJson(const std::string& file, const std::vector<GridInfo>& grids) {
+Json fileJson(const std::string& file, const std::vector<GridInfo>& grids) {
   Json json;
   json["file"] = file;
   json["grids"] = Json::array();
-  for (const GridInfo& grid : grids) json["grids"].push_back(toJson(grid));
+  for (const GridInfo& grid : grids) json["grids"].push_back(gridJson(grid));
   return json;
 }
 
-std::string describe(const std::string& file, const std::vector<GridInfo>& grids) {
+std::string describeFile(const std::string& file, const std::vector<GridInfo>& grids) {
   std::string text = shownInput(file) + ": " + std::to_string(grids.size()) +
                      (grids.size() == 1 ? " grid\n" : " grids\n");
-  for (const GridInfo& grid : grids) text += describe(grid);
+  for (const GridInfo& grid : grids) text += describeGrid(grid);
   return text;
 }
 
@@ -109,9 +109,9 @@ int runInfo(const InfoArguments& arguments) {
   files.forEach([&](const std::string& file) {
     const std::vector<GridInfo> grids = describeVolumes(file);
     if (arguments.json) {
-      files.add(toJson(file, grids));
+      files.add(fileJson(file, grids));
     } else {
-      print(describe(file, grids));
+      print(describeFile(file, grids));
     }
     return kDone;
   });

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const Certificate& certificate) {
+Json certificateJson(const Certificate& certificate) {
   return {{"max_error_voxels", certificate.maxErrorVoxels},
           {"mean_error_voxels", certificate.meanErrorVoxels},
           {"max_error_world", certificate.maxErrorWorld},
@@ -25,7 +25,7 @@ Json toJson(const Certificate& certificate) {
           {"rounds", certificate.rounds}};
 }
 
-Json toJson(const Refinement& refinement) {
+Json refinementJson(const Refinement& refinement) {
   return {{"rounds", refinement.rounds},
           {"added_vertices", refinement.addedVertices},
           {"largest_voxels", refinement.largestVoxels},
@@ -61,10 +61,10 @@ void addGrid(Json& json, const GridRun& run, const AttributeWords& words) {
                           {"touching_vertices", run.interfaces->touchingVertices}};
   }
   if (!run.mesh.attributes.empty()) {
-    json["attributes"] = tools::toJson(run.mesh.attributes, words);
+    json["attributes"] = toJson(run.mesh.attributes, words);
   }
-  if (run.contour.certificate) json["certificate"] = toJson(*run.contour.certificate);
-  if (run.contour.refinement) json["refinement"] = toJson(*run.contour.refinement);
+  if (run.contour.certificate) json["certificate"] = certificateJson(*run.contour.certificate);
+  if (run.contour.refinement) json["refinement"] = refinementJson(*run.contour.refinement);
 }
 
 Json secondsOf(const GridRun& run) {

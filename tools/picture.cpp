@@ -175,7 +175,7 @@ void write(const Picture& picture, const std::string& output) {
   }
 }
 
-Json toJson(const PictureArguments& arguments, const PictureRun& run) {
+Json pictureJson(const PictureArguments& arguments, const PictureRun& run) {
   Json json;
   json["file"] = arguments.input;
   if (run.picture) {
@@ -198,7 +198,7 @@ Json toJson(const PictureArguments& arguments, const PictureRun& run) {
   return json;
 }
 
-std::string describe(const PictureArguments& arguments, const PictureRun& run) {
+std::string describePicture(const PictureArguments& arguments, const PictureRun& run) {
   std::string text;
   if (run.comparison) {
     const SurfaceComparison& found = *run.comparison;
@@ -271,9 +271,9 @@ int runPicture(PictureArguments& arguments) {
     }
   }
   if (arguments.json) {
-    print(toJson(arguments, run).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    print(pictureJson(arguments, run).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
-    print(describe(arguments, run));
+    print(describePicture(arguments, run));
   }
   return kDone;
 }

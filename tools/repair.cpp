@@ -30,18 +30,22 @@ struct RepairArguments {
   bool quiet = false;
 };
 
-Json toJson(const RepairReport& report) {
-  return {{"merged_vertices", report.mergedVertices},   {"unused_vertices", report.unusedVertices},
-          {"degenerate_faces", report.degenerateFaces}, {"duplicate_faces", report.duplicateFaces},
-          {"split_vertices", report.splitVertices},     {"filled_holes", report.filledHoles},
-          {"dropped_parts", report.droppedParts},       {"kept_input", report.keptInput},
-          {"before", tools::toJson(report.before)},     {"after", tools::toJson(report.after)}};
+Json repairJson(const RepairReport& report) {
+  return {{"merged_vertices", report.mergedVertices},
+          {"unused_vertices", report.unusedVertices},
+          {"degenerate_faces", report.degenerateFaces},
+          {"duplicate_faces", report.duplicateFaces},
+          {"split_vertices", report.splitVertices},
+          {"filled_holes", report.filledHoles},
+          {"dropped_parts", report.droppedParts},
+          {"kept_input", report.keptInput},
+          {"before", toJson(report.before)},
+          {"after", toJson(report.after)}};
 }
 
-std::string describe(const RepairReport& report) {
+std::string describeRepair(const RepairReport& report) {
   if (report.keptInput) {
-    return "no repair makes this mesh better: it was written as it is\n" +
-           tools::describe(report.after);
+    return "no repair makes this mesh better: it was written as it is\n" + describe(report.after);
   }
   return "merged " + formatCount(report.mergedVertices) + " vertices, dropped " +
          formatCount(report.unusedVertices) + " unused ones, " +
@@ -49,7 +53,7 @@ std::string describe(const RepairReport& report) {
          formatCount(report.duplicateFaces) + " duplicate faces and " +
          formatCount(report.droppedParts) + " parts, split " + formatCount(report.splitVertices) +
          " vertices, filled " + formatCount(report.filledHoles) + " holes\n" +
-         tools::describe(report.after);
+         describe(report.after);
 }
 
 int runRepair(const RepairArguments& arguments) {
@@ -70,10 +74,10 @@ int runRepair(const RepairArguments& arguments) {
   const double seconds = timed([&] { write(repaired, arguments.output); });
   if (arguments.json) {
     Json json = {{"file", arguments.input}, {"output", arguments.output}};
-    json.update(toJson(report));
+    json.update(repairJson(report));
     print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
-    print(describe(report) + describeWritten({arguments.output}, seconds));
+    print(describeRepair(report) + describeWritten({arguments.output}, seconds));
   }
   return report.after.watertight() ? kDone : kPromiseBroken;
 }

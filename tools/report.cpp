@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostListedPieces = 100;
 
-Json toJson(const CheckComponent& piece) {
+Json componentJson(const CheckComponent& piece) {
   return {{"vertices", piece.vertices},
           {"triangles", piece.triangles},
           {"euler_characteristic", piece.eulerCharacteristic},
@@ -88,7 +88,7 @@ Json toJson(const CheckReport& report) {
   json["component_list"] = Json::array();
   const std::size_t listed = std::min(report.components.size(), kMostListedPieces);
   for (std::size_t i = 0; i < listed; ++i) {
-    json["component_list"].push_back(toJson(report.components[i]));
+    json["component_list"].push_back(componentJson(report.components[i]));
   }
   json["component_list_complete"] = listed == report.components.size();
   json["seconds"] = report.seconds;

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string toJson(const WrittenGrid& written) {
+std::string gridText(const WrittenGrid& written) {
   Json json;
   if (!written.input.empty()) json["file"] = written.input;
   json["output"] = written.output;
@@ -25,7 +25,7 @@ std::string toJson(const WrittenGrid& written) {
     json["hidden_voxels"] = written.scene->hiddenVoxels;
     json["undecided_voxels"] = written.scene->undecidedVoxels;
   }
-  if (written.filters) json["filters"] = tools::toJson(*written.filters);
+  if (written.filters) json["filters"] = toJson(*written.filters);
   json["active_voxels"] = written.activeVoxels;
   json["voxel_size"] = written.voxelSize;
   json["seconds"] = {{written.filters ? "filter" : "make", written.makeSeconds},
@@ -34,8 +34,8 @@ std::string toJson(const WrittenGrid& written) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string describe(const WrittenGrid& written) {
-  std::string text = written.filters ? tools::describe(*written.filters) : "";
+std::string describeGrid(const WrittenGrid& written) {
+  std::string text = written.filters ? describe(*written.filters) : "";
   text += shownGrid(written.grid) + ": " + formatCount(written.activeVoxels) +
           " active voxels of " + formatNumber(written.voxelSize);
   if (written.triangles) text += " from " + formatCount(*written.triangles) + " triangles";
@@ -57,9 +57,9 @@ void writeAndTell(const openvdb::GridBase::Ptr& grid, WrittenGrid written, Telli
     }
   });
   if (telling.json) {
-    print(toJson(written));
+    print(gridText(written));
   } else if (!telling.quiet) {
-    print(describe(written));
+    print(describeGrid(written));
   }
 }
 
