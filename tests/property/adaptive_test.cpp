@@ -15,18 +15,13 @@
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
 #include "support/nearest_triangle.h"
+#include "support/shape.h"
 #include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
 
 using test::uniformMesh;
-
-openvdb::FloatGrid::Ptr shape(Shape kind, double voxelSize) {
-  ShapeOptions options;
-  options.voxelSize = voxelSize;
-  return makeShape(kind, options);
-}
 
 // The Euler characteristics of a mesh's components, sorted.
 std::vector<long long> eulerOfComponents(const Mesh& mesh) {
@@ -83,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(EveryRule, AdaptiveNoise,
 TEST(Adaptive, KeepsTheTopologyOfShapes) {
   for (const Shape kind : {Shape::Sphere, Shape::Torus, Shape::Box, Shape::Bracket, Shape::Gyroid,
                            Shape::Terrain, Shape::Fog}) {
-    const auto grid = shape(kind, 0.04);
+    const auto grid = test::shapeOf(kind, 0.04);
     const Mesh uniform = uniformMesh(*grid);
     for (const double tolerance : {0.0, 0.1, 2.0}) {
       ContourOptions options;
@@ -101,7 +96,7 @@ TEST(Adaptive, KeepsTheTopologyOfShapes) {
 
 TEST(Adaptive, CollapsingEdgesLeavesFewerTrianglesAtTheSameTolerance) {
   for (const Shape kind : {Shape::Sphere, Shape::Box, Shape::Bracket}) {
-    const auto grid = shape(kind, 0.02);
+    const auto grid = test::shapeOf(kind, 0.02);
     ContourOptions options;
     options.simplify = false;
     ContourReport report;
@@ -120,7 +115,7 @@ TEST(Adaptive, CollapsingEdgesLeavesFewerTrianglesAtTheSameTolerance) {
 TEST(Adaptive, FoldsNothing) {
   for (const Shape kind : {Shape::Terrain, Shape::Gyroid, Shape::Bracket}) {
     const double voxelSize = 0.03;
-    const auto grid = shape(kind, voxelSize);
+    const auto grid = test::shapeOf(kind, voxelSize);
     // The rim of the terrain is sharper than 30 degrees at one edge.
     const std::size_t most = test::foldedEdges(test::uniformMesh(*grid), voxelSize);
     EXPECT_LE(most, 1u);
@@ -138,7 +133,7 @@ TEST(Adaptive, FoldsNothing) {
 
 TEST(Adaptive, IsTheSameForAnyNumberOfThreads) {
   for (const Shape kind : {Shape::Bracket, Shape::Gyroid, Shape::Noise}) {
-    const auto grid = shape(kind, 0.05);
+    const auto grid = test::shapeOf(kind, 0.05);
     ContourOptions options;
     options.threads = 1;
     const Mesh one = contour(*grid, options);
@@ -148,7 +143,7 @@ TEST(Adaptive, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Adaptive, IsTheSameForAnyOrderOfLeaves) {
-  const auto grid = shape(Shape::Bracket, 0.05);
+  const auto grid = test::shapeOf(Shape::Bracket, 0.05);
   std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
   grid->tree().getNodes(leaves);
   std::shuffle(leaves.begin(), leaves.end(), std::mt19937(7));
@@ -172,7 +167,7 @@ TEST(Adaptive, IsTheSameForAnyOrderOfLeaves) {
 
 TEST(Adaptive, CertificateHoldsAgainstBruteForce) {
   for (const Shape kind : {Shape::Sphere, Shape::Box, Shape::Gyroid}) {
-    const auto grid = shape(kind, 0.15);
+    const auto grid = test::shapeOf(kind, 0.15);
     const double voxel = grid->voxelSize()[0];
     const Mesh uniform = uniformMesh(*grid);
     for (const double tolerance : {0.1, 0.5}) {
@@ -193,7 +188,7 @@ TEST(Adaptive, CertificateHoldsAgainstBruteForce) {
 }
 
 TEST(Adaptive, FlatFacesCollapseToCellsLargerThanALeaf) {
-  const auto grid = shape(Shape::Box, 0.01);
+  const auto grid = test::shapeOf(Shape::Box, 0.01);
   ContourOptions cut;
   cut.simplify = false;
   ContourReport report;
@@ -227,7 +222,7 @@ std::size_t differences(const Mesh& a, const Mesh& b, const openvdb::Vec3d& offs
 }
 
 TEST(Adaptive, FarFromTheOriginIsTheSameMeshShifted) {
-  const auto grid = shape(Shape::Bracket, 0.04);
+  const auto grid = test::shapeOf(Shape::Bracket, 0.04);
   const openvdb::Coord shift(1000000, -1000000, 1000000);
   auto far = openvdb::FloatGrid::create(grid->background());
   far->setTransform(grid->transform().copy());
@@ -260,7 +255,7 @@ TEST(Adaptive, FarFromTheOriginIsTheSameMeshShifted) {
 }
 
 TEST(Adaptive, OptionsBoundTheCells) {
-  const auto grid = shape(Shape::Sphere, 0.02);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.02);
   ContourOptions options;
   options.tolerance = 1;
   const std::size_t plain = contour(*grid, options).triangleCount();
@@ -292,7 +287,7 @@ TEST(Adaptive, CellsGrowWithTheSquareRootOfTheRadiusAtOneAngle) {
   options.tolerance = 0.1;
   std::size_t triangles[2] = {};
   for (const int i : {0, 1}) {
-    const auto grid = shape(Shape::Sphere, i == 0 ? 0.04 : 0.01);
+    const auto grid = test::shapeOf(Shape::Sphere, i == 0 ? 0.04 : 0.01);
     triangles[i] = contour(*grid, options).triangleCount();
   }
   // Four times the radius, twice the cell: four times the triangles, not sixteen.
@@ -301,7 +296,7 @@ TEST(Adaptive, CellsGrowWithTheSquareRootOfTheRadiusAtOneAngle) {
 }
 
 TEST(Adaptive, ToleranceGridScalesInSpace) {
-  const auto grid = shape(Shape::Sphere, 0.02);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.02);
   // Fine where x > 0.
   auto mask = openvdb::FloatGrid::create(1.0F);
   mask->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
@@ -319,7 +314,7 @@ TEST(Adaptive, ToleranceGridScalesInSpace) {
 }
 
 TEST(Adaptive, RefusesOptionsOutOfTheirRange) {
-  const auto grid = shape(Shape::Sphere, 0.1);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.1);
   const auto refused = [&](const std::function<void(ContourOptions&)>& spoil) {
     ContourOptions options;
     spoil(options);

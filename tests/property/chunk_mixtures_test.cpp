@@ -17,6 +17,7 @@
 #include "support/expect_error.h"
 #include "support/mesh_oracle.h"
 #include "support/print.h"
+#include "support/shape.h"
 #include "support/uniform_mesh.h"
 
 namespace tufa {
@@ -122,18 +123,12 @@ std::set<unsigned> expectMixturesToClose(const openvdb::GridBase& grid, ChunkOpt
   return masks;
 }
 
-openvdb::FloatGrid::Ptr shapeOf(Shape kind, double voxelSize) {
-  ShapeOptions options;
-  options.voxelSize = voxelSize;
-  return makeShape(kind, options);
-}
-
 // With creases through the chunks' faces, and thin ridges beside them.
 TEST(ChunkPairs, NoneAreLeft) {
   for (const Shape kind : {Shape::Terrain, Shape::Bracket}) {
     ChunkOptions options;
     options.chunkSize = 16;
-    const Made made = makeChunks(*shapeOf(kind, 0.04), options);
+    const Made made = makeChunks(*test::shapeOf(kind, 0.04), options);
     std::size_t left = 0;
     for (const ChunkEntry& entry : made.index.chunks) {
       for (const ChunkLevelEntry& level : entry.levels) left += level.intersectionsLeft;
@@ -155,7 +150,7 @@ TEST(ChunkPairs, NoneAreLeft) {
 TEST(ChunkPairs, NoneAreLeftBetweenStripsOfTwoFaces) {
   ChunkOptions options;
   options.chunkSize = 8;
-  const Made made = makeChunks(*shapeOf(Shape::Noise, 0.12), options);
+  const Made made = makeChunks(*test::shapeOf(Shape::Noise, 0.12), options);
   std::size_t left = 0;
   for (const ChunkEntry& entry : made.index.chunks) {
     for (const ChunkLevelEntry& level : entry.levels) left += level.intersectionsLeft;
@@ -178,7 +173,7 @@ std::size_t trianglesOf(const ChunkIndex& index, std::size_t level) {
 
 // Curves on faces follow the tolerance as all else does: what is left of them costs few triangles.
 TEST(ChunkFaces, CostFewTrianglesAtAnyLevel) {
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Terrain, 0.02);
+  const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Terrain, 0.02);
   ChunkOptions options;
   const Made made = makeChunks(*grid, options);
   LodOptions lods;
@@ -195,7 +190,7 @@ TEST(ChunkFaces, CostFewTrianglesAtAnyLevel) {
 
 // Vertices of curves take part in collapses with those beside them, at places of their own.
 TEST(ChunkFaces, CostFewTrianglesInSmallChunks) {
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Torus, 0.02);
+  const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Torus, 0.02);
   ChunkOptions options;
   options.chunkSize = 16;
   options.levels = 1;
@@ -208,7 +203,7 @@ TEST(ChunkErrors, KeepTheTolerances) {
   for (const Shape kind : {Shape::Terrain, Shape::Bracket, Shape::Gyroid}) {
     ChunkOptions options;
     options.chunkSize = 16;
-    const Made made = makeChunks(*shapeOf(kind, 0.04), options);
+    const Made made = makeChunks(*test::shapeOf(kind, 0.04), options);
     for (const ChunkEntry& entry : made.index.chunks) {
       for (std::size_t level = 0; level < entry.levels.size(); ++level) {
         const ChunkLevelEntry& own = entry.levels[level];
@@ -223,7 +218,7 @@ TEST(ChunkErrors, KeepTheTolerances) {
 }
 
 TEST(ChunkOptions, RefuseWhatCollapsesCannotKeep) {
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Sphere, 0.1);
+  const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Sphere, 0.1);
   ChunkOptions plain, cells;
   plain.contour.simplify = false;
   cells.contour.minCell = 2;
@@ -239,7 +234,7 @@ TEST_P(ChunkMixtures, AreClosedWithTheTopologyOfTheUniformMesh) {
   const auto& [kind, voxelSize, chunkSize] = GetParam();
   ChunkOptions options;
   options.chunkSize = chunkSize;
-  expectMixturesToClose(*shapeOf(kind, voxelSize), options, 20);
+  expectMixturesToClose(*test::shapeOf(kind, voxelSize), options, 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, ChunkMixtures,
@@ -256,7 +251,7 @@ TEST(ChunkMixturesOnALattice, AreClosed) {
   options.chunkSize = 32;
   options.compression = GlbCompression::Quantized;
   options.scale = 0.01;
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
+  const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Bracket, 0.04);
   expectMixturesToClose(*grid, options, 5);
   const Made made = makeChunks(*grid, options);
   ASSERT_GT(made.index.step, 0);
@@ -336,7 +331,7 @@ std::size_t countSeams(const std::vector<Mesh>& meshes, std::size_t& edges) {
 }
 
 TEST(ChunkNormals, AreSplitAtCreasesAndTheSameOnBothSidesOfAFace) {
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.04);
+  const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Bracket, 0.04);
   ChunkOptions options;
   options.chunkSize = 32;
   const Made made = makeChunks(*grid, options);
@@ -366,7 +361,7 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
   };
   double farTriangles = 0, nearTriangles = 0;
   for (const double voxelSize : {0.025, 0.0275, 0.03, 0.0325, 0.035, 0.04}) {
-    const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, voxelSize);
+    const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Bracket, voxelSize);
     ChunkOptions options;
     options.chunkSize = 32;
     const Made near = makeChunks(*grid, options);
@@ -395,7 +390,7 @@ TEST(ChunkMixturesFarAway, AreWhatTheyAreAtTheOrigin) {
 // Parts of the surface are reduced at the same time, and chunks come in the same order all the
 // same.
 TEST(ChunkThreads, GiveTheSameBytes) {
-  const openvdb::FloatGrid::Ptr grid = shapeOf(Shape::Bracket, 0.025);
+  const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Bracket, 0.025);
   ChunkOptions options;
   options.levels = 2;
   const auto make = [&](int threads, double& lastFraction) {
@@ -437,7 +432,7 @@ TEST(ChunkMasks, OccurAll) {
   options.chunkSize = 8;
   options.levels = 3;
   const std::set<unsigned> masks =
-      expectMixturesToClose(*shapeOf(Shape::Gyroid, 0.04), options, 12);
+      expectMixturesToClose(*test::shapeOf(Shape::Gyroid, 0.04), options, 12);
   EXPECT_EQ(masks.size(), 64u);
 }
 

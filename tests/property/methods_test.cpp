@@ -18,7 +18,6 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
@@ -151,7 +150,7 @@ TEST_P(Methods, TakeTheOptionsOfTheField) {
   options.normals = Normals::Faces;
   EXPECT_EQ(meshOf(*grid, options).normals.size(), larger.positions.size());
   auto holed = grid->deepCopy();
-  holed->tree().setValueOn(Coord(0, 0, 50), std::numeric_limits<float>::quiet_NaN());
+  holed->tree().setValueOn(openvdb::Coord(0, 0, 50), std::numeric_limits<float>::quiet_NaN());
   test::expectError(ErrorCode::NonFiniteValues, "NaN", [&] { (void)meshOf(*holed); });
   options.nonFinite = NonFinite::Outside;
   expectManifold(meshOf(*holed, options), "NaN");
@@ -159,7 +158,7 @@ TEST_P(Methods, TakeTheOptionsOfTheField) {
 
 TEST_P(Methods, EndWhereALevelSetEndsUnlessItIsCapped) {
   auto half = makeShape(Shape::Sphere);
-  half->clip(CoordBBox(Coord(-1000, -1000, -1000), Coord(1000, 1000, 3)));
+  half->clip(CoordBBox(openvdb::Coord(-1000, -1000, -1000), openvdb::Coord(1000, 1000, 3)));
   ContourReport report;
   const Mesh open = meshOf(*half, {}, &report);
   EXPECT_GT(report.openEdges, 0U);

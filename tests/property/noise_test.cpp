@@ -18,7 +18,6 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::FloatGrid;
 
 const char* nameOf(Ambiguity rule) {
@@ -88,14 +87,14 @@ TEST_P(Noise, GivesAClosedManifoldAndTheSameBytesForAnyThreads) {
 
 TEST(NoiseOrder, OfInsertionDoesNotChangeTheMesh) {
   const auto grid = test::noise<FloatGrid>({.size = 40, .seed = 9});
-  std::vector<Coord> origins;
+  std::vector<openvdb::Coord> origins;
   for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) origins.push_back(leaf->origin());
   const Mesh mesh = meshOf(*grid, Ambiguity::Separate, 0);
   for (unsigned seed = 1; seed <= 3; ++seed) {
     std::mt19937 random(seed);
     std::shuffle(origins.begin(), origins.end(), random);
     auto shuffled = FloatGrid::create(grid->background());
-    for (const Coord& origin : origins) {
+    for (const openvdb::Coord& origin : origins) {
       shuffled->tree().addLeaf(
           new FloatGrid::TreeType::LeafNodeType(*grid->tree().probeConstLeaf(origin)));
     }

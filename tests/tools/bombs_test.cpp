@@ -19,7 +19,6 @@ namespace tufa {
 namespace {
 
 using namespace openvdb::io;
-using openvdb::Coord;
 using test::kSanitized;
 using test::readBytes;
 using test::writeBytes;
@@ -85,8 +84,11 @@ openvdb::GridBase::Ptr makeSolid(int side) {
   using Value = typename GridT::ValueType;
   const auto grid = GridT::create(openvdb::zeroVal<Value>());
   grid->setName("bomb");
-  for (auto at = openvdb::CoordBBox(Coord(0), Coord(side - 1)).begin(); at; ++at) {
-    grid->tree().touchLeaf(Coord(8 * (*at)[0], 8 * (*at)[1], 8 * (*at)[2]))->fill(Value(1), true);
+  for (auto at = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(side - 1)).begin(); at;
+       ++at) {
+    grid->tree()
+        .touchLeaf(openvdb::Coord(8 * (*at)[0], 8 * (*at)[1], 8 * (*at)[2]))
+        ->fill(Value(1), true);
   }
   return grid;
 }
@@ -97,8 +99,10 @@ openvdb::GridBase::Ptr makeNoise(int side) {
   const auto grid = openvdb::FloatGrid::create(0);
   grid->setName("bomb");
   std::mt19937 random(1);
-  for (auto at = openvdb::CoordBBox(Coord(0), Coord(side - 1)).begin(); at; ++at) {
-    auto* const leaf = grid->tree().touchLeaf(Coord(8 * (*at)[0], 8 * (*at)[1], 8 * (*at)[2]));
+  for (auto at = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(side - 1)).begin(); at;
+       ++at) {
+    auto* const leaf =
+        grid->tree().touchLeaf(openvdb::Coord(8 * (*at)[0], 8 * (*at)[1], 8 * (*at)[2]));
     for (openvdb::Index n = 0; n < leaf->SIZE; ++n) {
       leaf->setValueOff(n, random() % 2 == 0 ? 1.0f : -1.0f);
     }
@@ -110,7 +114,8 @@ openvdb::GridBase::Ptr makeNoise(int side) {
 openvdb::GridBase::Ptr makeCheckerboard(int side) {
   const auto grid = openvdb::FloatGrid::create(0);
   grid->setName("bomb");
-  for (auto at = openvdb::CoordBBox(Coord(0), Coord(8 * side - 1)).begin(); at; ++at) {
+  for (auto at = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(8 * side - 1)).begin(); at;
+       ++at) {
     grid->tree().setValueOff(*at, (((*at)[0] + (*at)[1] + (*at)[2]) & 1) != 0 ? 1.0f : -1.0f);
   }
   return grid;

@@ -16,7 +16,6 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 using openvdb::Vec3d;
@@ -38,8 +37,8 @@ FloatGrid::Ptr turnedBox(const Vec3d& half, double voxelSize = 1) {
   const double c = std::cos(0.4), s = std::sin(0.4);
   const int reach = static_cast<int>(half.length()) + 5;
   return test::levelSet<FloatGrid>(
-      CoordBBox(Coord(-reach), Coord(reach)), 3,
-      [&](const Coord& at) {
+      CoordBBox(openvdb::Coord(-reach), openvdb::Coord(reach)), 3,
+      [&](const openvdb::Coord& at) {
         const Vec3d p = at.asVec3d() + Vec3d(0.3, 0.1, -0.2);
         const Vec3d q(c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]);
         return boxDistance({q[0], c * q[1] - s * q[2], s * q[1] + c * q[2]}, half);
@@ -106,8 +105,8 @@ TEST(Advise, FindsTheThicknessOfAGyroid) {
     // A shell around g = 0 of period 48, of that thickness to first order. It is cut by a ball,
     // which leaves thin wedges at its rim.
     const double wave = 2 * std::numbers::pi / 48;
-    const auto grid =
-        test::levelSet<FloatGrid>(CoordBBox(Coord(-34), Coord(34)), 3, [&](const Coord& at) {
+    const auto grid = test::levelSet<FloatGrid>(
+        CoordBBox(openvdb::Coord(-34), openvdb::Coord(34)), 3, [&](const openvdb::Coord& at) {
           const Vec3d p = at.asVec3d() * wave;
           const Vec3d s(std::sin(p[0]), std::sin(p[1]), std::sin(p[2]));
           const Vec3d c(std::cos(p[0]), std::cos(p[1]), std::cos(p[2]));
@@ -127,13 +126,14 @@ TEST(Advise, FindsTheThicknessOfAGyroid) {
 
 TEST(Advise, FindsSheetsThatSignsDoNotShow) {
   // Half a voxel thick, between two layers of samples.
-  const auto grid =
-      test::levelSet<FloatGrid>(CoordBBox(Coord(-12), Coord(12)), 3,
-                                [](const Coord& at) { return std::abs(at.z() - 0.5) - 0.25; });
+  const auto grid = test::levelSet<FloatGrid>(
+      CoordBBox(openvdb::Coord(-12), openvdb::Coord(12)), 3,
+      [](const openvdb::Coord& at) { return std::abs(at.z() - 0.5) - 0.25; });
   // A ball beside it, so that there is a surface at all.
   auto accessor = grid->getAccessor();
-  for (auto at = CoordBBox(Coord(-12, -12, 14), Coord(12, 12, 30)).begin(); at; ++at) {
-    const double d = (*at - Coord(0, 0, 22)).asVec3d().length() - 5;
+  for (auto at = CoordBBox(openvdb::Coord(-12, -12, 14), openvdb::Coord(12, 12, 30)).begin(); at;
+       ++at) {
+    const double d = (*at - openvdb::Coord(0, 0, 22)).asVec3d().length() - 5;
     if (std::abs(d) < 3) accessor.setValue(*at, static_cast<float>(d));
     if (d <= -3) accessor.setValueOff(*at, -3);
   }

@@ -6,8 +6,6 @@
 #include <random>
 #include <vector>
 
-#include "base/number_text.h"
-
 namespace tufa::base {
 namespace {
 
@@ -32,13 +30,6 @@ TEST(Bits, BelowABitAreAllLowerOnes) {
   EXPECT_EQ(bitsBelow(0), 0U);
   EXPECT_EQ(bitsBelow(3), 7U);
   EXPECT_EQ(bitsBelow(63), ~std::uint64_t{0} >> 1);
-}
-
-TEST(NumberText, IsTheShortestThatReadsBack) {
-  EXPECT_EQ(numberText(0.1), "0.1");
-  EXPECT_EQ(numberText(-3), "-3");
-  EXPECT_EQ(numberText(1e-300), "1e-300");
-  EXPECT_EQ(std::stod(numberText(1.0 / 3)), 1.0 / 3);
 }
 
 }  // namespace

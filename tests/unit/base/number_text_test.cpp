@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace tufa::base {
 namespace {
 
 TEST(NumberText, IsTheShortestThatReadsBack) {
   EXPECT_EQ(numberText(0.1), "0.1");
+  EXPECT_EQ(numberText(-3), "-3");
   EXPECT_EQ(numberText(1e-300), "1e-300");
+  EXPECT_EQ(std::stod(numberText(1.0 / 3)), 1.0 / 3);
 }
 
 TEST(RoughNumberText, HasThreeSignificantDigits) {

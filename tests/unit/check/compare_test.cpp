@@ -10,15 +10,10 @@
 
 #include "support/expect_error.h"
 #include "support/fields.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
-
-openvdb::FloatGrid::Ptr shape(Shape which, double voxelSize) {
-  ShapeOptions options;
-  options.voxelSize = voxelSize;
-  return makeShape(which, options);
-}
 
 openvdb::FloatGrid::Ptr smallNoise() {
   test::NoiseOptions options;
@@ -36,7 +31,7 @@ const MethodResult& resultOf(const Comparison& all, const std::string& name) {
 TEST(Compare, MeasuresEveryMethodOnASphere) {
   CompareOptions options;
   options.truth = [](const Position& p) { return shapeDistance(Shape::Sphere, p); };
-  const Comparison all = compareMethods(*shape(Shape::Sphere, 0.1), options);
+  const Comparison all = compareMethods(*test::shapeOf(Shape::Sphere, 0.1), options);
   ASSERT_EQ(all.methods.size(), comparedNames().size());
   EXPECT_EQ(all.trilinearEuler, 2);
   EXPECT_NEAR(all.voxelSize, 0.1, 1e-7);
@@ -78,7 +73,7 @@ TEST(Compare, ShowsWhatNoiseBreaks) {
 }
 
 TEST(Compare, GivesThePeerWhatIsTakenAsOutside) {
-  const auto grid = shape(Shape::Sphere, 0.1);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.1);
   for (auto value = grid->beginValueOn(); value; ++value) {
     if (*value > 0.15F && value.getCoord().x() == 3) value.setValue(NAN);
   }
@@ -97,7 +92,7 @@ TEST(Compare, MeasuresThePointsGiven) {
   options.methods = {"mc", "dual-uniform"};
   options.truth = [](const Position& p) { return shapeDistance(Shape::Box, p); };
   options.truthPoints = shapeCreasePoints(Shape::Box, 0.02);
-  const Comparison all = compareMethods(*shape(Shape::Box, 0.05), options);
+  const Comparison all = compareMethods(*test::shapeOf(Shape::Box, 0.05), options);
   const TruthReport& dual = *resultOf(all, "dual-uniform").truth;
   const TruthReport& cubes = *resultOf(all, "mc").truth;
   EXPECT_EQ(dual.pointsToMesh.samples, options.truthPoints.size());
@@ -148,7 +143,7 @@ TEST(Compare, TellsTheMemoryIfAsked) {
   CompareOptions options;
   options.methods = {"mt24"};
   options.memory = true;
-  const Comparison all = compareMethods(*shape(Shape::Sphere, 0.04), options);
+  const Comparison all = compareMethods(*test::shapeOf(Shape::Sphere, 0.04), options);
   ASSERT_TRUE(all.methods[0].extraBytes.has_value());
   // The mesh at least: a position is 24 bytes, a normal and a triangle are 12 each.
   const CheckReport& check = all.methods[0].check;
@@ -170,7 +165,7 @@ TEST(Compare, ProgressRisesAndCancels) {
     ++calls;
     return true;
   };
-  const auto grid = shape(Shape::Sphere, 0.1);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.1);
   (void)compareMethods(*grid, options);
   EXPECT_EQ(last, 1);
   EXPECT_GT(calls, 10u);
@@ -181,7 +176,7 @@ TEST(Compare, ProgressRisesAndCancels) {
 }
 
 TEST(Compare, RefusesWhatMeansNothing) {
-  const auto grid = shape(Shape::Sphere, 0.5);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.5);
   const auto refused = [&](const std::string& part, const auto& change) {
     CompareOptions options;
     change(options);

@@ -17,7 +17,7 @@
 namespace tufa::chunks {
 namespace {
 
-constexpr int kSize = 16;
+constexpr int kChunk = 16;
 
 struct Cut {
   test::ModelOf model;
@@ -25,7 +25,7 @@ struct Cut {
 
   explicit Cut(const openvdb::FloatGrid::Ptr& grid)
       : model(grid),
-        mesh(cutAtChunks(model.mesh(), model.model().affine(), kSize, true, model.job())) {}
+        mesh(cutAtChunks(model.mesh(), model.model().affine(), kChunk, true, model.job())) {}
 
   [[nodiscard]] Vec3 latticeOf(VertexIndex v) const {
     return model.model().affine().latticePoint(mesh.mesh.positions[v], Coord(0));
@@ -50,8 +50,8 @@ void expectDivided(const Cut& cut, double uniformArea) {
       chunksAt[v].insert(mesh.chunkOf[t]);
       const Vec3 at = cut.latticeOf(v);
       for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_GE(at[axis], kSize * chunk[axis] - 1e-9);
-        EXPECT_LE(at[axis], kSize * (chunk[axis] + 1) + 1e-9);
+        EXPECT_GE(at[axis], kChunk * chunk[axis] - 1e-9);
+        EXPECT_LE(at[axis], kChunk * (chunk[axis] + 1) + 1e-9);
       }
     }
   }
@@ -59,7 +59,7 @@ void expectDivided(const Cut& cut, double uniformArea) {
     if (chunksAt[v].size() < 2) continue;
     ASSERT_NE(mesh.planesAt(v)[0], ChunkPlane::kNone);
     const ChunkPlane& plane = mesh.planes[mesh.planesAt(v)[0]];
-    EXPECT_NEAR(cut.latticeOf(v)[plane.axis], kSize * plane.at, 1e-9);
+    EXPECT_NEAR(cut.latticeOf(v)[plane.axis], kChunk * plane.at, 1e-9);
   }
   EXPECT_TRUE(std::is_sorted(mesh.chunks.begin(), mesh.chunks.end()));
 }
@@ -92,7 +92,7 @@ TEST(CutMesh, IsTheSameForAnyNumberOfThreads) {
     CutMesh out;
     job.run([&] {
       const test::ModelOf model(test::ballOf(21.3, 0.5), options);
-      out = cutAtChunks(model.mesh(), model.model().affine(), kSize, true, job);
+      out = cutAtChunks(model.mesh(), model.model().affine(), kChunk, true, job);
     });
     return out;
   };

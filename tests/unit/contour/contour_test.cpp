@@ -20,7 +20,6 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::DoubleGrid;
 using openvdb::FloatGrid;
@@ -32,9 +31,10 @@ constexpr double kPi = 3.14159265358979;
 template <class GridT = FloatGrid>
 typename GridT::Ptr ball(double radius = 10, double halfWidth = 3) {
   const int reach = static_cast<int>(radius + halfWidth) + 1;
-  return test::levelSet<GridT>(
-      CoordBBox(Coord(-reach), Coord(reach)), halfWidth,
-      [&](const Coord& at) { return (at.asVec3d() - Vec3d(0.3, 0.2, 0.1)).length() - radius; });
+  return test::levelSet<GridT>(CoordBBox(openvdb::Coord(-reach), openvdb::Coord(reach)), halfWidth,
+                               [&](const openvdb::Coord& at) {
+                                 return (at.asVec3d() - Vec3d(0.3, 0.2, 0.1)).length() - radius;
+                               });
 }
 
 /// A closed, oriented manifold whose normals look out.
@@ -97,7 +97,7 @@ TEST(Contour, MeshesAnyIsovalue) {
 TEST(Contour, GradientsOfAnySizeCount) {
   const auto meshOf = [](double size, bool uniform) {
     const auto grid = FloatGrid::create(0);
-    for (const Coord& at : CoordBBox(Coord(-15), Coord(15))) {
+    for (const openvdb::Coord& at : CoordBBox(openvdb::Coord(-15), openvdb::Coord(15))) {
       const double away = (at.asVec3d() - Vec3d(0.3, 0.2, 0.1)).length() - 10;
       grid->tree().setValue(at, static_cast<float>(size / (1 + std::exp(away / 1.5))));
     }
@@ -194,8 +194,8 @@ TEST(Contour, SamplesOnTheIsovalueDoNotHarm) {
 
 TEST(Contour, RefusesNonFiniteValuesWithTheirCountAndFirstPlace) {
   auto grid = ball();
-  grid->tree().setValue(Coord(5, 0, 7), std::numeric_limits<float>::quiet_NaN());
-  grid->tree().setValue(Coord(-4, 2, 7), std::numeric_limits<float>::infinity());
+  grid->tree().setValue(openvdb::Coord(5, 0, 7), std::numeric_limits<float>::quiet_NaN());
+  grid->tree().setValue(openvdb::Coord(-4, 2, 7), std::numeric_limits<float>::infinity());
   expectError(ErrorCode::NonFiniteValues, "2 ", [&] { (void)tufa::test::uniformMesh(*grid); });
   expectError(ErrorCode::NonFiniteValues, "-4, 2, 7",
               [&] { (void)tufa::test::uniformMesh(*grid); });

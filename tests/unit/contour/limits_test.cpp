@@ -20,7 +20,6 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::FloatGrid;
 using openvdb::Vec3d;
 using test::expectError;
@@ -28,20 +27,20 @@ using test::expectError;
 constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kFirst = std::numeric_limits<std::int32_t>::min();
 
-FloatGrid::Ptr ballAround(const Coord& centre) {
+FloatGrid::Ptr ballAround(const openvdb::Coord& centre) {
   const int reach = 10;
   const openvdb::CoordBBox box(centre.offsetBy(-reach), centre.offsetBy(reach));
   return test::levelSet<FloatGrid>(
-      box, 3, [&](const Coord& at) { return (at - centre).asVec3d().length() - 5.3; });
+      box, 3, [&](const openvdb::Coord& at) { return (at - centre).asVec3d().length() - 5.3; });
 }
 
 TEST(Limits, CoordinatesReachNearlyToTheEndsOf32Bits) {
-  const Mesh atOrigin = contour(*ballAround(Coord(0)));
-  for (const Coord& centre :
-       {Coord(kLast - 8192), Coord(kFirst + 8192), Coord(1 << 30, -(1 << 30), 7),
-        Coord(0, kLast - 8192, kFirst + 8192)}) {
+  const Mesh atOrigin = contour(*ballAround(openvdb::Coord(0)));
+  for (const openvdb::Coord& centre :
+       {openvdb::Coord(kLast - 8192), openvdb::Coord(kFirst + 8192),
+        openvdb::Coord(1 << 30, -(1 << 30), 7), openvdb::Coord(0, kLast - 8192, kFirst + 8192)}) {
     // Blocks lie elsewhere unless the shift is a whole number of the largest.
-    const Coord aligned = centre & ~4095;
+    const openvdb::Coord aligned = centre & ~4095;
     const Mesh mesh = contour(*ballAround(aligned));
     const test::MeshTopology topology = test::inspect(mesh);
     EXPECT_TRUE(topology.manifold() && topology.closed()) << centre << topology;
@@ -51,8 +50,9 @@ TEST(Limits, CoordinatesReachNearlyToTheEndsOf32Bits) {
 }
 
 TEST(Limits, CoordinatesBeyondAreRefused) {
-  for (const Coord& centre :
-       {Coord(kLast - 100), Coord(kFirst + 100, 0, 0), Coord(0, 0, kLast - 2000)}) {
+  for (const openvdb::Coord& centre :
+       {openvdb::Coord(kLast - 100), openvdb::Coord(kFirst + 100, 0, 0),
+        openvdb::Coord(0, 0, kLast - 2000)}) {
     expectError(ErrorCode::LimitExceeded, "coordinates",
                 [&] { (void)contour(*ballAround(centre)); });
   }
@@ -71,7 +71,7 @@ openvdb::math::Transform::Ptr uniformScale(double voxelSize) {
 }
 
 FloatGrid::Ptr ballOfVoxels(double voxelSize) {
-  const auto ball = ballAround(Coord(0));
+  const auto ball = ballAround(openvdb::Coord(0));
   auto grid = FloatGrid::create(static_cast<float>(ball->background() * voxelSize));
   for (auto value = ball->cbeginValueAll(); value; ++value) {
     if (!value.isVoxelValue()) continue;
@@ -87,7 +87,7 @@ FloatGrid::Ptr ballOfVoxels(double voxelSize) {
 TEST(Limits, ScalesWithinTheRangeGiveTheSameTopology) {
   ContourOptions options;
   options.uniform = true;
-  const Mesh atOne = contour(*ballAround(Coord(0)), options);
+  const Mesh atOne = contour(*ballAround(openvdb::Coord(0)), options);
   for (const double voxelSize : {1e-25, 1e-12, 1e-6, 1e12, 1e25}) {
     const auto grid = ballOfVoxels(voxelSize);
     EXPECT_EQ(contour(*grid, options).quads.size(), atOne.quads.size()) << voxelSize;
@@ -108,7 +108,7 @@ TEST(Limits, ScalesWithinTheRangeGiveTheSameTopology) {
 
 TEST(Limits, ScalesBeyondSinglePrecisionAreRefused) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const auto grid = ballAround(Coord(0));
+  const auto grid = ballAround(openvdb::Coord(0));
   for (const double voxelSize :
        {1e-26, 1e-40, 1e-150, 1e-320, 0.0, 1e26, 1e150, 1e300, infinity, std::nan("")}) {
     grid->setTransform(uniformScale(voxelSize));
@@ -119,13 +119,13 @@ TEST(Limits, ScalesBeyondSinglePrecisionAreRefused) {
     ContourOptions options;
     options.toleranceGrid = grid;
     expectError(ErrorCode::UnsupportedGrid, "tolerance grid",
-                [&] { (void)contour(*ballAround(Coord(0)), options); });
+                [&] { (void)contour(*ballAround(openvdb::Coord(0)), options); });
     EXPECT_FALSE(describeGrid(*grid).meshable);
   }
 }
 
 TEST(Limits, FlatVoxelsAndFarOriginsAreRefused) {
-  const auto grid = ballAround(Coord(0));
+  const auto grid = ballAround(openvdb::Coord(0));
   openvdb::Mat4d flat = openvdb::Mat4d::identity(), far = flat;
   flat.preScale(Vec3d(1e5, 1e-5, 1e5));
   grid->setTransform(openvdb::math::Transform::createLinearTransform(flat));
@@ -147,11 +147,11 @@ TEST(Limits, CellsAreAnyPowerOfTwo) {
   for (const int cell : {0, 3, (1 << 20) + 1}) {
     options.maxCell = cell;
     expectError(ErrorCode::InvalidArgument, "largest cell",
-                [&] { (void)contour(*ballAround(Coord(0)), options); });
+                [&] { (void)contour(*ballAround(openvdb::Coord(0)), options); });
   }
-  const Mesh mesh = contour(*ballAround(Coord(0)));
+  const Mesh mesh = contour(*ballAround(openvdb::Coord(0)));
   options.maxCell = 1 << 30;
-  EXPECT_TRUE(test::sameBytes(contour(*ballAround(Coord(0)), options), mesh));
+  EXPECT_TRUE(test::sameBytes(contour(*ballAround(openvdb::Coord(0)), options), mesh));
 }
 
 TEST(Limits, ToleranceGridsAreFloatGrids) {
@@ -161,7 +161,7 @@ TEST(Limits, ToleranceGridsAreFloatGrids) {
   options.toleranceGrid = doubles;
   for (const char* part : {"\"detail\"", "double", "float grid"}) {
     expectError(ErrorCode::UnsupportedGrid, part,
-                [&] { (void)contour(*ballAround(Coord(0)), options); });
+                [&] { (void)contour(*ballAround(openvdb::Coord(0)), options); });
   }
 }
 
@@ -175,7 +175,7 @@ void expectClosedAtValues(typename GridT::ValueType most) {
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(0.2));
   auto accessor = grid->getAccessor();
-  const openvdb::CoordBBox box(Coord(-4), Coord(4));
+  const openvdb::CoordBBox box(openvdb::Coord(-4), openvdb::Coord(4));
   for (auto at = box.begin(); at; ++at) {
     const int kind = static_cast<int>(random() % 3);
     accessor.setValue(*at, kind == 0 ? most : kind == 1 ? most / 3 : Value(1e-9));

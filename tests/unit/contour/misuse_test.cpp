@@ -70,9 +70,9 @@ TEST_F(Misuse, OfLevelsOfLeaves) {
     expectRefused(part, [&] { (void)isRestricted({{Coord(0), level}}); });
   }
   EXPECT_TRUE(isRestricted({{Coord(0), 31}}));
-  constexpr std::int32_t kLast = std::numeric_limits<std::int32_t>::max();
-  constexpr std::int32_t kFirst = std::numeric_limits<std::int32_t>::min();
-  EXPECT_TRUE(isRestricted({{Coord(kLast), 0}, {Coord(kFirst), 0}}));
+  constexpr std::int32_t kGreatest = std::numeric_limits<std::int32_t>::max();
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  EXPECT_TRUE(isRestricted({{Coord(kGreatest), 0}, {Coord(kLeast), 0}}));
 }
 
 TEST_F(Misuse, OfTheSink) {

@@ -15,7 +15,6 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 using openvdb::Mat4d;
@@ -28,7 +27,7 @@ std::size_t crossedEdges(const FloatGrid& grid, const CoordBBox& window, double 
   for (auto at = window.begin(); at; ++at) {
     const bool here = accessor.getValue(*at) < isovalue;
     for (int axis = 0; axis < 3; ++axis) {
-      Coord next = *at;
+      openvdb::Coord next = *at;
       ++next[axis];
       count += here != (accessor.getValue(next) < isovalue) ? 1 : 0;
     }
@@ -49,46 +48,48 @@ void expectWholeSurface(const FloatGrid& grid, const CoordBBox& window, const ch
 
 TEST(ContourPlaces, BetweenALeafAndATile) {
   auto grid = FloatGrid::create(1);
-  grid->tree().addTile(1, Coord(0), -1, true);
-  grid->tree().setValueOn(Coord(8, 2, 2), -1);
-  grid->tree().setValueOn(Coord(-3, 2, 2), -1);
-  expectWholeSurface(*grid, CoordBBox(Coord(-12), Coord(20)), "leaf and tile");
+  grid->tree().addTile(1, openvdb::Coord(0), -1, true);
+  grid->tree().setValueOn(openvdb::Coord(8, 2, 2), -1);
+  grid->tree().setValueOn(openvdb::Coord(-3, 2, 2), -1);
+  expectWholeSurface(*grid, CoordBBox(openvdb::Coord(-12), openvdb::Coord(20)), "leaf and tile");
 }
 
 TEST(ContourPlaces, BetweenTilesOfEverySize) {
   for (const openvdb::Index level : {1U, 2U}) {
     auto grid = FloatGrid::create(1);
-    grid->tree().addTile(level, Coord(0), -1, false);
+    grid->tree().addTile(level, openvdb::Coord(0), -1, false);
     const int size = level == 1 ? 8 : 128;
-    expectWholeSurface(*grid, CoordBBox(Coord(-2), Coord(size + 2)), "tile");
-    grid->tree().addTile(1, Coord(size, 0, 0), -1, true);
-    expectWholeSurface(*grid, CoordBBox(Coord(-2), Coord(size + 10)), "small beside large");
+    expectWholeSurface(*grid, CoordBBox(openvdb::Coord(-2), openvdb::Coord(size + 2)), "tile");
+    grid->tree().addTile(1, openvdb::Coord(size, 0, 0), -1, true);
+    expectWholeSurface(*grid, CoordBBox(openvdb::Coord(-2), openvdb::Coord(size + 10)),
+                       "small beside large");
   }
 }
 
 TEST(ContourPlaces, OneStepBelowTheOriginOfALeaf) {
   for (int mask = 1; mask < 8; ++mask) {
     // The only sample inside is the first of its leaf on some axes.
-    const Coord at((mask & 1) != 0 ? 8 : 11, (mask & 2) != 0 ? 8 : 11, (mask & 4) != 0 ? 8 : 11);
+    const openvdb::Coord at((mask & 1) != 0 ? 8 : 11, (mask & 2) != 0 ? 8 : 11,
+                            (mask & 4) != 0 ? 8 : 11);
     auto grid = FloatGrid::create(1);
     grid->tree().setValueOn(at, -1);
-    expectWholeSurface(*grid, CoordBBox(Coord(0), Coord(20)), "first sample");
+    expectWholeSurface(*grid, CoordBBox(openvdb::Coord(0), openvdb::Coord(20)), "first sample");
   }
 }
 
 TEST(ContourPlaces, InRandomTrees) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const auto grid = test::randomTree<FloatGrid>({.seed = seed});
-    expectWholeSurface(*grid, CoordBBox(Coord(-30), Coord(40)), "random tree");
+    expectWholeSurface(*grid, CoordBBox(openvdb::Coord(-30), openvdb::Coord(40)), "random tree");
   }
 }
 
 TEST(ContourPlaces, InNarrowBandsFromHalfWidthOne) {
   const double radius = 12.3;
   for (const double halfWidth : {1.0, 1.5, 2.0, 5.0}) {
-    const auto grid =
-        test::levelSet<FloatGrid>(CoordBBox(Coord(-20), Coord(20)), halfWidth,
-                                  [&](const Coord& at) { return at.asVec3d().length() - radius; });
+    const auto grid = test::levelSet<FloatGrid>(
+        CoordBBox(openvdb::Coord(-20), openvdb::Coord(20)), halfWidth,
+        [&](const openvdb::Coord& at) { return at.asVec3d().length() - radius; });
     ContourReport report;
     const Mesh mesh = tufa::test::uniformMesh(*grid, {}, &report);
     EXPECT_EQ(report.openEdges, 0U) << halfWidth;
@@ -107,9 +108,9 @@ TEST(ContourPlaces, InNarrowBandsFromHalfWidthOne) {
 }
 
 TEST(ContourPlaces, PrunedAndDenseGridsGiveTheSameSurface) {
-  auto grid = test::levelSet<FloatGrid>(CoordBBox(Coord(-30), Coord(30)), 3, [](const Coord& at) {
-    return at.asVec3d().length() - 25.2;
-  });
+  auto grid = test::levelSet<FloatGrid>(
+      CoordBBox(openvdb::Coord(-30), openvdb::Coord(30)), 3,
+      [](const openvdb::Coord& at) { return at.asVec3d().length() - 25.2; });
   const Mesh before = tufa::test::uniformMesh(*grid);
   openvdb::tools::pruneLevelSet(grid->tree());
   const Mesh after = tufa::test::uniformMesh(*grid);
@@ -145,9 +146,9 @@ std::vector<NamedTransform> transforms() {
 TEST(ContourPlaces, AnyAffineTransformKeepsTheSurfaceOutward) {
   const double radius = 9.7;
   for (const auto& [name, matrix] : transforms()) {
-    auto grid = test::sampled<FloatGrid>(CoordBBox(Coord(-13), Coord(13)), 5, [&](const Coord& at) {
-      return std::min(at.asVec3d().length() - radius, 5.0);
-    });
+    auto grid = test::sampled<FloatGrid>(
+        CoordBBox(openvdb::Coord(-13), openvdb::Coord(13)), 5,
+        [&](const openvdb::Coord& at) { return std::min(at.asVec3d().length() - radius, 5.0); });
     grid->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
     ContourOptions options;
     options.isovalue = 0;

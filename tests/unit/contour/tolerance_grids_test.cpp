@@ -14,7 +14,6 @@
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::FloatGrid;
 
 constexpr double kVoxel = 0.04;
@@ -61,7 +60,8 @@ TEST(ToleranceGrids, HoldOnBothSidesOfAStep) {
   fine.tolerance = 0.05;
   coarse.tolerance = 1;
   both.tolerance = 0.1;
-  both.toleranceGrid = scalesFor(*grid, [](const Coord& at) { return at[0] < 0 ? 0.5 : 10; });
+  both.toleranceGrid =
+      scalesFor(*grid, [](const openvdb::Coord& at) { return at[0] < 0 ? 0.5 : 10; });
   const Mesh ofFine = contour(*grid, fine), ofCoarse = contour(*grid, coarse);
   ContourReport report;
   const Mesh mesh = contour(*grid, both, &report);
@@ -84,7 +84,7 @@ TEST(ToleranceGrids, HoldWhereTheScaleRises) {
   const auto grid = bracket();
   const auto box = grid->evalActiveVoxelBoundingBox();
   ContourOptions options;
-  options.toleranceGrid = scalesFor(*grid, [&](const Coord& at) {
+  options.toleranceGrid = scalesFor(*grid, [&](const openvdb::Coord& at) {
     return 0.2 + 5.0 * (at[0] - box.min()[0]) / box.extents()[0];
   });
   ContourReport report;
@@ -100,7 +100,7 @@ TEST(ToleranceGrids, MayHaveAnyValues) {
   const auto grid = bracket();
   for (const double most : {1e4, 1e30}) {
     ContourOptions options;
-    options.toleranceGrid = scalesFor(*grid, [&](const Coord& at) {
+    options.toleranceGrid = scalesFor(*grid, [&](const openvdb::Coord& at) {
       return at[0] < 0 ? 1 : at[1] < 0 ? -1 : most;
     });
     ContourReport report;
@@ -117,7 +117,7 @@ TEST(ToleranceGrids, TakeInfinityForTheLargestValue) {
   const auto meshWith = [&](float value) {
     ContourOptions options;
     options.toleranceGrid =
-        scalesFor(*grid, [&](const Coord& at) { return at[0] < 0 ? 1 : value; });
+        scalesFor(*grid, [&](const openvdb::Coord& at) { return at[0] < 0 ? 1 : value; });
     return contour(*grid, options);
   };
   using Limits = std::numeric_limits<float>;
@@ -134,7 +134,7 @@ TEST(ToleranceGrids, HoldForBudgets) {
   LodOptions options;
   options.triangles = {600};
   options.contour.toleranceGrid =
-      scalesFor(*grid, [](const Coord& at) { return at[0] < 0 ? 1 : 8; });
+      scalesFor(*grid, [](const openvdb::Coord& at) { return at[0] < 0 ? 1 : 8; });
   const LodChain chain = buildLods(*grid, options);
   ASSERT_EQ(chain.levels.size(), 1U);
   EXPECT_LE(chain.levels[0].mesh.triangles.size(), 600U);

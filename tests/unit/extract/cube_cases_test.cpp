@@ -15,8 +15,8 @@
 namespace tufa::extraction {
 namespace {
 
-using test::CubeSymmetry;
-using uniform::test::forAllCells;
+using cells::CubeSymmetry;
+using uniform::cells::forAllCells;
 
 /// Directed edges of the triangles, and how often each is passed.
 using Sides = std::map<std::pair<int, int>, int>;
@@ -31,7 +31,7 @@ Sides sidesOf(const CubeCase& cell) {
 }
 
 /// Arcs of the loops, in their direction.
-std::set<std::pair<int, int>> arcsOf(const Loops& loops) {
+std::set<std::pair<int, int>> arcsOfLoops(const Loops& loops) {
   std::set<std::pair<int, int>> arcs;
   for (int i = 0; i < loops.count; ++i) {
     const Loop& loop = loops.loops[i];
@@ -69,11 +69,11 @@ TEST(CubeCases, LoopsAreTheArcsOfTheFaces) {
   forAllCells([&](CornerMask mask, FaceBits joined) {
     ++cells;
     std::set<std::pair<int, int>> found;
-    for (const auto& [a, b] : arcsOf(loopsOf(mask, joined))) {
+    for (const auto& [a, b] : arcsOfLoops(loopsOf(mask, joined))) {
       EXPECT_TRUE(found.emplace(std::min(a, b), std::max(a, b)).second) << int{mask};
     }
     std::set<std::pair<int, int>> expected;
-    for (const auto& arc : uniform::test::arcsOf(mask, joined)) {
+    for (const auto& arc : uniform::cells::arcsOf(mask, joined)) {
       expected.emplace(std::min(arc.first, arc.second), std::max(arc.first, arc.second));
     }
     EXPECT_EQ(found, expected) << int{mask} << " " << int{joined};
@@ -93,7 +93,7 @@ TEST(CubeCases, TrianglesFillEachLoopWithADisk) {
       vertices.insert(side.first);
       edges.emplace(std::min(side.first, side.second), std::max(side.first, side.second));
     }
-    EXPECT_EQ(rimOf(cell), arcsOf(loops)) << int{mask} << " " << int{joined};
+    EXPECT_EQ(rimOf(cell), arcsOfLoops(loops)) << int{mask} << " " << int{joined};
     const auto euler =
         static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) + cell.count;
     EXPECT_EQ(euler, loops.count) << int{mask} << " " << int{joined};
@@ -122,11 +122,11 @@ TEST(CubeCases, RotationsAndReflectionsCarryLoopsToLoops) {
   for (const CubeSymmetry& symmetry : CubeSymmetry::all()) {
     forAllCells([&](CornerMask mask, FaceBits joined) {
       std::set<std::pair<int, int>> carried;
-      for (const auto& [a, b] : arcsOf(loopsOf(mask, joined))) {
+      for (const auto& [a, b] : arcsOfLoops(loopsOf(mask, joined))) {
         const int from = symmetry.edge(a), to = symmetry.edge(b);
         carried.insert(symmetry.reflects() ? std::pair(to, from) : std::pair(from, to));
       }
-      EXPECT_EQ(carried, arcsOf(loopsOf(symmetry.mask(mask), symmetry.faces(joined))));
+      EXPECT_EQ(carried, arcsOfLoops(loopsOf(symmetry.mask(mask), symmetry.faces(joined))));
     });
   }
 }
@@ -150,8 +150,8 @@ TEST(CubeCases, ComplementsAreTheSameSurfaceTurnedOver) {
     const auto complement = static_cast<CornerMask>(~mask);
     const auto others = static_cast<FaceBits>(uniform::ambiguousFaces(mask) & ~joined);
     std::set<std::pair<int, int>> reversed;
-    for (const auto& [a, b] : arcsOf(loopsOf(mask, joined))) reversed.emplace(b, a);
-    EXPECT_EQ(reversed, arcsOf(loopsOf(complement, others)));
+    for (const auto& [a, b] : arcsOfLoops(loopsOf(mask, joined))) reversed.emplace(b, a);
+    EXPECT_EQ(reversed, arcsOfLoops(loopsOf(complement, others)));
     EXPECT_EQ(costOf(caseOf(codeOf(mask, joined))), costOf(caseOf(codeOf(complement, others))));
   });
 }

@@ -6,7 +6,7 @@
 
 #include "uniform/case_table.h"
 
-namespace tufa::extraction::test {
+namespace tufa::extraction::cells {
 
 /// One of the 48 rotations and reflections of the cube: an order of the axes, and which of them are
 /// turned round.
@@ -71,4 +71,4 @@ class CubeSymmetry {
   int flips_;
 };
 
-}  // namespace tufa::extraction::test
+}  // namespace tufa::extraction::cells

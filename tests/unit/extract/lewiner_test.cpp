@@ -15,9 +15,9 @@
 namespace tufa::extraction {
 namespace {
 
-using test::chosenFor;
-using test::Topology;
-using test::topologyOf;
+using cells::chosenFor;
+using cells::Topology;
+using cells::topologyOf;
 
 /// A Python that has scikit-image, if there is one.
 std::string pythonWithLewiner() {
@@ -48,13 +48,13 @@ std::vector<Topology> lewinerOf(const std::string& python, const std::vector<Cor
 TEST(Mc33, IsRightWhereverScikitImagesLewinerDiffers) {
   const std::string python = pythonWithLewiner();
   if (python.empty()) GTEST_SKIP() << "no Python has scikit-image (python3-skimage)";
-  test::Cells random(5);
+  cells::Cells random(5);
   std::vector<CornerValues> cells;
   while (cells.size() < 20'000) {
     const CornerValues values = random.next();
-    const CornerMask mask = test::maskOf(values);
+    const CornerMask mask = cells::maskOf(values);
     bool certain = true;
-    (void)test::trilinear(values, certain);
+    (void)cells::trilinear(values, certain);
     if (certain && mask != 0 && mask != 255) cells.push_back(values);
   }
   const std::vector<Topology> others = lewinerOf(python, cells);
@@ -62,7 +62,7 @@ TEST(Mc33, IsRightWhereverScikitImagesLewinerDiffers) {
   int differ = 0, oursRight = 0, othersRight = 0, tunnels = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     bool certain = true;
-    const Topology truth = test::trilinear(cells[i], certain);
+    const Topology truth = cells::trilinear(cells[i], certain);
     const Topology ours = topologyOf(chosenFor(cells[i]));
     if (ours == others[i]) continue;
     ++differ;

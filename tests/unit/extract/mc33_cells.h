@@ -15,7 +15,7 @@
 #include "unit/extract/trilinear_oracle.h"
 #include "unit/uniform/cell_oracle.h"
 
-namespace tufa::extraction::test {
+namespace tufa::extraction::cells {
 
 struct Topology {
   int components = 0;
@@ -71,7 +71,7 @@ inline Topology trilinear(const CornerValues& values, bool& certain) {
     const double saddle = (c[0] * c[2] - c[1] * c[3]) / (c[0] + c[2] - c[1] - c[3]);
     joined |= saddle < 0 ? 1u << face : 0;
   }
-  const auto rims = uniform::test::partitionOf(mask, static_cast<FaceBits>(joined), 0);
+  const auto rims = uniform::cells::partitionOf(mask, static_cast<FaceBits>(joined), 0);
   if (mask == 0 || mask == 255) return {};
   const int euler = cell.eulerOfSide(1, certain) + cell.eulerOfSide(-1, certain) - 1;
   return {(static_cast<int>(rims.size()) + euler) / 2, euler};
@@ -96,4 +96,4 @@ class Cells {
   std::uniform_real_distribution<double> uniform_{0, 1};
 };
 
-}  // namespace tufa::extraction::test
+}  // namespace tufa::extraction::cells

@@ -14,13 +14,13 @@
 namespace tufa::extraction {
 namespace {
 
-using test::Cells;
-using test::chosenFor;
-using test::maskOf;
-using test::Topology;
-using test::topologyOf;
-using test::trilinear;
-using test::TrilinearCell;
+using cells::Cells;
+using cells::chosenFor;
+using cells::maskOf;
+using cells::Topology;
+using cells::topologyOf;
+using cells::trilinear;
+using cells::TrilinearCell;
 
 TEST(Mc33, HasTheTopologyOfTheTrilinearSurfaceInAMillionRandomCells) {
   Cells cells(1);
@@ -72,7 +72,7 @@ TEST(Mc33, HasTheComponentsThatAFineLatticeShows) {
 
 TEST(Mc33, SweepsAlongAnyAxisAlike) {
   Cells cells(3);
-  const auto symmetries = test::CubeSymmetry::all();
+  const auto symmetries = cells::CubeSymmetry::all();
   for (int i = 0; i < 20'000; ++i) {
     const CornerValues values = cells.next();
     const Topology found = topologyOf(chosenFor(values));
@@ -89,7 +89,7 @@ TEST(Mc33, SweepsAlongAnyAxisAlike) {
 
 TEST(Mc33, CasesHaveNoEdgeOfTwoTrianglesInAFace) {
   int tubes = 0;
-  uniform::test::forAllCells([&](CornerMask mask, FaceBits joined) {
+  uniform::cells::forAllCells([&](CornerMask mask, FaceBits joined) {
     const Loops loops = loopsOf(mask, joined);
     for (int tunnel = 1; tunnel <= kTunnels; ++tunnel) {
       if (!mayHave(loops, tunnel)) continue;

@@ -14,11 +14,11 @@
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
@@ -36,12 +36,6 @@ ExtractOptions atZero(double sharpAngle = ExtractOptions().sharpAngle) {
   return options;
 }
 
-FloatGrid::Ptr shape(Shape which, double voxelSize) {
-  ShapeOptions options;
-  options.voxelSize = voxelSize;
-  return makeShape(which, options);
-}
-
 void expectClosedManifold(const Mesh& mesh, const std::string& what) {
   const test::MeshTopology topology = test::inspect(mesh);
   EXPECT_TRUE(topology.manifold() && topology.closed()) << what << ": " << topology;
@@ -50,11 +44,12 @@ void expectClosedManifold(const Mesh& mesh, const std::string& what) {
 
 // Waves without order, a few voxels long, so that leaves of all levels have every topology.
 FloatGrid::Ptr waves(double length) {
-  return test::sampled<FloatGrid>(CoordBBox(Coord(-32), Coord(31)), 1, [&](const Coord& at) {
-    const double x = at.x() / length, y = at.y() / length, z = at.z() / length;
-    return std::sin(x + 1.3 * y) + std::sin(1.1 * y - z + 1) + std::sin(0.9 * z + 0.7 * x + 2) +
-           std::sin(1.7 * x - 0.6 * y + 0.8 * z);
-  });
+  return test::sampled<FloatGrid>(
+      CoordBBox(openvdb::Coord(-32), openvdb::Coord(31)), 1, [&](const openvdb::Coord& at) {
+        const double x = at.x() / length, y = at.y() / length, z = at.z() / length;
+        return std::sin(x + 1.3 * y) + std::sin(1.1 * y - z + 1) + std::sin(0.9 * z + 0.7 * x + 2) +
+               std::sin(1.7 * x - 0.6 * y + 0.8 * z);
+      });
 }
 
 // Nothing is lost: what is in a leaf is a disk.
@@ -66,7 +61,7 @@ void expectSameTopology(const Mesh& mesh, const Mesh& finest) {
 
 TEST(MergedCells, GiveClosedManifoldsOfShapesAtAnyTolerance) {
   for (const Shape which : {Shape::Bracket, Shape::Gyroid, Shape::Fog, Shape::Terrain}) {
-    const auto grid = shape(which, 0.04);
+    const auto grid = test::shapeOf(which, 0.04);
     const Mesh finest = merged(*grid, {}, 0);
     for (const double tolerance : {0.1, 0.5, 5.0}) {
       const Mesh mesh = merged(*grid, {}, tolerance);
@@ -125,7 +120,7 @@ double farthestFromSphere(const Mesh& mesh, double voxelSize) {
 }
 
 TEST(MergedCells, AreFewerAndWithinTheTolerance) {
-  const auto ball = shape(Shape::Sphere, 0.02);
+  const auto ball = test::shapeOf(Shape::Sphere, 0.02);
   const std::size_t finest = merged(*ball, {}, 0).triangleCount();
   double factor = 7;
   for (const double tolerance : {0.1, 0.5}) {
@@ -139,7 +134,7 @@ TEST(MergedCells, AreFewerAndWithinTheTolerance) {
 }
 
 TEST(MergedCells, AreBroughtToTheSurfaceByRefining) {
-  const auto ball = shape(Shape::Sphere, 0.04);
+  const auto ball = test::shapeOf(Shape::Sphere, 0.04);
   ExtractOptions options;
   options.refine = 0.05;
   const Mesh mesh = merged(*ball, options, 0.5);
@@ -149,7 +144,7 @@ TEST(MergedCells, AreBroughtToTheSurfaceByRefining) {
 }
 
 TEST(MergedCells, LeaveCreasesAsTheyAre) {
-  const auto box = shape(Shape::Box, 0.04);
+  const auto box = test::shapeOf(Shape::Box, 0.04);
   const Mesh finest = merged(*box, {}, 0), mesh = merged(*box, {}, 0.5);
   EXPECT_LT(2 * mesh.triangleCount(), finest.triangleCount());
   EXPECT_NEAR(test::volume(mesh), test::volume(finest), 1e-5 * test::volume(finest));
@@ -162,7 +157,7 @@ TEST(MergedCells, LeaveCreasesAsTheyAre) {
 }
 
 TEST(MergedCells, AreTheSameForAnyThreadsAndNotTurnedOverByMirrors) {
-  auto grid = shape(Shape::Torus, 0.02);
+  auto grid = test::shapeOf(Shape::Torus, 0.02);
   ExtractOptions one, two;
   one.contour.threads = 1;
   two.contour.threads = 2;
@@ -175,8 +170,8 @@ TEST(MergedCells, AreTheSameForAnyThreadsAndNotTurnedOverByMirrors) {
 }
 
 TEST(MergedCells, EndWhereTheDataEndsUnlessItIsCapped) {
-  auto half = shape(Shape::Sphere, 0.02);
-  half->clip(CoordBBox(Coord(-1000, -1000, -1000), Coord(1000, 1000, 3)));
+  auto half = test::shapeOf(Shape::Sphere, 0.02);
+  half->clip(CoordBBox(openvdb::Coord(-1000, -1000, -1000), openvdb::Coord(1000, 1000, 3)));
   const test::MeshTopology topology = test::inspect(merged(*half, {}, 0.5));
   EXPECT_TRUE(topology.manifold()) << topology;
   EXPECT_GT(topology.boundaryEdges, 0U);
@@ -186,7 +181,7 @@ TEST(MergedCells, EndWhereTheDataEndsUnlessItIsCapped) {
 }
 
 TEST(MergedCells, RefuseAToleranceThatIsNone) {
-  const auto ball = shape(Shape::Sphere, 0.2);
+  const auto ball = test::shapeOf(Shape::Sphere, 0.2);
   for (const double tolerance : {-0.1, std::numeric_limits<double>::quiet_NaN()}) {
     test::expectError(ErrorCode::InvalidArgument, "tolerance of merging",
                       [&] { (void)merged(*ball, {}, tolerance); });

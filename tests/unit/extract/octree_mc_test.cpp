@@ -12,11 +12,11 @@
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
@@ -27,12 +27,6 @@ Mesh octree(const openvdb::GridBase& grid, double tolerance, Ambiguity rule = Am
   return extract(grid, Method::OctreeCubes, options);
 }
 
-FloatGrid::Ptr shape(Shape which, double voxelSize) {
-  ShapeOptions options;
-  options.voxelSize = voxelSize;
-  return makeShape(which, options);
-}
-
 void expectClosed(const Mesh& mesh, const std::string& what) {
   const test::MeshTopology topology = test::inspect(mesh);
   EXPECT_TRUE(topology.manifold()) << what << ": " << topology;
@@ -41,7 +35,7 @@ void expectClosed(const Mesh& mesh, const std::string& what) {
 }
 
 TEST(OctreeCubes, AreMarchingCubesWithoutTolerance) {
-  const auto grid = shape(Shape::Bracket, 0.05);
+  const auto grid = test::shapeOf(Shape::Bracket, 0.05);
   for (const Ambiguity rule : {Ambiguity::Separate, Ambiguity::Asymptotic}) {
     ExtractOptions options;
     options.contour.ambiguity = rule;
@@ -52,7 +46,7 @@ TEST(OctreeCubes, AreMarchingCubesWithoutTolerance) {
 
 TEST(OctreeCubes, AreClosedAtAnyTolerance) {
   for (const Shape which : {Shape::Bracket, Shape::Gyroid, Shape::Fog, Shape::Terrain}) {
-    const auto grid = shape(which, 0.04);
+    const auto grid = test::shapeOf(which, 0.04);
     for (const double tolerance : {0.1, 0.5, 5.0}) {
       expectClosed(octree(*grid, tolerance, Ambiguity::Asymptotic),
                    std::to_string(static_cast<int>(which)) + " at " + std::to_string(tolerance));
@@ -61,7 +55,7 @@ TEST(OctreeCubes, AreClosedAtAnyTolerance) {
 }
 
 TEST(OctreeCubes, AreFewerAndWithinTheTolerance) {
-  const auto ball = shape(Shape::Sphere, 0.02);
+  const auto ball = test::shapeOf(Shape::Sphere, 0.02);
   const std::size_t cubes = extract(*ball, Method::MarchingCubes).triangleCount();
   double factor = 3;
   for (const double tolerance : {0.1, 0.5}) {
@@ -84,7 +78,7 @@ TEST(OctreeCubes, AreFewerAndWithinTheTolerance) {
 }
 
 TEST(OctreeCubes, RefuseAToleranceThatIsNone) {
-  const auto ball = shape(Shape::Sphere, 0.2);
+  const auto ball = test::shapeOf(Shape::Sphere, 0.2);
   for (const double tolerance : {-0.1, std::nan("")}) {
     test::expectError(ErrorCode::InvalidArgument, "tolerance",
                       [&] { (void)octree(*ball, tolerance); });
@@ -94,8 +88,8 @@ TEST(OctreeCubes, RefuseAToleranceThatIsNone) {
 TEST(OctreeCubes, OfAPlaneInADenseFieldHaveTheLargestLeaves) {
   // Not in a band: leaves of up to 8 samples in the middle, where a cube has a 64th of the faces.
   const auto grid = test::sampled<FloatGrid>(
-      CoordBBox(Coord(-32), Coord(31)), 100,
-      [](const Coord& at) { return std::abs(at.z() - 0.3) - 12 + 0.01 * at.x(); });
+      CoordBBox(openvdb::Coord(-32), openvdb::Coord(31)), 100,
+      [](const openvdb::Coord& at) { return std::abs(at.z() - 0.3) - 12 + 0.01 * at.x(); });
   ExtractOptions options;
   options.contour.isovalue = 0;
   options.contour.inside = Inside::Below;

@@ -21,17 +21,12 @@
 #include "support/expect_error.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
 
 constexpr double kVoxel = 0.125;
-
-openvdb::FloatGrid::Ptr shape(Shape which) {
-  ShapeOptions options;
-  options.voxelSize = kVoxel;
-  return makeShape(which, options);
-}
 
 Mesh refined(const openvdb::GridBase& grid, Method method, double tolerance, int threads = 0,
              Refinement* reached = nullptr) {
@@ -95,7 +90,7 @@ void expectSound(const Mesh& mesh, std::int64_t euler) {
 }
 
 TEST(Refine, BringsTrianglesNearerAndLeavesNoCracks) {
-  const auto ball = shape(Shape::Sphere);
+  const auto ball = test::shapeOf(Shape::Sphere, kVoxel);
   // What the trilinear surface itself is off a sphere of radius 8 voxels.
   constexpr double kOwn = 0.035;
   for (const Method method : kMethods) {
@@ -121,7 +116,7 @@ TEST(Refine, BringsTrianglesNearerAndLeavesNoCracks) {
 }
 
 TEST(Refine, AddsWhatItReports) {
-  const auto ball = shape(Shape::Sphere);
+  const auto ball = test::shapeOf(Shape::Sphere, kVoxel);
   Refinement reached;
   const Mesh plain = extract(*ball, Method::MarchingCubes);
   const Mesh mesh = refined(*ball, Method::MarchingCubes, 0.01, 0, &reached);
@@ -146,7 +141,8 @@ double shortestEdge(const Mesh& mesh) {
 // The trilinear surface has kinks, which no triangles are near enough to.
 TEST(Refine, StopsAtTheFinestSizeAndSaysSo) {
   Refinement reached;
-  const Mesh mesh = refined(*shape(Shape::Sphere), Method::SurfaceNets, 1e-5, 0, &reached);
+  const Mesh mesh =
+      refined(*test::shapeOf(Shape::Sphere, kVoxel), Method::SurfaceNets, 1e-5, 0, &reached);
   expectSound(mesh, 2);
   EXPECT_GT(reached.trianglesLeft, 0U);
   EXPECT_GT(reached.largestVoxels, 1e-5);
@@ -157,7 +153,7 @@ TEST(Refine, StopsAtTheFinestSizeAndSaysSo) {
 
 // Repeated halving beside an edge would make angles ever smaller.
 TEST(Refine, KeepsAngles) {
-  const auto ball = shape(Shape::Sphere);
+  const auto ball = test::shapeOf(Shape::Sphere, kVoxel);
   constexpr double kFar = 10;  // splits nothing but quads
   const double before = smallestAngle(refined(*ball, Method::SurfaceNets, kFar));
   EXPECT_GT(before, 20);
@@ -166,7 +162,7 @@ TEST(Refine, KeepsAngles) {
 
 // The trilinear surface rounds creases off: to follow it would undo what a method restored.
 TEST(Refine, LeavesCreasesAlone) {
-  const auto box = shape(Shape::Box);
+  const auto box = test::shapeOf(Shape::Box, kVoxel);
   Refinement reached;
   const Mesh plain = refined(*box, Method::ExtendedMarchingCubes, 0);
   const Mesh mesh = refined(*box, Method::ExtendedMarchingCubes, 0.02, 0, &reached);
@@ -180,8 +176,9 @@ TEST(Refine, LeavesCreasesAlone) {
 }
 
 TEST(Refine, KeepsTheTopologyOfAnyField) {
-  for (const auto& field : {openvdb::FloatGrid::Ptr(test::noise<openvdb::FloatGrid>({.size = 10})),
-                            shape(Shape::Bracket), shape(Shape::Gyroid)}) {
+  for (const auto& field :
+       {openvdb::FloatGrid::Ptr(test::noise<openvdb::FloatGrid>({.size = 10})),
+        test::shapeOf(Shape::Bracket, kVoxel), test::shapeOf(Shape::Gyroid, kVoxel)}) {
     ExtractOptions options;
     options.contour.isovalue = 0;
     options.contour.inside = Inside::Below;
@@ -264,7 +261,7 @@ TEST(Refine, FoldsNothingAndTurnsNoPieceInsideOut) {
 }
 
 TEST(Refine, IsTheSameForAnyNumberOfThreads) {
-  const auto bracket = shape(Shape::Bracket);
+  const auto bracket = test::shapeOf(Shape::Bracket, kVoxel);
   for (const Method method : {Method::MarchingCubes, Method::SurfaceNets, Method::Dual}) {
     const Mesh one = refined(*bracket, method, 0.05, 1);
     EXPECT_TRUE(test::sameBytes(one, refined(*bracket, method, 0.05, 2)));
@@ -272,7 +269,7 @@ TEST(Refine, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Refine, CanBeCancelled) {
-  const auto bracket = shape(Shape::Bracket);
+  const auto bracket = test::shapeOf(Shape::Bracket, kVoxel);
   for (const Method method : {Method::MarchingCubes, Method::Dual}) {
     ExtractOptions options;
     options.refine = 0.02;
@@ -290,7 +287,7 @@ TEST(Refine, CanBeCancelled) {
 }
 
 TEST(Refine, RefusesWhatMeansNothing) {
-  const auto ball = shape(Shape::Sphere);
+  const auto ball = test::shapeOf(Shape::Sphere, kVoxel);
   for (const double tolerance : {-1.0, std::numeric_limits<double>::infinity()}) {
     test::expectError(ErrorCode::InvalidArgument, "refine",
                       [&] { (void)refined(*ball, Method::MarchingCubes, tolerance); });

@@ -17,7 +17,6 @@
 namespace tufa::extraction {
 namespace {
 
-using openvdb::Coord;
 using openvdb::FloatGrid;
 
 /// Three corners of a tetrahedron on a face of the cell, by their places.
@@ -141,12 +140,12 @@ class PiecewiseLinear {
  public:
   explicit PiecewiseLinear(const FloatGrid& grid) : grid_(grid) {}
 
-  void addCell(const Coord& cell, Method method) {
+  void addCell(const openvdb::Coord& cell, Method method) {
     const auto corner = [&](int i) {
-      return Coord(2 * cell[0] + (i >> 2 << 1), 2 * cell[1] + (i & 2),
-                   2 * cell[2] + ((i & 1) << 1));
+      return openvdb::Coord(2 * cell[0] + (i >> 2 << 1), 2 * cell[1] + (i & 2),
+                            2 * cell[2] + ((i & 1) << 1));
     };
-    const Coord centre(2 * cell[0] + 1, 2 * cell[1] + 1, 2 * cell[2] + 1);
+    const openvdb::Coord centre(2 * cell[0] + 1, 2 * cell[1] + 1, 2 * cell[2] + 1);
     if (method == Method::MarchingTetrahedra6) {
       std::array<int, 3> order = {4, 2, 1};
       std::sort(order.begin(), order.end());
@@ -168,15 +167,15 @@ class PiecewiseLinear {
     for (int axis = 0; axis < 3; ++axis) {
       for (const int side : {-1, 1}) {
         if (body && side < 0) continue;  // the cell below has those
-        Coord other = centre;
+        openvdb::Coord other = centre;
         other[axis] += body ? 2 * side : side;
-        Coord middle = centre;
+        openvdb::Coord middle = centre;
         middle[axis] += side;
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         const std::array<std::array<int, 2>, 5> around = {
             {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}};
         for (int i = 0; i < 4; ++i) {
-          Coord a = middle, b = middle;
+          openvdb::Coord a = middle, b = middle;
           a[u] += around[i][0], a[v] += around[i][1];
           b[u] += around[i + 1][0], b[v] += around[i + 1][1];
           add({centre, other, a, b});
@@ -192,16 +191,16 @@ class PiecewiseLinear {
   }
 
  private:
-  [[nodiscard]] bool isInside(const Coord& half) const {
+  [[nodiscard]] bool isInside(const openvdb::Coord& half) const {
     double sum = 0;
     for (int i = 0; i < 8; ++i) {
-      sum += grid_.tree().getValue(Coord((half[0] + (i >> 2)) >> 1, (half[1] + ((i >> 1) & 1)) >> 1,
-                                         (half[2] + (i & 1)) >> 1));
+      sum += grid_.tree().getValue(openvdb::Coord(
+          (half[0] + (i >> 2)) >> 1, (half[1] + ((i >> 1) & 1)) >> 1, (half[2] + (i & 1)) >> 1));
     }
     return sum < 0;
   }
 
-  void add(std::vector<Coord> points) {
+  void add(std::vector<openvdb::Coord> points) {
     std::sort(points.begin(), points.end());
     std::array<bool, 4> inside;
     for (int i = 0; i < 4; ++i) inside[i] = isInside(points[i]);
@@ -219,7 +218,7 @@ class PiecewiseLinear {
   }
 
   const FloatGrid& grid_;
-  std::set<std::vector<Coord>> edges_, triangles_;
+  std::set<std::vector<openvdb::Coord>> edges_, triangles_;
   std::size_t tetrahedra_ = 0;
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tufa::extraction::test {
+namespace tufa::extraction::cells {
 
 /// The trilinear interpolant of a cell, by its definition. Corner (dx, dy, dz) is number
 /// dx * 4 + dy * 2 + dz.
@@ -137,4 +137,4 @@ class TrilinearCell {
   std::array<double, 8> terms_{};
 };
 
-}  // namespace tufa::extraction::test
+}  // namespace tufa::extraction::cells

@@ -15,7 +15,6 @@
 namespace tufa::grid {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::DoubleGrid;
 using openvdb::FloatGrid;
@@ -42,7 +41,8 @@ void expectSides(const GridT& grid, const IsoChoice& iso, NonFinite nonFinite = 
   for (std::size_t i = 0; i < blocks.count(); ++i) {
     const auto block = static_cast<BlockRef>(i);
     for (int cell = 0; cell < kBlockCells; ++cell) {
-      const Coord at = toVdb(blocks.origin(block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7));
+      const openvdb::Coord at =
+          toVdb(blocks.origin(block).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7));
       const auto value = grid.tree().getValue(at);
       const bool inside =
           std::isfinite(value) && (iso.insideIsBelow ? value < iso.isovalue : value > iso.isovalue);
@@ -75,8 +75,9 @@ TYPED_TEST(BlocksOf, IsovalueThatFloatCannotHoldSeparatesItsNeighbours) {
   const std::array<Value, 3> values = {std::nextafter(nearest, -infinity), nearest,
                                        std::nextafter(nearest, infinity)};
   int next = 0;
-  const auto grid = tufa::test::sampled<TypeParam>(
-      CoordBBox(Coord(0), Coord(7)), 1, [&](const Coord&) { return values[next++ % 3]; });
+  const auto grid =
+      tufa::test::sampled<TypeParam>(CoordBBox(openvdb::Coord(0), openvdb::Coord(7)), 1,
+                                     [&](const openvdb::Coord&) { return values[next++ % 3]; });
   expectSides(*grid, {isovalue, true});
   expectSides(*grid, {isovalue, false});
   expectSides(*grid, {static_cast<double>(nearest), true});
@@ -101,9 +102,9 @@ TYPED_TEST(BlocksOf, NonFiniteSamplesAreOutside) {
 }
 
 TEST(Blocks, RefusalNamesTheCountAndTheFirstCoordinate) {
-  auto grid = tufa::test::noise<FloatGrid>({.size = 16, .first = Coord(0)});
-  grid->tree().setValue(Coord(9, 3, 4), std::numeric_limits<float>::quiet_NaN());
-  grid->tree().setValue(Coord(1, 12, 7), std::numeric_limits<float>::infinity());
+  auto grid = tufa::test::noise<FloatGrid>({.size = 16, .first = openvdb::Coord(0)});
+  grid->tree().setValue(openvdb::Coord(9, 3, 4), std::numeric_limits<float>::quiet_NaN());
+  grid->tree().setValue(openvdb::Coord(1, 12, 7), std::numeric_limits<float>::infinity());
   try {
     (void)blocksOf(*grid, {0, true});
     FAIL() << "accepted";
@@ -117,7 +118,7 @@ TEST(Blocks, RefusalNamesTheCountAndTheFirstCoordinate) {
 
 TEST(Blocks, NonFiniteTilesAndBackgroundsAreRefused) {
   auto grid = FloatGrid::create(1);
-  grid->tree().addTile(1, Coord(8, 16, 24), std::numeric_limits<float>::quiet_NaN(), true);
+  grid->tree().addTile(1, openvdb::Coord(8, 16, 24), std::numeric_limits<float>::quiet_NaN(), true);
   EXPECT_THROW((void)blocksOf(*grid, {0, true}), Error);
   const auto background = FloatGrid::create(std::numeric_limits<float>::infinity());
   EXPECT_THROW((void)blocksOf(*background, {0, true}), Error);
@@ -139,7 +140,8 @@ TYPED_TEST(BlocksOf, FindAllCrossedEdgesOfRandomTrees) {
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
     // The seam between nodes at the origin, and one between lower nodes.
-    const Coord first = seed % 2 == 0 ? Coord(-24, -16, -24) : Coord(104, -8, 112);
+    const openvdb::Coord first =
+        seed % 2 == 0 ? openvdb::Coord(-24, -16, -24) : openvdb::Coord(104, -8, 112);
     const int blocks = 5;
     const auto grid = randomTree<TypeParam>(
         {.seed = seed, .first = first, .blocks = blocks, .background = seed % 3 == 0 ? -1.0 : 1.0});
@@ -149,20 +151,23 @@ TYPED_TEST(BlocksOf, FindAllCrossedEdgesOfRandomTrees) {
 
 TEST(Blocks, FindTheSurfaceOneStepBelowALeaf) {
   for (const double background : {1.0, -1.0}) {
-    for (const Coord& corner : {Coord(0, 0, 0), Coord(7, 7, 7), Coord(0, 3, 7), Coord(4, 0, 0)}) {
+    for (const openvdb::Coord& corner : {openvdb::Coord(0, 0, 0), openvdb::Coord(7, 7, 7),
+                                         openvdb::Coord(0, 3, 7), openvdb::Coord(4, 0, 0)}) {
       auto grid = FloatGrid::create(static_cast<float>(background));
-      grid->tree().setValue(Coord(-8, 16, 4096) + corner, static_cast<float>(-background));
-      expectAllCrossedEdges(*grid, CoordBBox(Coord(-20, 4, 4084), Coord(12, 36, 4116)));
+      grid->tree().setValue(openvdb::Coord(-8, 16, 4096) + corner, static_cast<float>(-background));
+      expectAllCrossedEdges(*grid,
+                            CoordBBox(openvdb::Coord(-20, 4, 4084), openvdb::Coord(12, 36, 4116)));
     }
   }
 }
 
 TEST(Blocks, FindTheSurfaceBetweenTiles) {
   // Tiles that touch in a face, an edge and a corner, on both sides of node seams.
-  const std::array<Coord, 4> steps = {Coord(8, 0, 0), Coord(0, 8, 8), Coord(-8, 8, -8),
-                                      Coord(0, 0, -8)};
-  for (const Coord& first : {Coord(-8, -8, -8), Coord(120, 0, 4088), Coord(0, 64, 32)}) {
-    for (const Coord& step : steps) {
+  const std::array<openvdb::Coord, 4> steps = {openvdb::Coord(8, 0, 0), openvdb::Coord(0, 8, 8),
+                                               openvdb::Coord(-8, 8, -8), openvdb::Coord(0, 0, -8)};
+  for (const openvdb::Coord& first :
+       {openvdb::Coord(-8, -8, -8), openvdb::Coord(120, 0, 4088), openvdb::Coord(0, 64, 32)}) {
+    for (const openvdb::Coord& step : steps) {
       for (const float background : {1.0F, -1.0F}) {
         auto grid = FloatGrid::create(background);
         grid->tree().addTile(1, first, -1, true);
@@ -174,7 +179,7 @@ TEST(Blocks, FindTheSurfaceBetweenTiles) {
 }
 
 TEST(Blocks, FindTheSurfaceOfALargeTile) {
-  const Coord origin(-128, 128, 3968);
+  const openvdb::Coord origin(-128, 128, 3968);
   for (const float background : {1.0F, -1.0F}) {
     auto grid = FloatGrid::create(background);
     grid->tree().addTile(2, origin, -background, true);
@@ -194,14 +199,16 @@ TEST(Blocks, FindTheSurfaceOfALargeTile) {
 TEST(Blocks, FindTheSurfaceBetweenLargeTilesAndLeavesInside) {
   // Large tiles of both sides next to each other, in a background of one of them.
   auto grid = FloatGrid::create(1);
-  grid->tree().addTile(2, Coord(0), -1, true);
-  grid->tree().addTile(2, Coord(128, 0, 0), 1, true);
-  grid->tree().addTile(2, Coord(0, 128, 128), -1, false);
-  grid->tree().touchLeaf(Coord(120, 128, 0))->fill(-1.0F);
+  grid->tree().addTile(2, openvdb::Coord(0), -1, true);
+  grid->tree().addTile(2, openvdb::Coord(128, 0, 0), 1, true);
+  grid->tree().addTile(2, openvdb::Coord(0, 128, 128), -1, false);
+  grid->tree().touchLeaf(openvdb::Coord(120, 128, 0))->fill(-1.0F);
   const IsoChoice iso{0, true};
   const auto blocks = blocksOf(*grid, iso);
-  for (const Coord& corner : {Coord(0), Coord(128, 0, 0), Coord(128, 128, 0), Coord(128, 128, 128),
-                              Coord(0, 128, 128), Coord(0, 256, 256), Coord(128, 0, 128)}) {
+  for (const openvdb::Coord& corner :
+       {openvdb::Coord(0), openvdb::Coord(128, 0, 0), openvdb::Coord(128, 128, 0),
+        openvdb::Coord(128, 128, 128), openvdb::Coord(0, 128, 128), openvdb::Coord(0, 256, 256),
+        openvdb::Coord(128, 0, 128)}) {
     const CoordBBox window(corner.offsetBy(-20), corner.offsetBy(20));
     EXPECT_TRUE(crossedEdgesOf(blocks, window) == crossedEdgesOf(grid->tree(), iso, window))
         << corner;
@@ -213,16 +220,18 @@ TEST(Blocks, FindTheSurfaceAtARootTile) {
   // sides is surface: leaf, small tile and large tile outside, one beyond each kind of seam.
   for (const float background : {-1.0F, 1.0F}) {
     auto grid = FloatGrid::create(background);
-    grid->tree().addTile(3, Coord(0), background, true);
-    grid->tree().addTile(1, Coord(-8, 16, 24), -background, true);
-    grid->tree().addTile(2, Coord(128, -128, 256), -background, false);
-    grid->tree().touchLeaf(Coord(4096, 80, 96))->fill(-background);
-    grid->tree().touchLeaf(Coord(-8, -8, -8))->fill(-background);
-    grid->tree().addTile(1, Coord(4096, 4096, 4096), -background, true);
+    grid->tree().addTile(3, openvdb::Coord(0), background, true);
+    grid->tree().addTile(1, openvdb::Coord(-8, 16, 24), -background, true);
+    grid->tree().addTile(2, openvdb::Coord(128, -128, 256), -background, false);
+    grid->tree().touchLeaf(openvdb::Coord(4096, 80, 96))->fill(-background);
+    grid->tree().touchLeaf(openvdb::Coord(-8, -8, -8))->fill(-background);
+    grid->tree().addTile(1, openvdb::Coord(4096, 4096, 4096), -background, true);
     const IsoChoice iso{0, true};
     const auto blocks = blocksOf(*grid, iso);
-    for (const Coord& around : {Coord(-4, 20, 28), Coord(128, 0, 256), Coord(256, 0, 384),
-                                Coord(4096, 84, 100), Coord(0), Coord(4096), Coord(200, -2, 300)}) {
+    for (const openvdb::Coord& around :
+         {openvdb::Coord(-4, 20, 28), openvdb::Coord(128, 0, 256), openvdb::Coord(256, 0, 384),
+          openvdb::Coord(4096, 84, 100), openvdb::Coord(0), openvdb::Coord(4096),
+          openvdb::Coord(200, -2, 300)}) {
       const CoordBBox window(around.offsetBy(-20), around.offsetBy(20));
       const auto expected = crossedEdgesOf(grid->tree(), iso, window);
       EXPECT_FALSE(expected.empty());
@@ -233,10 +242,10 @@ TEST(Blocks, FindTheSurfaceAtARootTile) {
 
 TEST(Blocks, CountActiveVoxelsOfLeavesAndTiles) {
   auto grid = FloatGrid::create(1);
-  grid->tree().addTile(1, Coord(0), -1, true);
-  grid->tree().addTile(1, Coord(64), -1, false);
-  grid->tree().addTile(2, Coord(128), 1, true);
-  grid->tree().setValue(Coord(-5), -1);
+  grid->tree().addTile(1, openvdb::Coord(0), -1, true);
+  grid->tree().addTile(1, openvdb::Coord(64), -1, false);
+  grid->tree().addTile(2, openvdb::Coord(128), 1, true);
+  grid->tree().setValue(openvdb::Coord(-5), -1);
   EXPECT_EQ(blocksOf(*grid, {0, true}).activeVoxels(), 512U + 128U * 128U * 128U + 1U);
 }
 

@@ -10,13 +10,12 @@
 namespace tufa::grid {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
 FloatGrid::Ptr rampGrid(float background, openvdb::GridClass gridClass) {
-  auto grid = test::sampled<FloatGrid>(CoordBBox(Coord(0), Coord(0, 0, 4)), background,
-                                       [](const Coord& at) { return at.z(); });
+  auto grid = test::sampled<FloatGrid>(CoordBBox(openvdb::Coord(0), openvdb::Coord(0, 0, 4)),
+                                       background, [](const openvdb::Coord& at) { return at.z(); });
   grid->setGridClass(gridClass);
   return grid;
 }
@@ -52,8 +51,8 @@ TEST(Isovalue, CallerDecides) {
 
 TEST(Isovalue, IgnoresNonFiniteSamples) {
   auto grid = rampGrid(0, openvdb::GRID_FOG_VOLUME);
-  grid->tree().setValue(Coord(1), std::numeric_limits<float>::quiet_NaN());
-  grid->tree().setValue(Coord(2), std::numeric_limits<float>::infinity());
+  grid->tree().setValue(openvdb::Coord(1), std::numeric_limits<float>::quiet_NaN());
+  grid->tree().setValue(openvdb::Coord(2), std::numeric_limits<float>::infinity());
   EXPECT_EQ(chooseIsovalue(*grid, {}, Inside::Auto).isovalue, 2);
 }
 

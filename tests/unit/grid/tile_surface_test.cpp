@@ -12,7 +12,6 @@
 namespace tufa::grid {
 namespace {
 
-using openvdb::Coord;
 using openvdb::FloatGrid;
 
 constexpr int kRootLevel = 3, kUpperLevel = 2, kLowerLevel = 1;
@@ -29,9 +28,9 @@ TEST(TileSurface, IsThatOfOneTile) {
        {std::pair{kLowerLevel, 8U}, {kUpperLevel, 128U}, {kRootLevel, 4096U}}) {
     for (const float background : {1.F, -1.F}) {
       const auto grid = FloatGrid::create(background);
-      grid->tree().addTile(level, Coord(0), -background, false);
+      grid->tree().addTile(level, openvdb::Coord(0), -background, false);
       EXPECT_EQ(facesOf(*grid), 6 * square(side)) << level;
-      grid->tree().addTile(level, Coord(0), background, true);
+      grid->tree().addTile(level, openvdb::Coord(0), background, true);
       EXPECT_EQ(facesOf(*grid), 0U) << level;
     }
   }
@@ -39,22 +38,23 @@ TEST(TileSurface, IsThatOfOneTile) {
 
 TEST(TileSurface, CountsNothingBetweenTilesOfOneSide) {
   const auto grid = FloatGrid::create(1);
-  grid->tree().addTile(kRootLevel, Coord(0), -1, false);
-  grid->tree().addTile(kRootLevel, Coord(4096, 0, 0), -2, true);
+  grid->tree().addTile(kRootLevel, openvdb::Coord(0), -1, false);
+  grid->tree().addTile(kRootLevel, openvdb::Coord(4096, 0, 0), -2, true);
   EXPECT_EQ(facesOf(*grid), 10 * square(4096));
-  grid->tree().addTile(kRootLevel, Coord(-4096, 0, 0), 2, true);
+  grid->tree().addTile(kRootLevel, openvdb::Coord(-4096, 0, 0), 2, true);
   EXPECT_EQ(facesOf(*grid), 10 * square(4096));
 }
 
 TEST(TileSurface, LooksIntoNodesBesideATile) {
   const auto grid = FloatGrid::create(1);
-  grid->tree().addTile(kRootLevel, Coord(0), -1, false);
-  grid->tree().addTile(kUpperLevel, Coord(-128, 0, 0), -1, false);  // covers a part of a face
+  grid->tree().addTile(kRootLevel, openvdb::Coord(0), -1, false);
+  grid->tree().addTile(kUpperLevel, openvdb::Coord(-128, 0, 0), -1,
+                       false);  // covers a part of a face
   EXPECT_EQ(facesOf(*grid), 6 * square(4096) - square(128) + 5 * square(128));
-  grid->tree().addTile(kLowerLevel, Coord(4096, 8, 8), -1, false);
+  grid->tree().addTile(kLowerLevel, openvdb::Coord(4096, 8, 8), -1, false);
   EXPECT_EQ(facesOf(*grid), 6 * square(4096) - square(128) + 5 * square(128) + 4 * square(8));
   // A leaf brings its own bytes.
-  grid->tree().touchLeaf(Coord(4096, 80, 80));
+  grid->tree().touchLeaf(openvdb::Coord(4096, 80, 80));
   EXPECT_EQ(facesOf(*grid),
             6 * square(4096) - square(128) + 5 * square(128) + 4 * square(8) - square(8));
 }
@@ -70,7 +70,7 @@ TEST(TileSurface, OfALevelSetIsNone) {
 TEST(TileSurface, StopsAtTheEndsOfCoordinates) {
   constexpr std::int32_t kFirst = std::numeric_limits<std::int32_t>::min();
   const auto grid = FloatGrid::create(1);
-  grid->tree().addTile(kRootLevel, Coord(kFirst, 0, 0), -1, false);
+  grid->tree().addTile(kRootLevel, openvdb::Coord(kFirst, 0, 0), -1, false);
   EXPECT_EQ(facesOf(*grid), 5 * square(4096));
 }
 
@@ -79,7 +79,7 @@ TEST(TileSurface, AboveTheLimitIsRefused) {
   for (const int count : {1, 64}) {
     const auto grid = FloatGrid::create(1);
     for (int n = 0; n < count; ++n) {
-      grid->tree().addTile(kRootLevel, Coord(8192 * n, 0, 0), -1, true);
+      grid->tree().addTile(kRootLevel, openvdb::Coord(8192 * n, 0, 0), -1, true);
     }
     const std::string faces = std::to_string(count * 6 * square(4096));
     for (const bool uniform : {true, false}) {
@@ -92,7 +92,7 @@ TEST(TileSurface, AboveTheLimitIsRefused) {
     }
   }
   const auto grid = FloatGrid::create(1);
-  grid->tree().addTile(kUpperLevel, Coord(0), -1, true);
+  grid->tree().addTile(kUpperLevel, openvdb::Coord(0), -1, true);
   ContourOptions options;
   options.tileFaces = 6 * square(128) - 1;
   test::expectError(ErrorCode::LimitExceeded, "faces", [&] { (void)contour(*grid, options); });

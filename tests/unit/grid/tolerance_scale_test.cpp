@@ -10,14 +10,13 @@
 namespace tufa::grid {
 namespace {
 
-using openvdb::Coord;
 using openvdb::FloatGrid;
 
 const Transform kIdentity(*openvdb::math::Transform::createLinearTransform(1.0));
 
 TEST(ToleranceScale, IsTheNearestValue) {
   const auto scales = FloatGrid::create(7);
-  scales->tree().setValue(Coord(1, 2, 3), 0.5F);
+  scales->tree().setValue(openvdb::Coord(1, 2, 3), 0.5F);
   const auto scale = toleranceScale(scales, kIdentity);
   EXPECT_EQ(scale(Vec3(1, 2, 3)), 0.5);
   EXPECT_EQ(scale(Vec3(1.4, 1.6, 3.4)), 0.5);
@@ -30,11 +29,11 @@ TEST(ToleranceScale, IsZeroWhereTheValueSaysNothing) {
   const auto scales = FloatGrid::create(1);
   const float values[] = {-2, std::numeric_limits<float>::quiet_NaN(),
                           -std::numeric_limits<float>::infinity()};
-  for (int i = 0; i < 3; ++i) scales->tree().setValue(Coord(i, 0, 0), values[i]);
+  for (int i = 0; i < 3; ++i) scales->tree().setValue(openvdb::Coord(i, 0, 0), values[i]);
   const auto scale = toleranceScale(scales, kIdentity);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(scale(Vec3(i, 0, 0)), 0) << values[i];
   EXPECT_EQ(scale(Vec3(3, 0, 0)), 1);
-  scales->tree().setValue(Coord(3, 0, 0), std::numeric_limits<float>::infinity());
+  scales->tree().setValue(openvdb::Coord(3, 0, 0), std::numeric_limits<float>::infinity());
   EXPECT_EQ(scale(Vec3(3, 0, 0)), double{std::numeric_limits<float>::max()});
 }
 
@@ -43,7 +42,7 @@ TEST(ToleranceScale, LooksAtTheSamePlaceOfTheWorld) {
   const auto scales = FloatGrid::create(1);
   scales->setTransform(openvdb::math::Transform::createLinearTransform(2));
   scales->transform().postTranslate(openvdb::Vec3d(10, 0, 0));
-  scales->tree().setValue(Coord(3, 0, 0), 0.25F);  // at 16
+  scales->tree().setValue(openvdb::Coord(3, 0, 0), 0.25F);  // at 16
   const auto meshed = openvdb::math::Transform::createLinearTransform(0.5);
   meshed->postTranslate(openvdb::Vec3d(-3, 0, 0));
   const auto scale = toleranceScale(scales, Transform(*meshed));

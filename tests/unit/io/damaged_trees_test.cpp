@@ -22,7 +22,6 @@ namespace tufa {
 namespace {
 
 using namespace openvdb::io;
-using openvdb::Coord;
 using test::expectError;
 using test::readBytes;
 using test::ScratchFolder;
@@ -50,7 +49,7 @@ typename GridT::Ptr makeVaried(double background) {
   auto& tree = grid->tree();
   std::mt19937 random(1);
   const auto below = [&](int end) { return static_cast<int>(random() % 1000) % end; };
-  const auto fill = [&](const Coord& origin, int active, int kinds) {
+  const auto fill = [&](const openvdb::Coord& origin, int active, int kinds) {
     auto* const leaf = tree.touchLeaf(origin);
     for (openvdb::Index n = 0; n < leaf->SIZE; ++n) {
       const bool on = below(8) < active;
@@ -61,14 +60,14 @@ typename GridT::Ptr makeVaried(double background) {
   };
   int x = 0;
   for (const int active : {0, 1, 4, 8}) {
-    for (const int kinds : {1, 2, 3, 100}) fill(Coord(8 * x++, 0, 0), active, kinds);
+    for (const int kinds : {1, 2, 3, 100}) fill(openvdb::Coord(8 * x++, 0, 0), active, kinds);
   }
-  fill(Coord(-8), 3, 1);
-  fill(Coord(-8, 5000, 16), 8, 1);
-  tree.addTile(1, Coord(0, 64, 0), makeValue<Value>(2), true);
-  tree.addTile(1, Coord(0, 64, 64), makeValue<Value>(3), false);
-  tree.addTile(2, Coord(0, 1024, 0), makeValue<Value>(4), true);
-  tree.addTile(3, Coord(4096, 8192, -4096), makeValue<Value>(5), true);
+  fill(openvdb::Coord(-8), 3, 1);
+  fill(openvdb::Coord(-8, 5000, 16), 8, 1);
+  tree.addTile(1, openvdb::Coord(0, 64, 0), makeValue<Value>(2), true);
+  tree.addTile(1, openvdb::Coord(0, 64, 64), makeValue<Value>(3), false);
+  tree.addTile(2, openvdb::Coord(0, 1024, 0), makeValue<Value>(4), true);
+  tree.addTile(3, openvdb::Coord(4096, 8192, -4096), makeValue<Value>(5), true);
   return grid;
 }
 
@@ -175,7 +174,7 @@ LeafFile makeLeafFile(const ScratchFolder& folder, std::uint32_t compression, bo
   auto grid = GridT::create(makeValue<Value>(77));
   grid->setSaveFloatAsHalf(half);
   std::mt19937 random(1);
-  auto* const leaf = grid->tree().touchLeaf(Coord(0));
+  auto* const leaf = grid->tree().touchLeaf(openvdb::Coord(0));
   for (openvdb::Index n = 0; n < leaf->SIZE; ++n) {
     const auto noise = static_cast<std::uint32_t>(random());
     leaf->setValueOn(n, makeValue<Value>(noisy ? noise / 131073.0 : 3.0));

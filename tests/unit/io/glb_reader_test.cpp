@@ -7,24 +7,15 @@
 #include "support/expect_error.h"
 #include "support/glb_bytes.h"
 #include "support/scratch_folder.h"
+#include "unit/io/text_mesh.h"
 
 namespace tufa {
 namespace {
 
+using test::expectUnreadable;
 using test::glbOf;
 using test::glbTriangle;
-using test::ScratchFolder;
-using test::writeBytes;
-
-Mesh readText(const std::string& name, const std::string& text) {
-  const ScratchFolder folder;
-  writeBytes(folder / name, text);
-  return readMesh(folder / name);
-}
-
-void expectUnreadable(const std::string& name, const std::string& text, const std::string& part) {
-  test::expectError(ErrorCode::UnreadableFile, part, [&] { (void)readText(name, text); });
-}
+using test::readText;
 
 TEST(GlbReader, GoesThroughNodeTransforms) {
   // A quarter turn about z and a scale of 2, below a translation.

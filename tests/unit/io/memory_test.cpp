@@ -10,6 +10,7 @@
 
 #include "support/expect_error.h"
 #include "support/scratch_folder.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
@@ -18,15 +19,9 @@ using test::expectError;
 using test::readBytes;
 using test::ScratchFolder;
 
-openvdb::FloatGrid::Ptr makeGrid(Shape shape) {
-  ShapeOptions options;
-  options.voxelSize = 0.1;
-  return makeShape(shape, options);
-}
-
 TEST(Memory, MeshesHaveTheBytesOfFiles) {
   const ScratchFolder folder;
-  const Mesh mesh = contour(*makeGrid(Shape::Box));
+  const Mesh mesh = contour(*test::shapeOf(Shape::Box, 0.1));
   for (const std::string_view name : meshFormatNames()) {
     const auto path = folder / ("box." + std::string(name));
     if (!hasFormat(meshFormatOf(path))) continue;
@@ -42,7 +37,7 @@ TEST(Memory, MeshesHaveTheBytesOfFiles) {
 
 TEST(Memory, SeveralMeshesAndLodsHaveTheBytesOfFiles) {
   const ScratchFolder folder;
-  const auto grid = makeGrid(Shape::Torus);
+  const auto grid = test::shapeOf(Shape::Torus, 0.1);
   const Mesh mesh = contour(*grid);
   std::ostringstream meshes, lods;
   writeMeshes({{"a", mesh}, {"b", mesh}}, folder / "m.obj");
@@ -65,7 +60,7 @@ TEST(Memory, SeveralMeshesAndLodsHaveTheBytesOfFiles) {
 
 TEST(Memory, GridsComeBackFromStreamsAndFiles) {
   const ScratchFolder folder;
-  const auto sphere = makeGrid(Shape::Sphere), box = makeGrid(Shape::Box);
+  const auto sphere = test::shapeOf(Shape::Sphere, 0.1), box = test::shapeOf(Shape::Box, 0.1);
   writeGrids({sphere, box}, folder / "two.vdb");
   std::ostringstream stream;
   writeGrids({sphere, box}, stream);
@@ -80,7 +75,7 @@ TEST(Memory, GridsComeBackFromStreamsAndFiles) {
 
 TEST(Memory, DamageIsAnErrorWithTheGivenName) {
   std::ostringstream stream;
-  writeGrids({makeGrid(Shape::Sphere)}, stream);
+  writeGrids({test::shapeOf(Shape::Sphere, 0.1)}, stream);
   const std::string bytes = stream.str();
   for (const std::size_t size : {std::size_t{0}, std::size_t{4}, bytes.size() / 2}) {
     expectError(ErrorCode::UnreadableFile, "cannot read the pipe: ", [&] {
@@ -93,12 +88,12 @@ TEST(Memory, DamageIsAnErrorWithTheGivenName) {
 }
 
 TEST(Memory, AStreamThatFailsIsAnError) {
-  const Mesh mesh = contour(*makeGrid(Shape::Sphere));
+  const Mesh mesh = contour(*test::shapeOf(Shape::Sphere, 0.1));
   std::ostringstream stream;
   stream.setstate(std::ios_base::badbit);
   expectError(ErrorCode::UnwritableFile, "stream", [&] { write(mesh, stream, MeshFormat::Ply); });
   expectError(ErrorCode::UnwritableFile, "stream",
-              [&] { writeGrids({makeGrid(Shape::Sphere)}, stream); });
+              [&] { writeGrids({test::shapeOf(Shape::Sphere, 0.1)}, stream); });
 }
 
 }  // namespace

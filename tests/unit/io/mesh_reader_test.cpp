@@ -9,23 +9,13 @@
 
 #include "support/expect_error.h"
 #include "support/scratch_folder.h"
+#include "unit/io/text_mesh.h"
 
 namespace tufa {
 namespace {
 
-using test::expectError;
-using test::ScratchFolder;
-using test::writeBytes;
-
-Mesh readText(const std::string& name, const std::string& text) {
-  const ScratchFolder folder;
-  writeBytes(folder / name, text);
-  return readMesh(folder / name);
-}
-
-void expectUnreadable(const std::string& name, const std::string& text, const std::string& part) {
-  expectError(ErrorCode::UnreadableFile, part, [&] { (void)readText(name, text); });
-}
+using test::expectUnreadable;
+using test::readText;
 
 template <class Number>
 void append(std::string& bytes, Number value, bool bigEndian = false) {

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "support/expect_error.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
@@ -41,18 +42,12 @@ std::vector<double> arrayOf(const std::string& text, const std::string& head) {
   return numbers;
 }
 
-openvdb::FloatGrid::Ptr makeGrid(Shape shape) {
-  ShapeOptions options;
-  options.voxelSize = 0.1;
-  return makeShape(shape, options);
-}
-
 bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
 TEST(Usda, HasTheFacesAndTheirCornersNormals) {
-  const Mesh mesh = contour(*makeGrid(Shape::Box));
+  const Mesh mesh = contour(*test::shapeOf(Shape::Box, 0.1));
   const std::string text = usdaOf(mesh);
   EXPECT_EQ(text.rfind("#usda 1.0\n(\n    defaultPrim = \"mesh\"\n", 0), 0u);
   const auto points = arrayOf(text, "point3f[] points");
@@ -77,7 +72,7 @@ TEST(Usda, HasTheFacesAndTheirCornersNormals) {
 TEST(Usda, KeepsQuadsWhereNormalsAreNotSplit) {
   ContourOptions uniform;
   uniform.uniform = true;
-  const Mesh mesh = contour(*makeGrid(Shape::Sphere), uniform);
+  const Mesh mesh = contour(*test::shapeOf(Shape::Sphere, 0.1), uniform);
   ASSERT_FALSE(mesh.quads.empty());
   WriteOptions options;
   options.creaseAngle = 180;
@@ -139,7 +134,7 @@ TEST(Usda, AttributesArePrimvars) {
 TEST(Usda, LodsAreVariantsAndMeshesArePrims) {
   LodOptions options;
   options.levels = 3;
-  const LodChain chain = buildLods(*makeGrid(Shape::Torus), options);
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.1), options);
   std::ostringstream stream;
   LodWriteReport report;
   writeLods(chain, stream, MeshFormat::Usda, {}, &report);

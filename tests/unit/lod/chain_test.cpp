@@ -13,17 +13,12 @@
 
 #include "support/expect_error.h"
 #include "support/fields.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
 
 using test::expectError;
-
-openvdb::FloatGrid::Ptr shape(Shape kind, double voxelSize) {
-  ShapeOptions options;
-  options.voxelSize = voxelSize;
-  return makeShape(kind, options);
-}
 
 struct Sample {
   const char* name;
@@ -75,7 +70,7 @@ void expectEqual(const LodChain& a, const LodChain& b) {
 TEST_P(LodChains, EveryLevelKeepsItsPromises) {
   LodOptions options;
   options.levels = 4;
-  const LodChain chain = buildLods(*shape(GetParam().shape, GetParam().voxelSize), options);
+  const LodChain chain = buildLods(*test::shapeOf(GetParam().shape, GetParam().voxelSize), options);
   ASSERT_GE(chain.levels.size(), 2u);
   EXPECT_EQ(chain.levels.size() < 4, !chain.stopped.empty()) << chain.stopped;
   EXPECT_NEAR(chain.voxelSize, GetParam().voxelSize, 1e-12);
@@ -84,7 +79,7 @@ TEST_P(LodChains, EveryLevelKeepsItsPromises) {
 }
 
 TEST_P(LodChains, KeepTheirBudgets) {
-  const auto grid = shape(GetParam().shape, GetParam().voxelSize);
+  const auto grid = test::shapeOf(GetParam().shape, GetParam().voxelSize);
   ContourOptions uniform;
   uniform.uniform = true;
   const std::size_t all = contour(*grid, uniform).triangleCount();
@@ -111,7 +106,7 @@ TEST_P(LodChains, KeepTheirBudgets) {
 // A number of triangles costs no more error than the tolerance that gives as many.
 TEST(LodChain, SpendsNoMoreErrorOnABudgetThanATolerance) {
   for (const Shape kind : {Shape::Torus, Shape::Terrain, Shape::Bracket}) {
-    const auto grid = shape(kind, 0.03);
+    const auto grid = test::shapeOf(kind, 0.03);
     for (const double tolerance : {0.1, 0.3, 0.9}) {
       SCOPED_TRACE(std::to_string(static_cast<int>(kind)) + " at " + std::to_string(tolerance));
       LodOptions options;
@@ -132,20 +127,21 @@ TEST(LodChain, SpendsNoMoreErrorOnABudgetThanATolerance) {
 TEST(LodChain, EndsBeforeABudgetThatCannotBeMet) {
   LodOptions options;
   options.triangles = {1000, 4};
-  const LodChain chain = buildLods(*shape(Shape::Torus, 0.05), options);
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.05), options);
   ASSERT_EQ(chain.levels.size(), 1u);
   EXPECT_NE(chain.stopped.find("level 1 cannot have 4 triangles"), std::string::npos)
       << chain.stopped;
   expectPromises(chain);
   options.triangles = {1000000, 900000};
-  EXPECT_NE(buildLods(*shape(Shape::Torus, 0.05), options).stopped.find("fewer than the 900000"),
-            std::string::npos);
+  EXPECT_NE(
+      buildLods(*test::shapeOf(Shape::Torus, 0.05), options).stopped.find("fewer than the 900000"),
+      std::string::npos);
 }
 
 TEST(LodChain, SaysWhatWasComparedForALevelLeftOut) {
   LodOptions options;
   options.tolerances = {1.6, 6.4, 25.6, 102.4};  // soon as coarse as a torus can be
-  const LodChain chain = buildLods(*shape(Shape::Torus, 0.05), options);
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.05), options);
   ASSERT_LT(chain.levels.size(), 4u);
   const std::size_t level = chain.levels.size();
   const std::string begin = "level " + std::to_string(level) + " was left out: at a tolerance of ";
@@ -160,7 +156,7 @@ TEST(LodChain, SaysWhatWasComparedForALevelLeftOut) {
 TEST(LodChain, IsEmptyWhereNoBudgetCanBeMet) {
   LodOptions options;
   options.triangles = {4};
-  const LodChain chain = buildLods(*shape(Shape::Torus, 0.1), options);
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.1), options);
   EXPECT_TRUE(chain.levels.empty());
   EXPECT_NE(chain.stopped.find("level 0 cannot have 4 triangles"), std::string::npos);
 }
@@ -273,7 +269,7 @@ TEST(LodChain, DropsComponentsForABudget) {
 }
 
 TEST(LodChain, HasNoMoreThanTheUniformMesh) {
-  const auto grid = shape(Shape::Sphere, 0.2);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.2);
   ContourOptions uniform;
   uniform.uniform = true;
   LodOptions options;
@@ -287,7 +283,7 @@ TEST(LodChain, HasNoMoreThanTheUniformMesh) {
 TEST(LodChain, TakesAListOfTolerances) {
   LodOptions options;
   options.tolerances = {0.05, 0.3, 0.5};
-  const LodChain chain = buildLods(*shape(Shape::Torus, 0.05), options);
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.05), options);
   ASSERT_EQ(chain.levels.size(), 3u) << chain.stopped;
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(chain.levels[i].tolerance, options.tolerances[i]);
@@ -295,7 +291,7 @@ TEST(LodChain, TakesAListOfTolerances) {
 }
 
 TEST(LodChain, LevelZeroIsTheMeshOfContour) {
-  const auto grid = shape(Shape::Bracket, 0.05);
+  const auto grid = test::shapeOf(Shape::Bracket, 0.05);
   LodOptions options;
   options.levels = 2;
   const LodChain chain = buildLods(*grid, options);
@@ -313,7 +309,7 @@ TEST(LodChain, StopsWhereTopologyAllowsNoCoarserMesh) {
     last = fraction;
     return true;
   };
-  const LodChain chain = buildLods(*shape(Shape::Sphere, 0.1), options);
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Sphere, 0.1), options);
   EXPECT_EQ(chain.levels.size(), 2u);
   EXPECT_NE(chain.stopped.find("level 2"), std::string::npos) << chain.stopped;
   EXPECT_EQ(last, 1);
@@ -326,7 +322,7 @@ TEST(LodChain, IsEmptyWithoutASurface) {
 }
 
 TEST(LodChain, RefusesOptionsOutOfTheirRange) {
-  const auto grid = shape(Shape::Sphere, 0.2);
+  const auto grid = test::shapeOf(Shape::Sphere, 0.2);
   const auto refuses = [&](const char* part, auto change) {
     LodOptions options;
     change(options);
@@ -384,7 +380,7 @@ TEST(SelectLod, TakesTheCoarsestWhoseErrorIsSmallOnTheScreen) {
 TEST(SelectLod, AgreesWithScreenCoverage) {
   LodOptions options;
   options.levels = 3;
-  const LodChain chain = buildLods(*shape(Shape::Sphere, 0.03), options);
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Sphere, 0.03), options);
   for (std::size_t i = 0; i + 1 < chain.levels.size(); ++i) {
     // Far away the sphere takes 2 r / (2 d tan(a/2)) of the height.
     Camera camera;

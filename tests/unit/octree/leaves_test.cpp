@@ -14,6 +14,7 @@
 
 #include "grid/vdb_coord.h"
 #include "support/print.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
@@ -66,12 +67,6 @@ TEST(IsRestricted, AgreesWithItsDefinitionOnRandomLeaves) {
   EXPECT_GT(no, 500);
 }
 
-openvdb::FloatGrid::Ptr gridOf(Shape shape) {
-  ShapeOptions options;
-  options.voxelSize = 0.04;
-  return makeShape(shape, options);
-}
-
 std::vector<LeafCell> leavesOf(const openvdb::FloatGrid& grid, ContourOptions options) {
   options.keepLeaves = true;
   options.simplify = false;
@@ -101,7 +96,7 @@ std::set<Coord> surfaceCells(const openvdb::FloatGrid& grid) {
 class LeavesOf : public testing::TestWithParam<Shape> {};
 
 TEST_P(LeavesOf, AreARestrictedOctree) {
-  const auto grid = gridOf(GetParam());
+  const auto grid = test::shapeOf(GetParam(), 0.04);
   for (const double tolerance : {0.02, 0.3, 5.0}) {
     ContourOptions options;
     options.tolerance = tolerance;
@@ -115,7 +110,7 @@ TEST_P(LeavesOf, AreARestrictedOctree) {
 }
 
 TEST_P(LeavesOf, HoldEachSurfaceCellOnce) {
-  const auto grid = gridOf(GetParam());
+  const auto grid = test::shapeOf(GetParam(), 0.04);
   ContourOptions options;
   options.tolerance = 0.3;
   const auto leaves = leavesOf(*grid, options);
@@ -139,7 +134,7 @@ TEST_P(LeavesOf, HoldEachSurfaceCellOnce) {
 }
 
 TEST_P(LeavesOf, AreFewerAtALargerTolerance) {
-  const auto grid = gridOf(GetParam());
+  const auto grid = test::shapeOf(GetParam(), 0.04);
   std::size_t before = surfaceCells(*grid).size();
   for (const double tolerance : {0.02, 0.1, 0.5}) {
     ContourOptions options;
@@ -157,7 +152,7 @@ int largestLevel(const std::vector<LeafCell>& leaves) {
 }
 
 TEST_P(LeavesOf, AreAsLargeAsTheLargestCellAndNoLarger) {
-  const auto grid = gridOf(GetParam());
+  const auto grid = test::shapeOf(GetParam(), 0.04);
   ContourOptions options;
   options.tolerance = 10;
   const int free = largestLevel(leavesOf(*grid, options));
@@ -176,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, LeavesOf,
 
 TEST(Leaves, OfAMeshWithoutToleranceAreTheSmallestCellsOrWhatIsForced) {
   for (const Shape shape : {Shape::Sphere, Shape::Torus}) {
-    const auto grid = gridOf(shape);
+    const auto grid = test::shapeOf(shape, 0.04);
     ContourOptions options;
     options.tolerance = 0;
     const auto leaves = leavesOf(*grid, options);

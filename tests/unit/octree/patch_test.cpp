@@ -139,7 +139,7 @@ bool isSimple(Samples samples, const std::vector<std::pair<int, std::set<int>>>&
     const auto place = placeOf(child);
     for (int face = 0; face < kFaces; ++face) {
       const auto [u, v] = uniform::otherAxes(face / 2);
-      for (const auto& [a, b] : uniform::test::arcsOf(maskOf(samples, child), face, false)) {
+      for (const auto& [a, b] : uniform::cells::arcsOf(maskOf(samples, child), face, false)) {
         if (edges.count(a) == 0) continue;
         const LatticeEdge s = latticeEdge(child, a), t = latticeEdge(child, b);
         arcs.emplace(std::min(s, t), std::max(s, t), face / 2, place[face / 2] + (face & 1),
@@ -172,7 +172,7 @@ Glued glue(Samples samples) {
   std::vector<std::pair<int, std::set<int>>> polygons;
   std::vector<std::set<LatticeEdge>> crossingsOf;
   for (int child = 0; child < kCorners; ++child) {
-    for (const std::set<int>& part : uniform::test::partitionOf(maskOf(samples, child), 0, 0)) {
+    for (const std::set<int>& part : uniform::cells::partitionOf(maskOf(samples, child), 0, 0)) {
       polygons.emplace_back(child, part);
       crossingsOf.emplace_back();
       for (const int edge : part) crossingsOf.back().insert(latticeEdge(child, edge));

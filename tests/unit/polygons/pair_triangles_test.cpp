@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/mesh_oracle.h"
+#include "support/shape.h"
 
 namespace tufa {
 namespace {
@@ -21,12 +22,6 @@ Mesh paired(Mesh mesh, double mostWarp = 0.05) {
   EXPECT_EQ(made, mesh.quads.size());
   EXPECT_EQ(mesh.triangleCount(), before);
   return mesh;
-}
-
-openvdb::FloatGrid::Ptr shapeOf(Shape shape, double voxelSize) {
-  ShapeOptions options;
-  options.voxelSize = voxelSize;
-  return makeShape(shape, options);
 }
 
 /// Triangles from their lowest vertex on, in an order of their own.
@@ -104,7 +99,7 @@ TEST(PairTriangles, LeavesCreasesAndNeedles) {
 
 TEST(PairTriangles, KeepsThreeEdgesAtEachVertex) {
   // A box: a quad for each side, as each corner still has three.
-  const Mesh mesh = paired(contour(*shapeOf(Shape::Box, 0.05)));
+  const Mesh mesh = paired(contour(*test::shapeOf(Shape::Box, 0.05)));
   EXPECT_EQ(mesh.quads.size(), 6U);
   EXPECT_TRUE(mesh.triangles.empty());
   EXPECT_TRUE(test::inspect(mesh).manifold());
@@ -112,7 +107,7 @@ TEST(PairTriangles, KeepsThreeEdgesAtEachVertex) {
 }
 
 TEST(PairTriangles, OfAPartKeepsItsSurface) {
-  const Mesh triangles = contour(*shapeOf(Shape::Bracket, 0.03));
+  const Mesh triangles = contour(*test::shapeOf(Shape::Bracket, 0.03));
   const Mesh quads = paired(triangles, 0.1 * 0.03);
   EXPECT_EQ(sortedFaces(quads), sortedFaces(triangles));
   EXPECT_GT(5 * quads.quads.size(), quads.triangleCount());  // 40% of the triangles and more

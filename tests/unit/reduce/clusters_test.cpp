@@ -11,7 +11,7 @@
 namespace tufa::reduce {
 namespace {
 
-struct Result {
+struct Clustered {
   Mesh mesh;
   Certificate certificate;
   OperationCounts counts;
@@ -21,7 +21,7 @@ struct Result {
   }
 };
 
-Result reduced(const test::FineMesh& mesh, float tolerance, Options options = {}) {
+Clustered clustered(const test::FineMesh& mesh, float tolerance, Options options = {}) {
   base::Job job(1, {});
   Reduction reduction(mesh.input(), mesh.input(), {}, {}, std::move(options), job);
   reduction.toTolerance(tolerance);
@@ -29,7 +29,7 @@ Result reduced(const test::FineMesh& mesh, float tolerance, Options options = {}
   return {test::toMesh(out.positions, out.triangles), reduction.certificate(), reduction.counts()};
 }
 
-void expectPromises(const test::FineMesh& fine, const Result& result, float tolerance) {
+void expectPromises(const test::FineMesh& fine, const Clustered& result, float tolerance) {
   const Mesh input = test::toMesh(fine.positions, fine.triangles);
   const test::MeshTopology before = test::inspect(input), after = test::inspect(result.mesh);
   EXPECT_TRUE(after.closed() && after.manifold()) << after;
@@ -53,7 +53,7 @@ TEST(Clusters, TakeMostVerticesOfFineMeshes) {
   const std::vector<test::FineMesh> meshes = {test::subdivided(test::box(30, 20, 10), 5),
                                               test::bumpySphere(5, 20, 0.05f, 1), torus(60, 18, 8)};
   for (const test::FineMesh& mesh : meshes) {
-    const Result result = reduced(mesh, 0.2f);
+    const Clustered result = clustered(mesh, 0.2f);
     expectPromises(mesh, result, 0.2f);
     EXPECT_GT(result.contractions(Outcome::Done), 20U);
     EXPECT_LT(2 * result.counts.collapsed(), mesh.positions.size());
@@ -64,7 +64,7 @@ TEST(Clusters, TakeMostVerticesOfFineMeshes) {
 TEST(Clusters, AreNotMadeWhereTheyAreSwitchedOff) {
   Options options;
   options.clusters = false;
-  const Result result = reduced(torus(40, 10, 5), 0.2f, options);
+  const Clustered result = clustered(torus(40, 10, 5), 0.2f, options);
   EXPECT_EQ(result.contractions(Outcome::Done), 0U);
   EXPECT_GT(result.counts.collapsed(), 500U);
 }
@@ -72,7 +72,7 @@ TEST(Clusters, AreNotMadeWhereTheyAreSwitchedOff) {
 // A tube of two voxels in a cube of eight is an annulus, not a disk.
 TEST(Clusters, ThatAreNoDisksStay) {
   const test::FineMesh thin = torus(40, 14, 1.6);
-  const Result result = reduced(thin, 0.3f);
+  const Clustered result = clustered(thin, 0.3f);
   expectPromises(thin, result, 0.3f);
   EXPECT_GT(result.contractions(Outcome::Link), 0U);
 }
@@ -80,7 +80,7 @@ TEST(Clusters, ThatAreNoDisksStay) {
 TEST(Clusters, KeepTheirPromisesOnNoise) {
   for (const unsigned seed : {1U, 2U}) {
     const test::FineMesh noise = test::noiseSolid(20, 9, seed);
-    const Result result = reduced(noise, 0.15f);
+    const Clustered result = clustered(noise, 0.15f);
     expectPromises(noise, result, 0.15f);
     EXPECT_GT(result.contractions(Outcome::Done), 20U);
   }
@@ -106,7 +106,7 @@ TEST(Clusters, LeaveOpenBordersAlone) {
            9;
   });
   const auto border = [](const Mesh& m) { return test::inspect(m).boundaryEdges; };
-  const Result result = reduced(sheet, 0.2f);
+  const Clustered result = clustered(sheet, 0.2f);
   EXPECT_GT(result.contractions(Outcome::Done), 20U);
   EXPECT_GT(border(result.mesh), 0U);
   EXPECT_EQ(border(result.mesh), border(test::toMesh(sheet.positions, sheet.triangles)));

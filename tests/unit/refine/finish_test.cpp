@@ -10,11 +10,11 @@
 namespace tufa::refine {
 namespace {
 
-constexpr double kRadius = 7.3, kVoxel = 0.1;
+constexpr double kRadius = 7.3, kVoxelSize = 0.1;
 
 // The uniform mesh of a ball that was moved along x, finished.
 Mesh finished(const ContourOptions& options = {}, double moved = 0) {
-  const auto grid = test::ballOf(kRadius, kVoxel);
+  const auto grid = test::ballOf(kRadius, kVoxelSize);
   grid->transform().postTranslate(openvdb::Vec3d(moved, 0, 0));
   test::ModelOf model(grid, options);
   ExtractedMesh extracted;
@@ -33,7 +33,7 @@ bool isSingle(const Position& p) {
 TEST(FinishMesh, PutsPositionsIntoTheWorld) {
   for (const double moved : {0.0, -3.5, 100.0}) {
     for (const Position& p : finished({}, moved).positions) {
-      EXPECT_NEAR((Vec3(p) - Vec3(moved, 0, 0)).length(), kRadius * kVoxel, 0.05 * kVoxel);
+      EXPECT_NEAR((Vec3(p) - Vec3(moved, 0, 0)).length(), kRadius * kVoxelSize, 0.05 * kVoxelSize);
     }
   }
 }
@@ -49,7 +49,7 @@ TEST(FinishMesh, KeepsDoublePrecisionFarAway) {
   int doubles = 0;
   for (const Position& p : finished({}, 1e6).positions) {
     doubles += isSingle(p) ? 0 : 1;
-    EXPECT_NEAR((Vec3(p) - Vec3(1e6, 0, 0)).length(), kRadius * kVoxel, 0.05 * kVoxel);
+    EXPECT_NEAR((Vec3(p) - Vec3(1e6, 0, 0)).length(), kRadius * kVoxelSize, 0.05 * kVoxelSize);
   }
   EXPECT_GT(doubles, 100);
 }
@@ -71,13 +71,13 @@ TEST(FinishMesh, GivesTheNormalsThatWereAskedFor) {
 }
 
 TEST(FinishMesh, LeavesPolygonsAlone) {
-  const test::ModelOf model(test::ballOf(kRadius, kVoxel));
+  const test::ModelOf model(test::ballOf(kRadius, kVoxelSize));
   EXPECT_EQ(finished().quads, model.mesh().quads);
 }
 
 // Two quads pushed through each other; what comes from the uniform mesh may go back there.
 TEST(FinishMesh, RepairsWhatStillIntersects) {
-  const auto grid = test::ballOf(kRadius, kVoxel);
+  const auto grid = test::ballOf(kRadius, kVoxelSize);
   test::ModelOf model(grid);
   ExtractedMesh extracted;
   extracted.mesh = model.mesh();

@@ -9,26 +9,26 @@
 namespace tufa::uniform {
 namespace {
 
-using test::Arcs;
-using test::arcsOf;
-using test::forAllCells;
-using test::Partition;
-using test::partitionOf;
+using cells::Arcs;
+using cells::arcsOf;
+using cells::forAllCells;
+using cells::Partition;
+using cells::partitionOf;
 
 TEST(CaseTable, NumbersFollowFromCoordinates) {
   for (int edge = 0; edge < kEdges; ++edge) {
     const auto [lower, upper] = edgeCorners(edge);
-    EXPECT_EQ(test::edgeOf(lower, upper), edge);
+    EXPECT_EQ(cells::edgeOf(lower, upper), edge);
     EXPECT_LT(lower, upper);
     EXPECT_EQ(edgeBetween(lower, upper), edge);
   }
   for (int face = 0; face < kFaces; ++face) {
     const auto corners = faceCorners(face);
-    const auto expected = test::cornersOf(face);
+    const auto expected = cells::cornersOf(face);
     EXPECT_EQ(std::set<int>(corners.begin(), corners.end()),
               std::set<int>(expected.begin(), expected.end()));
     for (int i = 0; i < 4; ++i) {
-      EXPECT_EQ(test::edgeOf(corners[i], corners[(i + 1) % 4]), kFaceEdges[face][i]);
+      EXPECT_EQ(cells::edgeOf(corners[i], corners[(i + 1) % 4]), kFaceEdges[face][i]);
     }
   }
 }
@@ -134,7 +134,7 @@ Partition movedAlong(const Partition& parts, int axis) {
     std::set<int> edges;
     for (const int edge : part) {
       const auto [lower, upper] = edgeCorners(edge);
-      edges.insert(test::edgeOf(lower ^ 1 << (2 - axis), upper ^ 1 << (2 - axis)));
+      edges.insert(cells::edgeOf(lower ^ 1 << (2 - axis), upper ^ 1 << (2 - axis)));
     }
     moved.insert(edges);
   }
@@ -147,7 +147,7 @@ TEST(CaseTable, CellsThatShareAFaceSeeTheSameArcs) {
     for (int lower = 0; lower < 256; ++lower) {
       for (int upper = 0; upper < 256; ++upper) {
         bool fits = true;
-        for (const int corner : test::cornersOf(axis * 2)) {
+        for (const int corner : cells::cornersOf(axis * 2)) {
           fits &= ((lower >> (corner | step)) & 1) == ((upper >> corner) & 1);
         }
         if (!fits) continue;

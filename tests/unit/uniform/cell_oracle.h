@@ -8,7 +8,7 @@
 
 #include "uniform/case_table.h"
 
-namespace tufa::uniform::test {
+namespace tufa::uniform::cells {
 
 /// Edges of a cell that belong together.
 using Partition = std::set<std::set<int>>;
@@ -125,4 +125,4 @@ void forAllCells(const Body& body) {
   }
 }
 
-}  // namespace tufa::uniform::test
+}  // namespace tufa::uniform::cells

@@ -19,17 +19,16 @@
 namespace tufa::uniform {
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
 constexpr std::array<Ambiguity, 4> kRules = {Ambiguity::Separate, Ambiguity::Join,
                                              Ambiguity::Asymptotic, Ambiguity::Chord};
 
-CornerMask maskAt(const FloatGrid& grid, const Coord& cell) {
+CornerMask maskAt(const FloatGrid& grid, const openvdb::Coord& cell) {
   unsigned mask = 0;
   for (int corner = 0; corner < kCorners; ++corner) {
-    const Coord at = cell.offsetBy(corner >> 2, (corner >> 1) & 1, corner & 1);
+    const openvdb::Coord at = cell.offsetBy(corner >> 2, (corner >> 1) & 1, corner & 1);
     if (grid.tree().getValue(at) < 0) mask |= 1U << corner;
   }
   return static_cast<CornerMask>(mask);
@@ -39,7 +38,7 @@ CornerMask maskAt(const FloatGrid& grid, const Coord& cell) {
 std::size_t loopsIn(const FloatGrid& grid, const CoordBBox& cells, FaceBits joined) {
   std::size_t count = 0;
   for (auto cell = cells.begin(); cell; ++cell) {
-    count += test::partitionOf(maskAt(grid, *cell), joined, 0).size();
+    count += cells::partitionOf(maskAt(grid, *cell), joined, 0).size();
   }
   return count;
 }
@@ -71,7 +70,7 @@ struct Row {
         grid->tree().setValue(*at, static_cast<float>(inside ? -value : value));
       }
       box.expand(place);
-      place.translate(Coord(grid::kBlockSize, 0, 0));
+      place.translate(openvdb::Coord(grid::kBlockSize, 0, 0));
     }
   }
 };
@@ -133,7 +132,8 @@ TEST(CellTopology, EveryCornerMaskGivesAClosedManifold) {
   std::vector<unsigned> patterns(256);
   std::iota(patterns.begin(), patterns.end(), 0U);
   for (const int place : kPlaces) {
-    expectPatternsAreMeshed(CoordBBox(Coord(place), Coord(place + 1)), patterns, random);
+    expectPatternsAreMeshed(CoordBBox(openvdb::Coord(place), openvdb::Coord(place + 1)), patterns,
+                            random);
   }
 }
 
@@ -158,9 +158,9 @@ TEST(CellTopology, EveryPairOfCellsAcrossAnAmbiguousFaceGivesAClosedManifold) {
   std::mt19937 random(2);
   for (int axis = 0; axis < 3; ++axis) {
     for (const int place : kPlaces) {
-      Coord last(place + 1);
+      openvdb::Coord last(place + 1);
       ++last[axis];
-      const CoordBBox box(Coord(place), last);
+      const CoordBBox box(openvdb::Coord(place), last);
       const std::vector<unsigned> patterns = ambiguousPatterns(box, axis);
       ASSERT_EQ(patterns.size(), 512U);
       expectPatternsAreMeshed(box, patterns, random);
@@ -214,9 +214,10 @@ TEST(CellTopology, NumbersOfVerticesAndQuadsAddUp) {
 
 TEST(CellTopology, OnlyInactiveSamplesFarApartCutTheSurface) {
   // A plane at x = 0.5; behind y = 3 nothing is active, and the jump is of two voxels.
-  const CoordBBox box(Coord(-4), Coord(5, 3, 5));
-  auto grid = tufa::test::levelSet<FloatGrid>(box, 3, [](const Coord& at) { return at.x() - 0.5; });
-  for (auto at = CoordBBox(Coord(-4, 4, -4), Coord(0, 6, 5)).begin(); at; ++at) {
+  const CoordBBox box(openvdb::Coord(-4), openvdb::Coord(5, 3, 5));
+  auto grid = tufa::test::levelSet<FloatGrid>(
+      box, 3, [](const openvdb::Coord& at) { return at.x() - 0.5; });
+  for (auto at = CoordBBox(openvdb::Coord(-4, 4, -4), openvdb::Coord(0, 6, 5)).begin(); at; ++at) {
     grid->tree().setValueOff(*at, -3);
   }
   grid::FieldScale scale;

@@ -15,8 +15,6 @@ namespace {
 using test::BlockField;
 using test::distanceAroundBlock;
 
-Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
-
 /// Calls body(cell's middle, placement) for the surface cells of the block.
 template <class Body>
 void forCells(const BlockField& field, const Body& body) {

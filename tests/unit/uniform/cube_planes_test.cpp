@@ -14,8 +14,6 @@ namespace {
 
 using test::distanceAroundBlock;
 
-Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
-
 /// Calls body(cube's middle, plane or null) for the cubes around the block.
 template <class Body>
 void forPlanes(const test::BlockField& field, const Body& body) {

@@ -26,7 +26,6 @@ struct Plane {
 Vector toVector(const Vec3& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
-Vec3 toVec3(const Vector& v) { return {v[0], v[1], v[2]}; }
 
 Qef sumOf(const std::vector<Plane>& planes) {
   Qef sum;
