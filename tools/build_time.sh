@@ -2,7 +2,7 @@
 # Measures a build from nothing, without ccache: tools/build_time.sh [TARGET...]
 #
 # Prints the seconds of processor time that the preset release takes, in all and for each of the ten
-# slowest files: time on the clock says little on a machine that does other work too. Without a target
+# slowest units of sources: time on the clock says little on a machine that does other work too. Without a target
 # everything is built, tests included.
 set -eu
 cd "$(dirname "$0")/.."
