@@ -15,7 +15,7 @@ constexpr std::size_t kMostRanges = 64;
 
 }  // namespace
 
-std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
+std::vector<Index> oppositeCorners(const base::TriangleView& triangles,
                                    const CornersOfVertices& corners, base::Job& job) {
   std::vector<Index> opposite;
   base::resizeLarge(opposite, 3 * triangles.size(), job);
@@ -26,7 +26,7 @@ std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
   return opposite;
 }
 
-std::vector<Index> trianglesAround(std::span<const Triangle> triangles,
+std::vector<Index> trianglesAround(const base::TriangleView& triangles,
                                    const CornersOfVertices& corners, std::span<const Index> some) {
   std::vector<Index> around;
   for (const Index t : some) {
@@ -39,7 +39,7 @@ std::vector<Index> trianglesAround(std::span<const Triangle> triangles,
 }
 
 template <class ForTriangles>
-CornersOfVertices::CornersOfVertices(Index begin, Index end, std::span<const Triangle> triangles,
+CornersOfVertices::CornersOfVertices(Index begin, Index end, const base::TriangleView& triangles,
                                      const ForTriangles& forTriangles)
     : begin_(begin) {
   const Index count = end - begin;
@@ -60,7 +60,7 @@ CornersOfVertices::CornersOfVertices(Index begin, Index end, std::span<const Tri
   forCorners([&](Index v, Index c) { corners_[first_[v + 1]++] = c; });
 }
 
-CornersOfVertices::CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles,
+CornersOfVertices::CornersOfVertices(std::size_t vertexCount, const base::TriangleView& triangles,
                                      base::Job& job)
     : CornersOfVertices(0, static_cast<Index>(vertexCount), triangles, [&](const auto& body) {
         for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -69,7 +69,7 @@ CornersOfVertices::CornersOfVertices(std::size_t vertexCount, std::span<const Tr
         }
       }) {}
 
-CornerRanges::CornerRanges(std::size_t vertexCount, std::span<const Triangle> triangles,
+CornerRanges::CornerRanges(std::size_t vertexCount, const base::TriangleView& triangles,
                            base::Job& job)
     : vertexCount_(vertexCount), triangles_(triangles), shift_(kLeastShift) {
   while (vertexCount > kMostRanges << shift_) ++shift_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/triangle_array.h"
 
 namespace tufa::reduce {
 
@@ -22,7 +23,7 @@ inline constexpr Index kNone = ~Index{0};
 /// For each vertex the corners at it, in rising order: of all vertices, or of a range of them.
 class CornersOfVertices {
  public:
-  CornersOfVertices(std::size_t vertexCount, std::span<const Triangle> triangles, base::Job& job);
+  CornersOfVertices(std::size_t vertexCount, const base::TriangleView& triangles, base::Job& job);
   [[nodiscard]] Index begin() const { return begin_; }
   [[nodiscard]] Index end() const { return begin_ + static_cast<Index>(first_.size() - 2); }
   [[nodiscard]] std::span<const Index> of(Index vertex) const {
@@ -35,7 +36,7 @@ class CornersOfVertices {
   /// forTriangles(body) calls body(t) for triangles in rising order, those of all corners wanted
   /// among them.
   template <class ForTriangles>
-  CornersOfVertices(Index begin, Index end, std::span<const Triangle> triangles,
+  CornersOfVertices(Index begin, Index end, const base::TriangleView& triangles,
                     const ForTriangles& forTriangles);
 
   Index begin_;
@@ -47,13 +48,13 @@ class CornersOfVertices {
 /// memory of all, and on several threads at a time.
 class CornerRanges {
  public:
-  CornerRanges(std::size_t vertexCount, std::span<const Triangle> triangles, base::Job& job);
+  CornerRanges(std::size_t vertexCount, const base::TriangleView& triangles, base::Job& job);
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] CornersOfVertices operator[](std::size_t range) const;
 
  private:
   std::size_t vertexCount_;
-  std::span<const Triangle> triangles_;
+  base::TriangleView triangles_;
   int shift_;
   std::size_t size_;
   std::vector<std::uint64_t> reached_;  ///< of each block of triangles a bit for each range
@@ -61,7 +62,7 @@ class CornerRanges {
 
 /// Calls body(corners) for ranges that all vertices are in, in parallel.
 template <class Body>
-void forCornerRanges(std::size_t vertexCount, std::span<const Triangle> triangles, base::Job& job,
+void forCornerRanges(std::size_t vertexCount, const base::TriangleView& triangles, base::Job& job,
                      const Body& body) {
   const CornerRanges ranges(vertexCount, triangles, job);
   job.forRanges(ranges.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -70,7 +71,7 @@ void forCornerRanges(std::size_t vertexCount, std::span<const Triangle> triangle
 }
 
 /// All triangles that have a vertex in common with one of these, in rising order.
-[[nodiscard]] std::vector<Index> trianglesAround(std::span<const Triangle> triangles,
+[[nodiscard]] std::vector<Index> trianglesAround(const base::TriangleView& triangles,
                                                  const CornersOfVertices& corners,
                                                  std::span<const Index> some);
 
@@ -78,7 +79,7 @@ void forCornerRanges(std::size_t vertexCount, std::span<const Triangle> triangle
 /// other being the one across the edge, or kNone at a border; where several are, the last one. An
 /// edge that comes from another vertex meets the one that goes back there.
 template <class Set>
-void forOppositeCorners(std::span<const Triangle> triangles, const CornersOfVertices& corners,
+void forOppositeCorners(const base::TriangleView& triangles, const CornersOfVertices& corners,
                         Index begin, Index end, const Set& set) {
   std::vector<Index> nextVertices;
   for (Index v = begin; v < end; ++v) {
@@ -86,11 +87,11 @@ void forOppositeCorners(std::span<const Triangle> triangles, const CornersOfVert
     nextVertices.clear();
     for (const Index c : around) {
       const Index next = nextCorner(c);
-      nextVertices.push_back(triangles[next / 3].vertices[next % 3]);
+      nextVertices.push_back(triangles.corner(next));
     }
     for (const Index c : around) {
       const Index previous = previousCorner(c);
-      const Index from = triangles[previous / 3].vertices[previous % 3];
+      const Index from = triangles.corner(previous);
       Index other = kNone;
       for (std::size_t i = 0; i < around.size(); ++i) {
         if (nextVertices[i] == from) other = previousCorner(around[i]);
@@ -101,7 +102,7 @@ void forOppositeCorners(std::span<const Triangle> triangles, const CornersOfVert
 }
 
 /// That of every corner.
-[[nodiscard]] std::vector<Index> oppositeCorners(std::span<const Triangle> triangles,
+[[nodiscard]] std::vector<Index> oppositeCorners(const base::TriangleView& triangles,
                                                  const CornersOfVertices& corners, base::Job& job);
 
 }  // namespace tufa::reduce

@@ -15,7 +15,7 @@ struct OverlaySurface {
 
   Vec3f operator()(Index t, int i) const { return surface.corner(t, static_cast<std::size_t>(i)); }
   [[nodiscard]] Index vertex(Index t, int i) const {
-    return surface.triangles[t].vertices[static_cast<std::size_t>(i)];
+    return surface.triangles.vertex(t, static_cast<std::size_t>(i));
   }
   [[nodiscard]] Index across(Index t, int i) const {
     const Index c = opposite[3 * t + static_cast<Index>(i)];

@@ -11,14 +11,14 @@ namespace {
 
 // Of the owners of a face's corners the one that is nearest to p, among triangles over positions.
 Index nearestOwner(const std::array<Index, 3>& corners, const std::vector<Index>& owners,
-                   const base::SharedArray<Vec3f>& positions,
-                   const base::SharedArray<Triangle>& triangles, Vec3f p) {
+                   const base::SharedArray<Vec3f>& positions, const base::TriangleArray& triangles,
+                   Vec3f p) {
   Index best = kNone;
   float nearest = std::numeric_limits<float>::max();
   for (const Index corner : corners) {
     const Index owner = owners[corner];
     if (owner == kNone) continue;
-    const auto& [a, b, c] = triangles[owner].vertices;
+    const auto [a, b, c] = triangles[owner].vertices;
     const float d2 = squaredDistanceToTriangle(p, positions[a], positions[b], positions[c]);
     if (d2 < nearest) nearest = d2, best = owner;
   }

@@ -14,7 +14,7 @@ namespace tufa::reduce {
 /// triangles, so that reducing to tolerances many times its error costs as little.
 struct Proxy {
   base::SharedArray<Vec3f> positions;
-  base::SharedArray<Triangle> triangles;
+  base::TriangleArray triangles;
   std::vector<Index> faces;   ///< for each vertex the face of the reference below it, or kNone
   std::vector<Index> owners;  ///< for each reference vertex the triangle that answers for it
   float largest = 0;          ///< its distance to the reference, a bound, voxels

@@ -28,7 +28,7 @@ inline constexpr float kLeastTolerance = 1e-3f;
 /// so that single precision is enough.
 struct InputMesh {
   base::SharedArray<Vec3f> positions;
-  base::SharedArray<Triangle> triangles;
+  base::TriangleArray triangles;
 };
 
 /// The reduced mesh.

@@ -1,17 +1,13 @@
 #include "reduce/reference_mesh.h"
 
-#include <atomic>
 #include <utility>
 
 #include "base/huge_pages.h"
 
 namespace tufa::reduce {
-namespace {}
-
 ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job)
     : positions_(input.position), faces_(input.triangles), scales_(std::move(scales)) {
-  isPaired_ = areAllPaired(job);
-  base::resizeLarge(opposite_, isPaired_ ? 2 * faces_.size() : 3 * faces_.size(), job);
+  base::resizeLarge(opposite_, faces_.areHalves() ? 2 * faces_.size() : 3 * faces_.size(), job);
   base::resizeLarge(cornerOf_, input.position.size(), job, kNone);
   base::resizeLarge(rough_, input.position.size(), job);
   forCornerRanges(positions_.size(), faces_, job, [&](const CornersOfVertices& corners) {
@@ -24,21 +20,9 @@ ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, ba
   });
 }
 
-bool ReferenceMesh::areAllPaired(base::Job& job) const {
-  if (faces_.size() % 2 != 0) return false;
-  std::atomic<bool> all = true;
-  job.forRanges(faces_.size() / 2, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end && all; ++i) {
-      const auto &a = faces_[2 * i].vertices, &b = faces_[2 * i + 1].vertices;
-      if (a[0] != b[0] || a[2] != b[1]) all = false;
-    }
-  });
-  return all;
-}
-
 void ReferenceMesh::setOpposite(Index c, Index other) {
   const Index i = c % 6;
-  if (!isPaired_) {
+  if (!faces_.areHalves()) {
     opposite_[c] = other;
   } else if (i != 1 && i != 5) {
     opposite_[4 * (c / 6) + (i == 0 ? 0 : i - 1)] = other;

@@ -8,6 +8,7 @@
 
 #include "base/job.h"
 #include "base/shared_array.h"
+#include "base/triangle_array.h"
 #include "reduce/corners.h"
 #include "reduce/surface.h"
 #include "reduce/triangles.h"
@@ -22,11 +23,9 @@ class ReferenceMesh {
   ReferenceMesh(const Surface& input, std::vector<float> scales, base::Job& job);
 
   [[nodiscard]] const base::SharedArray<Vec3f>& positions() const { return positions_; }
-  [[nodiscard]] const base::SharedArray<Triangle>& faces() const { return faces_; }
+  [[nodiscard]] const base::TriangleArray& faces() const { return faces_; }
   [[nodiscard]] Index faceCount() const { return static_cast<Index>(faces_.size()); }
-  [[nodiscard]] const std::array<Index, 3>& vertices(Index face) const {
-    return faces_[face].vertices;
-  }
+  [[nodiscard]] std::array<Index, 3> vertices(Index face) const { return faces_[face].vertices; }
   /// One of a vertex's corners, or kNone.
   [[nodiscard]] Index cornerOf(Index vertex) const { return cornerOf_[vertex]; }
   /// Whether what guards allow differs from place to place.
@@ -48,19 +47,19 @@ class ReferenceMesh {
   void releaseAll();
   /// Whether a vertex of a face is held.
   [[nodiscard]] bool isHeld(Index face) const {
-    const auto& v = vertices(face);
+    const auto v = vertices(face);
     return ((rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) & kHeld) != 0;
   }
   /// Whether a vertex of a face is rough.
   [[nodiscard]] bool isRoughFace(Index face) const {
-    const auto& v = vertices(face);
+    const auto v = vertices(face);
     return (rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) != 0;
   }
   /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
   /// what is seen along one axis may not be all.
   [[nodiscard]] bool isRough(Index vertex) const { return rough_[vertex] != 0; }
   [[nodiscard]] const Vec3f& corner(Index face, std::size_t i) const {
-    return positions_[vertices(face)[i]];
+    return positions_[faces_.vertex(face, i)];
   }
   [[nodiscard]] std::array<Vec3f, 3> cornersOf(Index face) const {
     return {corner(face, 0), corner(face, 1), corner(face, 2)};
@@ -184,7 +183,7 @@ class ReferenceMesh {
       const int at = static_cast<int>(c - 3 * face);
       prefetchAcross(at == 2 ? c - 2 : c + 1);
       prefetchAcross(at == 0 ? c + 2 : c - 1);
-      const Vec3f w = positions_[vertices(face)[static_cast<std::size_t>(at)]] - section.start;
+      const Vec3f w = corner(face, static_cast<std::size_t>(at)) - section.start;
       const float sw = dot(w, side);
       // The edge from right to left is opposite c, turned round: right comes after c's successor.
       if (sw > 0) {
@@ -197,22 +196,21 @@ class ReferenceMesh {
   }
 
  private:
-  // The corner across the edge of a corner, or kNone. Of quads, the halves of which meet at corners
-  // 1 and 5 of their six, only those across the four other edges are stored.
+  // The corner across the edge of a corner, or kNone. Of quads, whose halves meet at corners 1 and
+  // 5 of their six, only those across the four other edges are stored.
   [[nodiscard]] Index opposite(Index c) const {
-    if (!isPaired_) return opposite_[c];
+    if (!faces_.areHalves()) return opposite_[c];
     const Index quad = c / 6, i = c - 6 * quad;
     if (i == 1) return c + 4;
     if (i == 5) return c - 4;
     return opposite_[4 * quad + (i == 0 ? 0 : i - 1)];
   }
-  [[nodiscard]] bool areAllPaired(base::Job& job) const;
   void setOpposite(Index c, Index other);
 
   // Asks for a face that a walk may enter next while the position that decides it is read.
   void prefetchAcross(Index c) const {
     const Index across = opposite(c);
-    __builtin_prefetch(faces_.data() + (across == kNone ? 0 : across / 3));
+    faces_.prefetch(across == kNone ? 0 : across / 3);
   }
 
   static constexpr float kBeside = 1e-4f;  ///< voxels from a section, for an edge along it
@@ -220,8 +218,7 @@ class ReferenceMesh {
   static constexpr std::uint8_t kRough = 1, kHeld = 2, kFrozen = 4;
 
   base::SharedArray<Vec3f> positions_;
-  base::SharedArray<Triangle> faces_;
-  bool isPaired_ = false;        ///< faces are the halves of quads, one behind the other
+  base::TriangleArray faces_;
   std::vector<Index> opposite_;  ///< of each corner, or of four of a quad's, see opposite()
   std::vector<Index> cornerOf_;
   std::vector<std::uint8_t> rough_;  ///< of kRough, kHeld and kFrozen

@@ -28,7 +28,7 @@ void setFlag(std::uint8_t& flags, VertexFlag flag) {
 void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
   constexpr int kMost = 64;
   Vec3f normals[kMost];
-  const auto vertexAt = [&](Index c) { return s.triangles[c / 3].vertices[c % 3]; };
+  const auto vertexAt = [&](Index c) { return s.triangles.corner(c); };
   int n = 0;
   bool isSteep = false, isTooMany = false;
   Index sum = 0;  // each neighbour once as start and once as end of the link, unless it is open
@@ -85,12 +85,12 @@ void findFaces(Surface& s, const ReferenceMesh& reference, std::span<const Index
 void findChords(Surface& s, base::Job& job) {
   s.chords.clear();
   const std::vector<Index> some = base::collectIf(job, s.triangles.size(), [&](Index t) {
-    const auto& v = s.triangles[t].vertices;
+    const auto v = s.triangles[t].vertices;
     return s.isOnLine(v[0]) + s.isOnLine(v[1]) + s.isOnLine(v[2]) > 1;
   });
   std::vector<std::pair<std::uint64_t, Index>> edges;  // with their triangles' regions
   for (const Index t : some) {
-    const auto& v = s.triangles[t].vertices;
+    const auto v = s.triangles[t].vertices;
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = v[i], b = v[(i + 1) % 3];
       if (s.isOnLine(a) && s.isOnLine(b) && commonPlanes(s.planesOf(a), s.planesOf(b)) > 0) {
@@ -124,7 +124,7 @@ std::vector<CornerAt> cornersOnLines(const Surface& s, base::Job& job) {
       }
     }
   });
-  const auto vertexAt = [&](Index c) { return s.triangles[c / 3].vertices[c % 3]; };
+  const auto vertexAt = [&](Index c) { return s.triangles.corner(c); };
   const std::vector<Index> some = base::collectIf(
       job, 3 * s.triangles.size(), [&](Index c) { return several.has(vertexAt(c)); });
   std::vector<CornerAt> corners;
@@ -140,9 +140,9 @@ std::vector<CornerAt> cornersOnLines(const Surface& s, base::Job& job) {
 int linesAt(const Surface& s, std::span<const CornerAt> around) {
   int lines = 0;
   for (const auto& [v, c] : around) {
-    const Index next = s.triangles[c / 3].vertices[nextCorner(c) % 3];
+    const Index next = s.triangles.corner(nextCorner(c));
     for (const auto& [w, d] : around) {
-      const Index before = s.triangles[d / 3].vertices[previousCorner(d) % 3];
+      const Index before = s.triangles.corner(previousCorner(d));
       lines += before == next && s.region[c / 3] != s.region[d / 3];
     }
   }
@@ -151,7 +151,7 @@ int linesAt(const Surface& s, std::span<const CornerAt> around) {
 
 }  // namespace
 
-Surface makeSurface(base::SharedArray<Vec3f> positions, base::SharedArray<Triangle> triangles,
+Surface makeSurface(base::SharedArray<Vec3f> positions, base::TriangleArray triangles,
                     base::Job& job) {
   Surface s;
   const std::size_t count = positions.size();

@@ -9,6 +9,7 @@
 #include "base/direction.h"
 #include "base/job.h"
 #include "base/shared_array.h"
+#include "base/triangle_array.h"
 #include "reduce/corners.h"
 #include "reduce/lines.h"
 
@@ -37,7 +38,7 @@ struct Surface {
   std::vector<Index> source;          ///< the input's vertex that it still is, or kNone
   std::vector<Index> face;            ///< of the reference, at the vertex seen along its axis
 
-  base::SharedArray<Triangle> triangles;
+  base::TriangleArray triangles;
   /// For each reference vertex its owner: the triangle that answers for it. kNone for those without
   /// faces.
   std::vector<Index> owner;
@@ -73,14 +74,14 @@ struct Surface {
   [[nodiscard]] bool isOnLine(Index v) const { return hasLines() && lineKind[v] != LineKind::Off; }
   [[nodiscard]] bool hasAxis(Index v) const { return !axis[v].isNone(); }
   [[nodiscard]] const Vec3f& corner(Index triangle, std::size_t i) const {
-    return position[triangles[triangle].vertices[i]];
+    return position[triangles.vertex(triangle, i)];
   }
 };
 
 /// A surface of these positions and triangles, with axes, and flags of borders and steep stars.
 /// Vertices without an axis, and those beside them, are narrow.
-[[nodiscard]] Surface makeSurface(base::SharedArray<Vec3f> positions,
-                                  base::SharedArray<Triangle> triangles, base::Job& job);
+[[nodiscard]] Surface makeSurface(base::SharedArray<Vec3f> positions, base::TriangleArray triangles,
+                                  base::Job& job);
 /// The face of the reference below a vertex, or kNone.
 [[nodiscard]] Index faceOf(const Surface& surface, const ReferenceMesh& reference, Index vertex);
 

@@ -52,7 +52,7 @@ class Finder {
 
   // Nothing is asked of open ones.
   void findComponents() {
-    const base::SharedArray<Triangle>& triangles = overlay_.surface.triangles;
+    const base::TriangleArray& triangles = overlay_.surface.triangles;
     const std::size_t count = overlay_.surface.position.size();
     componentOf_ = base::connectedItems(count, [&](const auto& connect) {
       for (const Triangle& t : triangles) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/shrink.h"
+#include "base/triangulate.h"
 #include "octree/build_forest.h"
 #include "refine/repair_rounded.h"
 #include "refine/uniform_repair.h"
@@ -31,11 +32,15 @@ void SurfaceModel::settle(base::Job& job) {
   report_.intersectionsLeft = repaired.left.size();
 }
 
-void SurfaceModel::releaseCells() {
+base::TriangleArray SurfaceModel::takeFaces(base::Job& job) {
   hasCells_ = false;
   surface_.topology = {};
   surface_.sheets = uniform::VertexSheets();
-  base::release(surface_.mesh.quads);
+  Mesh& mesh = surface_.mesh;
+  if (mesh.triangles.empty()) return std::exchange(mesh.quads, {});
+  std::vector<Triangle> faces = base::triangulate(mesh, job);
+  base::release(mesh.quads), base::release(mesh.triangles);
+  return faces;
 }
 
 void SurfaceModel::releasePositions() { base::release(surface_.mesh.positions); }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/triangle_array.h"
 #include "intersect/surface.h"
 #include "octree/cluster_forest.h"
 #include "octree/cut_rule.h"
@@ -23,9 +24,9 @@ class SurfaceModel {
   SurfaceModel(const SurfaceModel&) = delete;
   SurfaceModel& operator=(const SurfaceModel&) = delete;
 
-  /// Frees what is known of cells, and the quads once faces have been made of them: some thirty
-  /// bytes a cell. Neither view() nor buildClusters() may be called from then on.
-  void releaseCells();
+  /// The faces of the mesh, which has none from then on. What is known of cells is freed, another
+  /// dozen bytes a cell: neither view() nor buildClusters() may be called any more.
+  [[nodiscard]] base::TriangleArray takeFaces(base::Job& job);
   /// The normals of the mesh, which has none from then on.
   [[nodiscard]] std::vector<Normal> takeNormals() { return std::move(surface_.mesh.normals); }
   /// Frees the positions of the mesh.

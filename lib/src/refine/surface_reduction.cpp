@@ -9,7 +9,6 @@
 #include "base/connected.h"
 #include "base/huge_pages.h"
 #include "base/interpolated_normal.h"
-#include "base/triangulate.h"
 #include "intersect/surface.h"
 #include "refine/rounding.h"
 #include "refine/tolerance_scales.h"
@@ -29,8 +28,7 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
   for (const VertexIndex v : closeVertices_) closePositions_.push_back(mesh.positions[v]);
   // One array after the other, so that few are there twice.
   takeNormals(model.takeNormals());
-  faces_ = base::triangulate(mesh, job);
-  model.releaseCells();
+  faces_ = model.takeFaces(job);
   takePositions(mesh.positions);
   keepsExact_ = model.report().openEdges > 0 ||
                 rule.tolerance < static_cast<double>(reduce::kLeastTolerance) ||
@@ -96,7 +94,7 @@ Normal SurfaceReduction::normalAt(reduce::Index vertex) const {
 Normal SurfaceReduction::normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const {
   const reduce::Index source = reduced.sources[vertex];
   if (source != reduce::kNone) return normalAt(source);
-  const auto& [a, b, c] = faces_[reduced.faces[vertex]].vertices;
+  const auto [a, b, c] = faces_[reduced.faces[vertex]].vertices;
   return base::interpolatedNormal({Vec3(positions_[a]), Vec3(positions_[b]), Vec3(positions_[c])},
                                   {normalAt(a), normalAt(b), normalAt(c)},
                                   Vec3(reduced.positions[vertex]));

@@ -70,7 +70,7 @@ class SurfaceReduction {
   double size_ = 0;   ///< diagonal of the mesh's box, voxels
   // Of the uniform mesh; positions in voxels, from the middle.
   base::SharedArray<base::Vec3f> positions_;
-  base::SharedArray<Triangle> faces_;
+  base::TriangleArray faces_;
   std::vector<base::Direction> normals_;
   bool keepsExact_ = true;  ///< the model has positions still
   // Else those of vertices of close polygons; the vertices rising.

@@ -16,7 +16,7 @@ struct FineMesh {
   std::vector<Triangle> triangles;
 
   [[nodiscard]] reduce::InputMesh input() const {
-    return {base::SharedArray<base::Vec3f>(positions), base::SharedArray<Triangle>(triangles)};
+    return {base::SharedArray<base::Vec3f>(positions), base::TriangleArray(std::vector(triangles))};
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "reduce/triangles.h"
@@ -127,6 +128,45 @@ TEST(Reduction, MakesFewSliversAndNoLongFans) {
     for (const VertexIndex v : t.vertices) ++valence[v];
   }
   EXPECT_LE(*std::max_element(valence.begin(), valence.end()), 12);
+}
+
+// A torus of quads with waves, as quads and as their halves.
+TEST(Reduction, IsTheSameOfQuadsAndOfTheirHalves) {
+  constexpr Index kAround = 90, kAcross = 40;
+  std::vector<Vec3f> positions;
+  std::vector<Quad> quads;
+  for (Index i = 0; i < kAround; ++i) {
+    for (Index j = 0; j < kAcross; ++j) {
+      const float u = 6.2831853f * static_cast<float>(i) / kAround;
+      const float v = 6.2831853f * static_cast<float>(j) / kAcross;
+      const float r = 15 + 5 * std::cos(v) + 0.3f * std::sin(5 * u);
+      positions.emplace_back(r * std::cos(u), r * std::sin(u), 5 * std::sin(v));
+      const Index right = (i + 1) % kAround, up = (j + 1) % kAcross;
+      quads.emplace_back(i * kAcross + j, right * kAcross + j, right * kAcross + up,
+                         i * kAcross + up);
+    }
+  }
+  std::vector<Triangle> triangles;
+  for (const auto& [v] : quads) {
+    triangles.emplace_back(v[0], v[1], v[2]);
+    triangles.emplace_back(v[0], v[2], v[3]);
+  }
+  const auto reducedFrom = [&](base::TriangleArray faces) {
+    const InputMesh mesh{base::SharedArray<Vec3f>(positions), std::move(faces)};
+    base::Job job(1, {});
+    Options options;
+    options.partSize.vertices = 500;
+    Reduction reduction(mesh, mesh, {}, {}, options, job);
+    reduction.toTolerance(0.2f);
+    return std::pair(reduction.mesh(), reduction.certificate().largest);
+  };
+  const auto [ofHalves, errorOfHalves] = reducedFrom(std::vector(triangles));
+  const auto [ofQuads, errorOfQuads] = reducedFrom(std::move(quads));
+  EXPECT_LT(ofQuads.triangles.size(), triangles.size() / 2);
+  EXPECT_EQ(ofQuads.triangles, ofHalves.triangles);
+  EXPECT_EQ(ofQuads.sources, ofHalves.sources);
+  EXPECT_EQ(ofQuads.faces, ofHalves.faces);
+  EXPECT_EQ(errorOfQuads, errorOfHalves);
 }
 
 TEST(Reduction, GivesTheSameBytesForAnyThreads) {

@@ -163,7 +163,7 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
     level.normals.push_back(cut_.mesh.normals[source]);
   } else {
     p = positionOf(reduced.positions[v]);
-    const auto& [a, b, c] = faces_[reduced.faces[v]].vertices;
+    const auto [a, b, c] = faces_[reduced.faces[v]].vertices;
     const std::vector<Position>& at = cut_.mesh.positions;
     const std::vector<Normal>& normals = cut_.mesh.normals;
     level.normals.push_back(base::interpolatedNormal(

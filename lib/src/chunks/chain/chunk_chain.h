@@ -69,7 +69,7 @@ class ChunkChain {
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 
   CutMesh cut_;  ///< without triangles
-  base::SharedArray<Triangle> faces_;
+  base::TriangleArray faces_;
   const grid::Affine& affine_;
   int chunkSize_;
   bool singlePrecision_;
