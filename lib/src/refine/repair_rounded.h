@@ -1,14 +1,20 @@
 #pragma once
 
-#include "grid/affine.h"
-#include "refine/repair/repair.h"
+#include <tufa/contour.h>
+
+#include <vector>
+
+#include "intersect/surface.h"
+#include "uniform/uniform_surface.h"
 
 namespace tufa::refine {
 
-/// repairIntersections() of a mesh as it will be written: in world space, and in single precision
-/// where that moves nothing far. What is not moved keeps its position; nothing becomes a fan.
-/// `closePairs` must hold every pair that intersects then.
-RepairReport repairRounded(Mesh& mesh, const std::vector<intersect::PolygonPair>& closePairs,
-                           Source source, const grid::Affine& affine, base::Job& job);
+/// repairIntersections() of a uniform mesh as it will be written: in world space, and in single
+/// precision where that moves nothing far. What is not moved keeps its position; nothing becomes a
+/// fan. `closePairs` must hold every pair that intersects then. Cost: of what intersects a block
+/// and those around it are copied.
+void repairRounded(uniform::UniformSurface& surface,
+                   const std::vector<intersect::PolygonPair>& closePairs, ContourReport& report,
+                   base::Job& job);
 
 }  // namespace tufa::refine

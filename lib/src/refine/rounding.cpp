@@ -26,6 +26,13 @@ double roundingMargin(const grid::Volume& volume) {
                       largestRounding(volume.blocks, volume.transform));
 }
 
+bool isWrittenInSingle(const std::vector<Position>& positions, const grid::Affine& affine,
+                       base::Job& job) {
+  const double largest = base::largestCoordinate(
+      positions.size(), [&](std::size_t i) { return affine.toWorld(positions[i]); }, job);
+  return base::fitsSingle(largest, kMostRounding * affine.leastHeight());
+}
+
 bool takeToWorld(Mesh& mesh, const grid::Affine& affine, base::Job& job) {
   job.forRanges(mesh.positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh.positions[i] = affine.toWorld(mesh.positions[i]);

@@ -2,6 +2,8 @@
 
 #include <tufa/mesh.h>
 
+#include <vector>
+
 #include "base/job.h"
 #include "grid/volume.h"
 
@@ -19,6 +21,10 @@ double largestRounding(const grid::Blocks& blocks, const grid::Transform& transf
 /// voxel off their samples, so a larger margin than is needed would make all their polygons
 /// candidates.
 double roundingMargin(const grid::Volume& volume);
+
+/// Whether takeToWorld() rounds a mesh with these positions.
+[[nodiscard]] bool isWrittenInSingle(const std::vector<Position>& positions,
+                                     const grid::Affine& affine, base::Job& job);
 
 /// Takes a mesh to world space as it will be written: in single precision if that moves nothing
 /// farther than kMostRounding. Whether it does.

@@ -19,17 +19,9 @@ SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
   job.beginStage("repair", ends.repair);
   if (!repairs_) return;
   closePairs_ = repairUniform(surface_, report_, job);
-  if (!options.uniform) settle(job);
-}
-
-// Moves what intersects once it is rounded as it will be written: finishMesh() would do so too late
-// for a mesh that is measured against this one.
-void SurfaceModel::settle(base::Job& job) {
-  const RepairReport repaired =
-      repairRounded(surface_.mesh, closePairs_, sourceOf(surface_, job), affine(), job);
-  report_.movedVertices += repaired.movedVertices;
-  report_.flippedDiagonals += repaired.flippedDiagonals;
-  report_.intersectionsLeft = repaired.left.size();
+  // What intersects once it is rounded as it will be written moves now: finishMesh() would do so
+  // too late for a mesh that is measured against this one.
+  if (!options.uniform) repairRounded(surface_, closePairs_, report_, job);
 }
 
 base::TriangleArray SurfaceModel::takeFaces(base::Job& job) {

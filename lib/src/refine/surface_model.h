@@ -55,8 +55,6 @@ class SurfaceModel {
   [[nodiscard]] Mesh takeMesh() { return std::move(surface_.mesh); }
 
  private:
-  void settle(base::Job& job);
-
   bool repairs_;
   bool hasCells_ = true;
   Ambiguity ambiguity_;

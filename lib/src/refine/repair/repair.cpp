@@ -44,8 +44,8 @@ class Repairer {
   RepairReport run(const std::vector<intersect::PolygonIndex>& candidates) {
     pairs_ = intersect::findPairs(surface_, candidates, job_);
     report_.pairsFound = pairs_.size();
-    for (int round = 0; round < kCrowdedRounds && pairs_.size() > surface_.size() / kCrowded;
-         ++round) {
+    const std::size_t crowd = std::max(surface_.size(), source_.wholeSize) / kCrowded;
+    for (int round = 0; round < kCrowdedRounds && pairs_.size() > crowd; ++round) {
       readFallbacks();
       report_.changed = retreatAll();
       lookAgain(report_.changed);

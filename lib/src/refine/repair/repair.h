@@ -22,6 +22,7 @@ struct Source {
   /// diagonals.
   std::function<bool(VertexIndex)> isFixed;
   double voxelSize = 1;          ///< world length of a voxel
+  std::size_t wholeSize = 0;     ///< polygons of the mesh that this is a part of; 0: it is all
   bool singlePrecision = false;  ///< positions are, and must stay, representable as floats
   /// Where no small change helps, take the last resort: mass points, then fans, even if that helps
   /// no pair at once. Otherwise such pairs are left, for their cells to be split.
