@@ -224,7 +224,7 @@ class ChunkBuilder {
     return cut;
   }
 
-  // Returns the cut mesh without its triangles.
+  // Returns the cut mesh without its triangles and normals.
   chunks::CutMesh makeLevels(chunks::CutMesh cut, const Ground& ground, const octree::CutRule& rule,
                              const std::vector<double>& tolerances) {
     chunks::ChunkChain chain(std::move(cut), ground.affine, rule, options_.chunkSize,

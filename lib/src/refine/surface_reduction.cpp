@@ -27,7 +27,7 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
   closeVertices_ = intersect::verticesOf(mesh, intersect::distinctPolygonsOf(model.closePairs()));
   for (const VertexIndex v : closeVertices_) closePositions_.push_back(mesh.positions[v]);
   // One array after the other, so that few are there twice.
-  takeNormals(model.takeNormals());
+  normals_ = base::PackedNormals(model.takeNormals(), job);
   faces_ = model.takeFaces(job);
   takePositions(mesh.positions);
   keepsExact_ = model.report().openEdges > 0 ||
@@ -74,29 +74,12 @@ Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
   return closePositions_[static_cast<std::size_t>(found - closeVertices_.begin())];
 }
 
-// Few vertices are in a result, so the normals of all are kept in four bytes each in place of
-// twelve.
-void SurfaceReduction::takeNormals(const std::vector<Normal>& normals) {
-  base::resizeLarge(normals_, normals.size(), job_);
-  job_.forRanges(normals.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      normals_[i] = base::Direction(Vec3f(normals[i].x, normals[i].y, normals[i].z));
-    }
-  });
-}
-
-// Of the uniform mesh.
-Normal SurfaceReduction::normalAt(reduce::Index vertex) const {
-  const Vec3f normal = normals_[vertex].vector();
-  return {normal.x, normal.y, normal.z};
-}
-
 Normal SurfaceReduction::normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const {
   const reduce::Index source = reduced.sources[vertex];
-  if (source != reduce::kNone) return normalAt(source);
+  if (source != reduce::kNone) return normals_[source];
   const auto [a, b, c] = faces_[reduced.faces[vertex]].vertices;
   return base::interpolatedNormal({Vec3(positions_[a]), Vec3(positions_[b]), Vec3(positions_[c])},
-                                  {normalAt(a), normalAt(b), normalAt(c)},
+                                  {normals_[a], normals_[b], normals_[c]},
                                   Vec3(reduced.positions[vertex]));
 }
 

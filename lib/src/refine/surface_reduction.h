@@ -5,9 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "base/direction.h"
 #include "base/job.h"
+#include "base/packed_normals.h"
 #include "base/shared_array.h"
+#include "base/triangle_array.h"
 #include "base/vec3.h"
 #include "base/vec3f.h"
 #include "octree/cut_rule.h"
@@ -47,11 +48,9 @@ class SurfaceReduction {
     bool isTold = false;  ///< that it was left out
   };
 
-  void takeNormals(const std::vector<Normal>& normals);
   void takePositions(const std::vector<Position>& exact);
   [[nodiscard]] Position positionAt(const base::Vec3f& local) const;
   [[nodiscard]] Position positionOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
-  [[nodiscard]] Normal normalAt(reduce::Index vertex) const;
   [[nodiscard]] Normal normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
   [[nodiscard]] reduce::ReducedMesh extract(AdaptiveMesh& adaptive) const;
@@ -71,7 +70,7 @@ class SurfaceReduction {
   // Of the uniform mesh; positions in voxels, from the middle.
   base::SharedArray<base::Vec3f> positions_;
   base::TriangleArray faces_;
-  std::vector<base::Direction> normals_;
+  base::PackedNormals normals_;
   bool keepsExact_ = true;  ///< the model has positions still
   // Else those of vertices of close polygons; the vertices rising.
   std::vector<VertexIndex> closeVertices_;

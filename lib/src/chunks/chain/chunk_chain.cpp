@@ -25,6 +25,7 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
                        int chunkSize, bool singlePrecision, base::Job& job)
     : cut_(std::move(cut)),
       faces_(std::move(cut_.mesh.triangles)),
+      normals_(std::exchange(cut_.mesh.normals, {}), job),
       affine_(affine),
       chunkSize_(chunkSize),
       singlePrecision_(singlePrecision),
@@ -160,14 +161,13 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
   Position p;
   if (source != reduce::kNone && localOf(cut_.mesh.positions[source]) == reduced.positions[v]) {
     p = cut_.mesh.positions[source];
-    level.normals.push_back(cut_.mesh.normals[source]);
+    level.normals.push_back(normals_[source]);
   } else {
     p = positionOf(reduced.positions[v]);
     const auto [a, b, c] = faces_[reduced.faces[v]].vertices;
     const std::vector<Position>& at = cut_.mesh.positions;
-    const std::vector<Normal>& normals = cut_.mesh.normals;
     level.normals.push_back(base::interpolatedNormal(
-        {Vec3(at[a]), Vec3(at[b]), Vec3(at[c])}, {normals[a], normals[b], normals[c]}, Vec3(p)));
+        {Vec3(at[a]), Vec3(at[b]), Vec3(at[c])}, {normals_[a], normals_[b], normals_[c]}, Vec3(p)));
   }
   p = affine_.toWorld(p);
   level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);

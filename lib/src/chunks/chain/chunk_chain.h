@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "base/job.h"
-#include "base/shared_array.h"
+#include "base/packed_normals.h"
+#include "base/triangle_array.h"
 #include "base/vec3f.h"
 #include "chunks/cut/cut_mesh.h"
 #include "grid/affine.h"
@@ -54,7 +55,7 @@ class ChunkChain {
 
   /// Makes the next LOD, and completes the one before with what stands for its vertices.
   [[nodiscard]] ChainLevel next(double tolerance, ChainLevel* before);
-  /// The cut mesh, without triangles.
+  /// The cut mesh, without triangles and normals.
   [[nodiscard]] const CutMesh& cut() const { return cut_; }
   /// The same, when all LODs are made.
   [[nodiscard]] CutMesh takeCut() { return std::move(cut_); }
@@ -68,8 +69,9 @@ class ChunkChain {
   void setInto(ChainLevel& level);
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 
-  CutMesh cut_;  ///< without triangles
+  CutMesh cut_;  ///< without triangles and normals
   base::TriangleArray faces_;
+  base::PackedNormals normals_;
   const grid::Affine& affine_;
   int chunkSize_;
   bool singlePrecision_;
