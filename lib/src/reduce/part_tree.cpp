@@ -6,7 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "base/bits.h"
 #include "base/huge_pages.h"
 #include "base/parallel.h"
 
@@ -30,6 +29,13 @@ std::array<Box3f, 2> halves(const Box3f& box, int axis, float plane) {
   std::array<Box3f, 2> half{box, box};
   half[0].upper[axis] = plane, half[1].lower[axis] = plane;
   return half;
+}
+
+// Mixes the bits of a number (the finalizer of MurmurHash3).
+std::uint32_t mixed(std::uint32_t bits) {
+  bits = (bits ^ bits >> 16) * 0x85ebca6bu;
+  bits = (bits ^ bits >> 13) * 0xc2b2ae35u;
+  return bits ^ bits >> 16;
 }
 
 class Splitter {
@@ -110,7 +116,7 @@ float Splitter::quantile(const Some& some, int axis) const {
   std::vector<float> coordinates(asked);
   for (std::size_t i = 0; i < asked; ++i) {
     const std::size_t begin = i * count / asked, end = (i + 1) * count / asked;
-    const std::size_t place = begin + base::mixBits(i) % (end - begin);
+    const std::size_t place = begin + mixed(static_cast<std::uint32_t>(i)) % (end - begin);
     coordinates[i] = at(some.begin + static_cast<Index>(place), axis);
   }
   const auto middle =
