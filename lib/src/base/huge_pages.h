@@ -60,9 +60,9 @@ void growLarge(std::vector<T>& vector, std::size_t count) {
 /// Copies a vector in parallel. `to` must be empty.
 template <class T>
 void copyLarge(const std::vector<T>& from, std::vector<T>& to, Job& job) {
-  constexpr std::size_t kPageGrain = 65536;
+  constexpr std::size_t kCopied = 65536;
   resizeLarge(to, from.size(), job);
-  job.forRanges(from.size(), kPageGrain, [&](std::size_t begin, std::size_t end) {
+  job.forRanges(from.size(), kCopied, [&](std::size_t begin, std::size_t end) {
     std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin),
               from.begin() + static_cast<std::ptrdiff_t>(end),
               to.begin() + static_cast<std::ptrdiff_t>(begin));

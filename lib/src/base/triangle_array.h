@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <iterator>
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
