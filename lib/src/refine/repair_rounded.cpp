@@ -6,7 +6,6 @@
 
 #include "base/ranked_bits.h"
 #include "base/single_precision.h"
-#include "base/sort_unique.h"
 #include "refine/repair/repair.h"
 #include "refine/rounding.h"
 #include "refine/uniform_repair.h"

@@ -4,6 +4,8 @@
 #include <tufa/shapes.h>
 
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "base/job.h"
 #include "refine/repair/repair.h"
