@@ -184,7 +184,7 @@ TEST_F(ChunksCommand, KilledRunsLeaveNoMixtureUntold) {
   makeChunks("--quiet");
   const std::string second = "chunks v.vdb -o d --chunk 16 --levels 3 --tolerance 0.3 --quiet";
   std::mt19937 random(1);
-  for (int n = 0; n < 100; ++n) {
+  for (int n = 0; n < 40; ++n) {
     const double seconds = 1e-3 * static_cast<double>(random() % 300);
     run(second + (n % 2 == 0 ? "" : " --format ply"), "",
         "timeout -s KILL " + std::to_string(seconds) + " ");

@@ -102,7 +102,7 @@ TEST_F(Faults, KeepTheFileThatWasThere) {
   EXPECT_EQ(readBytes(folder / "disk/m.ply"), "as it was");
 }
 
-/// Ends the command at a hundred random times of its writing: there is the file that was there
+/// Ends the command at forty random times of its writing: there is the file that was there
 /// before or the new one, and a rest has the name of a temporary file.
 TEST_F(Faults, LeaveNoPartOfAFileUnderItsNameWhenKilled) {
   ASSERT_EQ(run("make sphere --voxel 0.02 -o s.vdb").exitCode, 0);
@@ -112,7 +112,7 @@ TEST_F(Faults, LeaveNoPartOfAFileUnderItsNameWhenKilled) {
   const std::string m = folder / "m.obj";
   std::mt19937 random(1);
   int inTheMiddle = 0;
-  for (int n = 0; n < 100; ++n) {
+  for (int n = 0; n < 40; ++n) {
     writeBytes(m, "as it was");
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);

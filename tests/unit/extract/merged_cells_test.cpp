@@ -78,7 +78,7 @@ TEST(MergedCells, GiveClosedManifoldsOfAnyFieldWhateverIsMerged) {
   // An angle of 180 degrees and a large tolerance merge all cells but where lattice edges along an
   // axis lead both out of the inside and into it.
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
-    const auto noise = test::noise<FloatGrid>({.size = 28, .seed = seed});
+    const auto noise = test::noise<FloatGrid>({.size = 20, .seed = seed});
     const Mesh finest = merged(*noise, atZero(180), 0);
     for (const double tolerance : {0.5, 1000.0}) {
       const Mesh mesh = merged(*noise, atZero(180), tolerance);

@@ -165,7 +165,7 @@ TEST(MeshFiles, ProgressRisesTo1) {
         fractions.push_back(fraction);
         return true;
       };
-      write(makeSquare(600, normals), path, options);
+      write(makeSquare(400, normals), path, options);
       EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << name;
       ASSERT_GE(fractions.size(), 2u) << name;
       EXPECT_EQ(fractions.back(), 1) << name;
