@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -61,6 +62,7 @@ class Part {
     std::vector<Index> changed;  ///< triangles
   };
   static constexpr Index kBuckets = 512;
+  static constexpr int kSmallComponent = 16;  ///< triangles
   struct Candidate {
     Index a, b, versionA, versionB;
   };
@@ -222,6 +224,7 @@ class Part {
   bool ringGuard();
   [[nodiscard]] Link linkAfterMerging(Index v) const;
   bool starGuard(Index v, const Link& link);
+  [[nodiscard]] std::span<const Index> smallComponent(Index triangle, std::span<Index> room) const;
   [[nodiscard]] bool sideGuard() const;
 
   // part_distance.cpp.
@@ -255,6 +258,8 @@ class Part {
   bool intersects(const NewTriangles& made, bool isMerging);
   bool starIntersects(std::span<const Index> merged);
   bool passesOver(std::span<const Index> merged, std::span<const Index> vanishing);
+  template <class Winding>
+  bool hasComponentIn(const Box3f& whole, const Winding& winding);
   void makeBoxList();
   void renewBox(Index t);
   [[nodiscard]] bool isNarrow(Index t) const;
@@ -266,6 +271,8 @@ class Part {
   [[nodiscard]] Link linkAfterFlip(const Index* v, int k) const;
   bool flipDistance(const Index* v);
   bool flipIntersects(const Index* v);
+  [[nodiscard]] bool flipKeepsSide(const Index* v) const;
+  bool flipPassesOver(const Index* v);
   void applyFlip(const Index* v);
 
   base::Job* job_;
@@ -357,5 +364,27 @@ class Part {
   int newAxes_ = 0;
   Index apexFace_ = kNone;
 };
+
+// Whether a component lies in the space that an operation moves the surface over: inside of a box,
+// where the triangles that are made and those that go, turned, wind around it. All triangles of
+// such a component are inside, so one point of each triangle whose box is will do. `winding`: the
+// solid angle of these triangles, seen from a point. Cost: few triangles are inside.
+template <class Winding>
+bool Part::hasComponentIn(const Box3f& whole, const Winding& winding) {
+  if (!hasBoxList_) makeBoxList();
+  return boxList_.any(whole, [&](Index t, const Box3f& box) {
+    if (!whole.hasInside(box.lower) || !whole.hasInside(box.upper)) return false;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Index v = cornerVertex(t, j);
+      const bool isOwn =
+          v != kNone && ((flip_[0] == kNone && isMerged(v)) || stamp_[v] == ringStamp_);
+      if (isOwn) return false;
+    }
+    Vec3f p[3];
+    triangleAt(t, p);
+    constexpr float kHalfSphere = 6.2831853f;  // 0 outside, 4 pi inside
+    return std::abs(winding(p[0])) > kHalfSphere;
+  });
+}
 
 }  // namespace tufa::reduce

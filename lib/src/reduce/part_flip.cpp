@@ -65,6 +65,7 @@ Outcome Part::tryFlip(Index c) {
   n_ = unit(n[0] + n[1]);
   if (!flipDistance(v)) return Outcome::Crossing;
   if (flipIntersects(v)) return Outcome::Intersection;
+  if (isOn(Outcome::Side) && (!flipKeepsSide(v) || flipPassesOver(v))) return Outcome::Side;
   applyFlip(v);
   return Outcome::Done;
 }
@@ -164,6 +165,40 @@ bool Part::flipIntersects(const Index* v) {
     }
   }
   return intersects(made, false);
+}
+
+// As sideGuard(). Seen from v[0] both new triangles and one of the old ones are flat.
+bool Part::flipKeepsSide(const Index* v) const {
+  std::array<Index, kSmallComponent> room;
+  const std::span<const Index> component = smallComponent(flip_[0] / 3, room);
+  if (component.empty()) return true;
+  const Vec3f from = position_[v[0]];
+  float before = 0, lost = 0;
+  for (const Index t : component) {
+    Vec3f p[3];
+    triangleAt(t, p);
+    const float volume = dot(p[0] - from, cross(p[1] - from, p[2] - from));
+    before += volume;
+    if (t == flip_[1] / 3) lost = volume;
+  }
+  return before > 0 ? before > lost : before < lost;
+}
+
+// As passesOver(): whether a component lies between the old triangles and the new ones.
+bool Part::flipPassesOver(const Index* v) {
+  Box3f whole;
+  unsigned all = 0;
+  for (int k = 0; k < 4; ++k) {
+    whole.add(position_[v[k]]);
+    all |= flags_[v[k]];
+  }
+  if ((all & kNarrow) == 0) return false;
+  return hasComponentIn(whole, [&](Vec3f p) {
+    Vec3f a[4];
+    for (int k = 0; k < 4; ++k) a[k] = position_[v[k]] - p;
+    return solidAngle(a[0], a[1], a[3]) + solidAngle(a[3], a[2], a[0]) -
+           solidAngle(a[0], a[1], a[2]) - solidAngle(a[3], a[2], a[1]);
+  });
 }
 
 // The first triangle becomes (v0, v1, v3) at corner c and the next ones, the second (v3, v2, v0) at

@@ -4,8 +4,6 @@
 // have one are the star guards' business. Triangles without a narrow corner need no test, see
 // clearance.h. Cost: some hundred nanoseconds a star.
 
-#include <cmath>
-
 #include "reduce/part.h"
 
 namespace tufa::reduce {
@@ -14,14 +12,6 @@ namespace {
 // Voxels that are kept between triangles. More would hold up creases along which vertices crowd, as
 // those of a solid in line with the lattice. Less is left to the search in the finished mesh.
 constexpr float kGap = 1e-4f;
-
-// Of a triangle seen from the origin, with the sign of its orientation (van Oosterom and Strackee
-// 1983).
-float solidAngle(Vec3f a, Vec3f b, Vec3f c) {
-  const float la = length(a), lb = length(b), lc = length(c);
-  return 2 * std::atan2(dot(a, cross(b, c)),
-                        la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-}
 
 }  // namespace
 
@@ -123,41 +113,30 @@ bool Part::starIntersects(std::span<const Index> merged) {
 }
 
 // Whether a component lies between the star as it was and as it would be: it would be passed over
-// without an intersection before or after. All triangles of such a component are inside, so one
-// point of each triangle whose box is will do: the two stars wind around it. Cost: nothing where
-// nothing is narrow, and few triangles are inside elsewhere.
+// without an intersection before or after.
 bool Part::passesOver(std::span<const Index> merged, std::span<const Index> vanishing) {
   unsigned all = 0;
   for (const Index v : merged) all |= flags_[v];
   for (int i = 0; i < size_; ++i) all |= flags_[ring_[i]];
   if ((all & kNarrow) == 0) return false;
-  if (!hasBoxList_) makeBoxList();
   Box3f whole;
   whole.add(place_);
   for (const Index v : merged) whole.add(position_[v]);
   for (int i = 0; i < size_; ++i) whole.add(position_[ring_[i]]);
-  return boxList_.any(whole, [&](Index t, const Box3f& box) {
-    if (!whole.hasInside(box.lower) || !whole.hasInside(box.upper)) return false;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Index v = cornerVertex(t, j);
-      if (v != kNone && (isMerged(v) || stamp_[v] == ringStamp_)) return false;
-    }
-    Vec3f other[3];
-    triangleAt(t, other);
-    const Vec3f p = other[0];
+  return hasComponentIn(whole, [&](Vec3f p) {
     float winding = 0;
     for (int i = 0; i < size_; ++i) {
       const Vec3f x = position_[ring_[i]] - p, y = position_[ring_[i + 1]] - p;
       winding += solidAngle(place_ - p, x, y);
     }
     const auto without = [&](Index gone) {
-      triangleAt(gone, other);
-      winding -= solidAngle(other[0] - p, other[1] - p, other[2] - p);
+      Vec3f q[3];
+      triangleAt(gone, q);
+      winding -= solidAngle(q[0] - p, q[1] - p, q[2] - p);
     };
     for (int i = 0; i < size_; ++i) without(at_[i] / 3);
     for (const Index gone : vanishing) without(gone);
-    constexpr float kHalfSphere = 6.2831853f;  // 0 outside, 4 pi inside
-    return std::abs(winding) > kHalfSphere;
+    return winding;
   });
 }
 

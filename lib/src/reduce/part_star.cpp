@@ -285,28 +285,36 @@ bool Part::starGuard(Index v, const Link& link) {
   return true;
 }
 
+// The component of a triangle, if it has no more triangles than there is room for, and no border.
+std::span<const Index> Part::smallComponent(Index triangle, std::span<Index> room) const {
+  room[0] = triangle;
+  std::size_t count = 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    for (Index i = 0; i < 3; ++i) {
+      const Index d = opposite_[3 * room[k] + i];
+      if (d == kNone) return {};
+      const auto end = room.begin() + static_cast<std::ptrdiff_t>(count);
+      if (std::find(room.begin(), end, d / 3) != end) continue;
+      if (count == room.size()) return {};
+      room[count++] = d / 3;
+    }
+  }
+  return room.first(count);
+}
+
 // Small components keep their inside. Larger ones cannot be turned inside out without an
 // intersection on the way; in one of few triangles all may share a vertex with the star, so that
 // there is no pair to test.
 bool Part::sideGuard() const {
-  constexpr int kMost = 16;  // triangles
-  if (size_ > kMost / 2) return true;
-  Index found[kMost] = {at_[0] / 3};
-  int count = 1;
-  for (int k = 0; k < count; ++k) {
-    for (Index i = 0; i < 3; ++i) {
-      const Index d = opposite_[3 * found[k] + i];
-      if (d == kNone) return true;
-      if (std::find(found, found + count, d / 3) != found + count) continue;
-      if (count == kMost) return true;
-      found[count++] = d / 3;
-    }
-  }
+  if (size_ > kSmallComponent / 2) return true;
+  std::array<Index, kSmallComponent> room;
+  const std::span<const Index> component = smallComponent(at_[0] / 3, room);
+  if (component.empty()) return true;
   float before = 0, after = 0;
-  for (int k = 0; k < count; ++k) {
+  for (const Index t : component) {
     Vec3f p[3], q[3];
     for (Index i = 0; i < 3; ++i) {
-      const Index v = vertex_[3 * found[k] + i];
+      const Index v = vertex_[3 * t + i];
       p[i] = position_[v] - place_;
       q[i] = isMerged(v) ? Vec3f() : p[i];
     }

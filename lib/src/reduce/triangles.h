@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/vec3.h"
 #include "base/vec3f.h"
@@ -76,6 +77,14 @@ template <class V>
     s = a > 0 ? std::clamp((b - c) / a, 0.0f, 1.0f) : 0.f;
   }
   return squaredLength((p1 + d1 * s) - (p2 + d2 * t));
+}
+
+/// Of a triangle seen from the origin, with the sign of its orientation (van Oosterom and Strackee
+/// 1983).
+[[nodiscard]] inline float solidAngle(Vec3f a, Vec3f b, Vec3f c) {
+  const float la = length(a), lb = length(b), lc = length(c);
+  return 2 * std::atan2(dot(a, cross(b, c)),
+                        la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
 /// Whether a plane parts two triangles (three corners each) by at least `gap`. Never true for

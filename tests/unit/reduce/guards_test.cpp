@@ -135,6 +135,38 @@ TEST(Guards, KeepSmallComponentsOutsideOut) {
   }
 }
 
+// The roof over a pyramid less deep than its eaves are low: a flip of the ridge turns the component
+// inside out. No two of its triangles are without a common vertex, and it is so small that folds
+// are none.
+TEST(Guards, KeepSmallComponentsOutsideOutWhereEdgesAreFlipped) {
+  test::FineMesh shallow = kRoof;
+  shallow.positions[4].z = -0.5f;
+  for (Vec3f& p : shallow.positions) p = p * 0.01f;
+  const Result kept = reduced(shallow, 0.02f);
+  EXPECT_GT(kept.counts.flips[static_cast<std::size_t>(Outcome::Side)], 0U);
+  EXPECT_GT(test::volume(kept.mesh), 0);
+  EXPECT_LT(test::volume(reduced(shallow, 0.02f, Outcome::Side).mesh), 0);
+}
+
+// A speck between the ridge and the place where it would be after a flip: it would come out of the
+// solid, or into it, and no triangle meets another.
+TEST(Guards, FlipNoEdgeOverAComponent) {
+  test::FineMesh roof = kRoof;
+  for (const Vec3f& p :
+       {Vec3f(0, 0, -0.6f), Vec3f(0.1f, 0, -0.5f), Vec3f(0, 0.1f, -0.5f), Vec3f(0, 0, -0.5f)}) {
+    roof.positions.push_back(p);
+  }
+  // A cavity.
+  for (const Triangle& t :
+       {Triangle(5, 6, 7), Triangle(5, 7, 8), Triangle(5, 8, 6), Triangle(6, 8, 7)}) {
+    roof.triangles.push_back(t);
+  }
+  const Result kept = reduced(roof, 1.1f);
+  EXPECT_EQ(kept.counts.flipped(), 0U);
+  EXPECT_GT(kept.counts.flips[static_cast<std::size_t>(Outcome::Side)], 0U);
+  EXPECT_GT(reduced(roof, 1.1f, Outcome::Side).counts.flipped(), 0U);
+}
+
 // What an audit of a mesh sees, without a look at how it was made.
 struct Audit {
   explicit Audit(const Result& result)
