@@ -16,7 +16,7 @@ constexpr float kStep = 4;
 // The least tolerance that reaches the number may be smaller by so much than one at which two
 // phases do not; it is found to 3%.
 constexpr float kReserve = 1.5f;
-constexpr int kHalvings = 6;
+constexpr int kBisections = 6;
 // A mesh above the number by less than one triangle in so many gets more phases: in other parts
 // they may find what is missing.
 constexpr Index kNearly = 8;
@@ -102,7 +102,7 @@ bool Reduction::findCount(Index count, float mostTolerance) {
   }
   low = std::max({low, start.tolerance, high / (kStep * kReserve)});
   State best = state();
-  for (int i = 0; i < kHalvings && low < high; ++i) {
+  for (int i = 0; i < kBisections && low < high; ++i) {
     const float middle = std::sqrt(low * high);
     restore(start);
     trees_.clear(), nextTree_ = 0;

@@ -22,7 +22,7 @@ namespace {
 constexpr double kFarthest = 1.0;
 // And onto an acute edge by kFarthestAcute, if the quad's corners on each of its sheets lie in one
 // plane to so many voxels.
-constexpr double kFlat = 0.05;
+constexpr double kFlatCorner = 0.05;
 // Two corners nearer than this, in voxels, are one.
 constexpr double kSameCorner = 0.5;
 // A snap may leave a defect in the next quad, and of snaps beside each other only one is made in a
@@ -252,7 +252,8 @@ class CreaseSnapper {
         if (!around.known(corner) || !around.lies(corner, side)) continue;
         const Vec3 point = pointOf(quad.vertices[corner]);
         if (!first) first = point;
-        if (std::abs(around.normal(side).dot(point - *first)) > kFlat * voxelSize_) return false;
+        if (std::abs(around.normal(side).dot(point - *first)) > kFlatCorner * voxelSize_)
+          return false;
       }
     }
     return true;

@@ -8,7 +8,7 @@ namespace tufa::uniform {
 namespace {
 
 // Sheets whose normals differ by less than this (18 degrees) are one.
-constexpr double kSameSide = 0.95;
+constexpr double kSameSheet = 0.95;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ QuadSheets::QuadSheets(const Mesh& mesh, const VertexSheets& sheets, const Quad&
     for (int i = 0; i < own.count; ++i) {
       const Vec3 normal(own.normals[i].x, own.normals[i].y, own.normals[i].z);
       int side = 0;
-      while (side < count_ && normals_[side].dot(normal) < kSameSide) ++side;
+      while (side < count_ && normals_[side].dot(normal) < kSameSheet) ++side;
       if (side == count_) normals_[count_++] = normal;
       masks_[corner] |= 1U << side;
     }
@@ -73,7 +73,7 @@ bool QuadSheets::isOneSheet(const Mesh& mesh, const VertexSheets& sheets, const 
   return std::all_of(quad.vertices.begin(), quad.vertices.end(), [&](VertexIndex vertex) {
     const Normal& n = mesh.normals[vertex];
     return !sheets.isSharp(vertex) &&
-           static_cast<double>(n.x * first.x + n.y * first.y + n.z * first.z) >= kSameSide;
+           static_cast<double>(n.x * first.x + n.y * first.y + n.z * first.z) >= kSameSheet;
   });
 }
 
