@@ -7,25 +7,19 @@
 #include <tufa/io.h>
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
-#include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "checker.h"
-#include "chunk_writer.h"
 #include "chunks_run.h"
 #include "commands.h"
 #include "console.h"
 #include "number.h"
 #include "paths.h"
 #include "progress_bar.h"
-#include "staged_folder.h"
 #include "standard_streams.h"
 #include "volume.h"
 
@@ -79,79 +73,6 @@ std::vector<Attribute> withoutValues(const std::vector<Attribute>& attributes) {
   return names;
 }
 
-bool sameNames(const std::vector<Attribute>& a, const std::vector<Attribute>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-    return x.name == y.name && x.width == y.width && x.role == y.role;
-  });
-}
-
-/// In what chunks of an earlier run differ, so that they would not meet those of this one: options
-/// and other things, with commas between them.
-std::string differences(const ChunkIndex& before, const ChunkIndex& index) {
-  const std::pair<const char*, bool> parts[] = {
-      {"the grid", before.grid != index.grid},
-      {"its transform", before.transform != index.transform || !(before.origin == index.origin)},
-      {"--chunk", before.chunkSize != index.chunkSize},
-      {"the tolerances", before.tolerances != index.tolerances},
-      {"--crease", before.creaseAngle != index.creaseAngle},
-      {"the compression", before.compression != index.compression || before.step != index.step},
-      {"--up", before.up != index.up},
-      {"--scale", before.scale != index.scale},
-      {"the attributes", !sameNames(before.attributes, index.attributes)},
-  };
-  std::string text;
-  for (const auto& [name, differs] : parts) {
-    if (differs) text += (text.empty() ? "" : ", ") + std::string(name);
-  }
-  return text;
-}
-
-/// Adds the chunks of an earlier run that this one has not built again.
-void keepOthers(ChunkIndex& index, const std::string& folder) {
-  if (!std::filesystem::exists(std::filesystem::path(folder) / "chunks.json")) return;
-  const ChunkIndex before = readChunkIndex(folder);
-  if (const std::string text = differences(before, index); !text.empty()) {
-    throw Error(ErrorCode::InvalidArgument,
-                folder + " holds chunks of another volume or of other options: they differ in " +
-                    text + "; make those of --only with the same, or all of them again");
-  }
-  std::map<tufa::Coord, ChunkEntry> chunks;
-  for (const std::vector<ChunkEntry>* entries : {&before.chunks, &std::as_const(index.chunks)}) {
-    for (const ChunkEntry& chunk : *entries) chunks.insert_or_assign(chunk.index, chunk);
-  }
-  index.chunks.clear();
-  for (auto& [place, chunk] : chunks) index.chunks.push_back(std::move(chunk));
-}
-
-std::vector<std::string> filesOf(const ChunkIndex& index) {
-  std::vector<std::string> files;
-  for (const ChunkEntry& chunk : index.chunks) {
-    for (const ChunkLevelEntry& level : chunk.levels) files.push_back(level.file);
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-/// The files of an earlier run in a folder that are not those of this one.
-std::vector<std::filesystem::path> filesLeftOver(const std::filesystem::path& folder,
-                                                 const ChunkIndex& index) {
-  std::vector<std::filesystem::path> left;
-  ChunkIndex before;
-  try {
-    if (!std::filesystem::exists(folder / "chunks.json")) return left;
-    before = readChunkIndex(folder);
-  } catch (const Error&) {
-    return left;  // nobody knows what its files are
-  }
-  const std::vector<std::string> files = filesOf(index);
-  for (const std::string& name : filesOf(before)) {
-    const std::filesystem::path path = name;
-    if (path.empty() || path.filename() != path) continue;
-    if (!std::binary_search(files.begin(), files.end(), name)) left.push_back(folder / path);
-  }
-  return left;
-}
-
 /// Says on standard error which of the chunks asked for have no surface.
 void noteMissing(const ChunkIndex& index, const std::vector<tufa::Coord>& only) {
   for (const tufa::Coord& place : only) {
@@ -169,31 +90,6 @@ std::vector<double> callShares(const ChunksArguments& arguments) {
   return {kFilterShare, kContourShare};
 }
 
-/// Puts down in the index which files hold the levels.
-void nameFiles(const ChunkWriter& writer, ChunkIndex& index) {
-  for (ChunkEntry& chunk : index.chunks) {
-    const std::vector<ChunkFile>& made = writer.files(chunk.index);
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      chunk.levels[i].file = made[i].name;
-      chunk.levels[i].checksum = made[i].checksum;
-    }
-  }
-}
-
-/// Writes the index, moves all into the folder, and removes what an earlier run left there.
-void commit(const ChunksArguments& arguments, ChunkIndex index, StagedFolder& staged) {
-  const bool isWhole = arguments.only.empty();
-  if (!isWhole) keepOthers(index, arguments.output);
-  writeChunkIndex(index, staged.path());
-  std::vector<std::filesystem::path> old;
-  if (isWhole) old = filesLeftOver(arguments.output, index);
-  staged.commit("chunks.json");
-  for (const std::filesystem::path& file : old) {
-    std::error_code ignored;
-    std::filesystem::remove(file, ignored);
-  }
-}
-
 ChunksRun build(const ChunksArguments& arguments) {
   ProgressBar bar(arguments.quiet, callShares(arguments));
   ChunksRun run;
@@ -206,8 +102,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   requireLeft(*grid, arguments.input, run.filters);
   const ChunkOptions options = chunkOptions(arguments, meshing, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
-  ChunkWriter writer(format, resolveThreads(options.contour.threads));
-  std::optional<StagedFolder> staged;
+  ChunkFolder folder(arguments.output, format, options.contour.threads);
   const AttributeGrids attributes(arguments.input, arguments.attributes);
   const ChunkSink sink = [&](const ChunkIndex& index, Chunk&& chunk) {
     run.attributeSeconds += timed([&] {
@@ -216,14 +111,10 @@ ChunksRun build(const ChunksArguments& arguments) {
       }
     });
     if (run.attributes.empty()) run.attributes = withoutValues(chunk.levels.front().attributes);
-    run.writeSeconds += timed([&] {
-      if (!staged) staged.emplace(arguments.output);
-      writer.add(index, std::move(chunk), staged->path());
-    });
+    run.writeSeconds += timed([&] { folder.add(index, std::move(chunk)); });
   };
   run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
   run.buildSeconds -= run.writeSeconds + run.attributeSeconds;
-  run.writeSeconds += timed([&] { writer.finish(); });
   run.contour.nonFiniteValues += run.filters.nonFiniteValues();
   run.index.attributes = run.attributes;
   if (!arguments.quiet) {
@@ -235,9 +126,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   if (options.only.empty() && run.index.chunks.empty()) {
     requireSurface({}, run.contour.isovalue, *grid, arguments.input);
   }
-  nameFiles(writer, run.index);
-  if (!staged) staged.emplace(arguments.output);
-  commit(arguments, run.index, *staged);
+  run.writeSeconds += timed([&] { folder.commit(run.index, !options.only.empty()); });
   return run;
 }
 

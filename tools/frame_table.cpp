@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kStates = {"done", "empty", "missing", "skipped", "failed"};
 
-std::string nameOf(FrameState state) { return kStates[static_cast<std::size_t>(state)]; }
+std::string nameOfState(FrameState state) { return kStates[static_cast<std::size_t>(state)]; }
 
 /// The reports of all grids of a frame: one of several is a list in the result.
 std::vector<Json> gridsOf(const Json& result) {
@@ -151,7 +151,7 @@ Json FrameTable::toJson(double seconds) const {
   Json json;
   json["frames"] = Json::array();
   for (const FrameRow& row : rows_) {
-    Json frame = {{"frame", row.number}, {"state", nameOf(row.state)}};
+    Json frame = {{"frame", row.number}, {"state", nameOfState(row.state)}};
     frame.update(row.result);
     frame["file"] = row.file;
     frame["output"] = row.output;
@@ -171,9 +171,10 @@ std::string FrameTable::toCsv() const {
     const bool written = !gridsOf(row.result).empty();
     const auto number = [&](const std::string& value) { return written ? value : std::string(); };
     const auto error = errorOf(row.result);
-    text += std::to_string(row.number) + "," + nameOf(row.state) + "," + csvField(row.file) + "," +
-            csvField(row.output) + "," + number(std::to_string(sumOf(row.result, "triangles"))) +
-            "," + number(std::to_string(sumOf(row.result, "vertices"))) + "," +
+    text += std::to_string(row.number) + "," + nameOfState(row.state) + "," + csvField(row.file) +
+            "," + csvField(row.output) + "," +
+            number(std::to_string(sumOf(row.result, "triangles"))) + "," +
+            number(std::to_string(sumOf(row.result, "vertices"))) + "," +
             (error ? formatNumber(*error) : "") + "," +
             number(std::to_string(sumOf(row.result, "open_edges"))) + "," +
             number(formatNumber(secondsOf(row.result))) + "," + csvField(row.message()) + "\n";

@@ -2,6 +2,7 @@
 
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <tufa/staged_folder.h>
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -20,7 +21,6 @@
 #include "frames.h"
 #include "paths.h"
 #include "processes.h"
-#include "staged_folder.h"
 #include "standard_streams.h"
 #include "usda_sequence.h"
 #include "volume.h"

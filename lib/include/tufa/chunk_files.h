@@ -3,6 +3,7 @@
 #include <tufa/chunk.h>
 #include <tufa/export.h>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,34 @@ TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk&
 /// UnwritableFile, InvalidArgument for an index without levels, which readChunkIndex() would
 /// refuse.
 TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
+
+/// A folder that gets chunks all together: until commit(), and if that never comes, it holds what
+/// it held. See StagedFolder.
+class TUFA_API ChunkFolder {
+ public:
+  /// Nothing is made before there is something to write. `threads`: most that write at a time, 0:
+  /// as many as there are.
+  explicit ChunkFolder(std::string folder, ChunkFormat format = ChunkFormat::Glb, int threads = 0);
+  ~ChunkFolder();
+  ChunkFolder(const ChunkFolder&) = delete;
+  ChunkFolder& operator=(const ChunkFolder&) = delete;
+
+  /// Takes a chunk that a ChunkSink is given, and writes those at hand once they are many: most of
+  /// the time goes into making files. Throws Error as writeChunk() does.
+  void add(const ChunkIndex& index, Chunk&& chunk);
+
+  /// Writes what is left and the index of buildChunks(), in which it puts down the files, and moves
+  /// all to their places, chunks.json last. Files that chunks.json listed before are removed if
+  /// they are none of these. With `keepsOthers`, for ChunkOptions::only, chunks that are listed
+  /// there and not in the index stay. Throws Error: UnwritableFile; InvalidArgument for chunks that
+  /// were not added, and with `keepsOthers` where those before are of another volume or other
+  /// options.
+  void commit(ChunkIndex& index, bool keepsOthers = false);
+
+ private:
+  class Writer;
+  std::unique_ptr<Writer> writer_;
+};
 
 /// Reads chunks.json. Throws Error(UnreadableFile).
 [[nodiscard]] TUFA_API ChunkIndex readChunkIndex(const std::string& folder);

@@ -7,10 +7,12 @@
 
 namespace tufa {
 
+class ChunkFolder;
 class Coord;
 class Error;
 class Progress;
 class RaySurface;
+class StagedFolder;
 struct AdviseOptions;
 struct Attribute;
 struct AttributeOptions;

@@ -28,6 +28,7 @@
 #include <tufa/quads.h>
 #include <tufa/rays.h>
 #include <tufa/shapes.h>
+#include <tufa/staged_folder.h>
 #include <tufa/unite.h>
 #include <tufa/version.h>
 #include <tufa/voxelize.h>

@@ -4,6 +4,7 @@
 
 #include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
+#include <tufa/staged_folder.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -407,6 +408,100 @@ TEST_F(ChunkFiles, AreNotWrittenToWhereTheyCannotBe) {
                     [&] { writeChunk(index, chunks[0], name + "missing", ChunkFormat::Glb); });
   test::expectError(ErrorCode::UnwritableFile, "cannot write",
                     [&] { writeChunkIndex(index, name + "missing"); });
+}
+
+// The drum's chunks to a folder that is not there yet.
+class ChunkFolders : public ChunkFiles {
+ protected:
+  void add(ChunkFolder& to, std::size_t chunk) const {
+    Chunk copy = chunks[chunk];
+    to.add(index, std::move(copy));
+  }
+  void writeAll(ChunkFormat format = ChunkFormat::Glb) {
+    ChunkFolder to(place, format);
+    for (std::size_t i = 0; i < chunks.size(); ++i) add(to, i);
+    to.commit(index);
+  }
+  /// An index of one of the chunks.
+  [[nodiscard]] ChunkIndex indexOfOne(std::size_t chunk) const {
+    ChunkIndex one = index;
+    one.chunks = {index.chunks[chunk]};
+    return one;
+  }
+  [[nodiscard]] std::set<std::string> names() const {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(place)) {
+      found.insert(entry.path().filename().string());
+    }
+    return found;
+  }
+
+  const std::string place = (folder / "drum").string();
+};
+
+TEST_F(ChunkFolders, HoldChunksOnceTheyAreCommitted) {
+  {
+    ChunkFolder left(place);
+    add(left, 0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(place));
+  writeAll();
+  EXPECT_EQ(names().size(), 7U);
+  const ChunkIndex read = readChunkIndex(place);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    EXPECT_EQ(read.chunks[i].levels[0].checksum, index.chunks[i].levels[0].checksum);
+    expectSame(readChunk(read, i, place).levels[0], [&] {
+      ChunkLevel level = chunks[i].levels[0];
+      level.maxErrorVoxels = index.chunks[i].levels[0].maxErrorVoxels;
+      level.transitionErrorVoxels = index.chunks[i].levels[0].transitionErrorVoxels;
+      return level;
+    }());
+  }
+}
+
+TEST_F(ChunkFolders, AreReplacedWholeOrNotAtAll) {
+  writeAll();
+  const std::set<std::string> before = names();
+  const std::string first = readBytes(place + "/chunks.json");
+  {
+    ChunkFolder left(place, ChunkFormat::Ply);
+    add(left, 0);
+    ChunkIndex whole = index;  // the second chunk has not been added
+    test::expectError(ErrorCode::InvalidArgument, "not added", [&] { left.commit(whole); });
+  }
+  EXPECT_EQ(names(), before);
+  EXPECT_EQ(readBytes(place + "/chunks.json"), first);
+  writeBytes(place + "/notes.txt", "mine");
+  writeAll(ChunkFormat::Ply);
+  EXPECT_EQ(names().size(), 8U);
+  for (const std::string& file : names()) EXPECT_FALSE(file.ends_with(".glb")) << file;
+  EXPECT_TRUE(names().contains("notes.txt"));
+}
+
+TEST_F(ChunkFolders, KeepTheOtherChunksWhereThatIsAskedFor) {
+  writeAll();
+  {
+    ChunkFolder some(place);
+    add(some, 1);
+    ChunkIndex one = indexOfOne(1);
+    some.commit(one, true);
+    EXPECT_EQ(one.chunks.size(), 1U);
+  }
+  EXPECT_EQ(readChunkIndex(place).chunks.size(), 2U);
+  EXPECT_EQ(names().size(), 7U);
+  ChunkFolder others(place);
+  add(others, 1);
+  ChunkIndex one = indexOfOne(1);
+  one.tolerances[0] *= 2;
+  one.creaseAngle = 20;
+  test::expectError(ErrorCode::InvalidArgument, "differ in the tolerances, the crease angle",
+                    [&] { others.commit(one, true); });
+}
+
+TEST_F(ChunkFolders, TellWhereTheyCannotBe) {
+  ChunkFolder to((folder / "missing" / "drum").string());
+  for (std::size_t i = 0; i < chunks.size(); ++i) add(to, i);
+  test::expectError(ErrorCode::UnwritableFile, "cannot make the folder", [&] { to.commit(index); });
 }
 
 }  // namespace

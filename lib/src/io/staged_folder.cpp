@@ -1,4 +1,4 @@
-#include "staged_folder.h"
+#include <tufa/staged_folder.h>
 
 #include <unistd.h>
 
@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <system_error>
 #include <utility>
+#include <vector>
 
-namespace tufa::tools {
+namespace tufa {
 namespace {
 
-[[noreturn]] void fail(const std::string& what, const std::error_code& error) {
+[[noreturn]] void failTo(const std::string& what, const std::error_code& error) {
   throw Error(ErrorCode::UnwritableFile, "cannot " + what + ": " + error.message());
 }
 
@@ -18,7 +19,7 @@ namespace {
 bool makeFolder(const std::filesystem::path& folder) {
   std::error_code error;
   const bool made = std::filesystem::create_directory(folder, error);
-  if (error) fail("make the folder " + folder.string(), error);
+  if (error) failTo("make the folder " + folder.string(), error);
   return made;
 }
 
@@ -34,7 +35,7 @@ StagedFolder::StagedFolder(std::filesystem::path folder)
     staging_ = candidate;
     return;
   }
-  fail("make a folder in " + folder_.string(), std::make_error_code(std::errc::file_exists));
+  failTo("make a folder in " + folder_.string(), std::make_error_code(std::errc::file_exists));
 }
 
 StagedFolder::~StagedFolder() {
@@ -56,11 +57,11 @@ void StagedFolder::commit(const std::string& last) {
     const auto before = std::filesystem::symlink_status(folder_ / name, error);
     if (std::filesystem::is_regular_file(before)) {
       std::filesystem::permissions(staging_ / name, before.permissions(), error);
-      if (error) fail("keep the permissions of " + (folder_ / name).string(), error);
+      if (error) failTo("keep the permissions of " + (folder_ / name).string(), error);
     }
     std::filesystem::rename(staging_ / name, folder_ / name, error);
-    if (error) fail("replace " + (folder_ / name).string(), error);
+    if (error) failTo("replace " + (folder_ / name).string(), error);
   }
 }
 
-}  // namespace tufa::tools
+}  // namespace tufa

@@ -1,15 +1,16 @@
 #pragma once
 
+#include <tufa/export.h>
 #include <filesystem>
 #include <string>
-#include <vector>
 
-namespace tufa::tools {
+namespace tufa {
 
 /// A folder that gets new files all together: they are written beside the old ones, to a folder in
 /// it, and take their places when all of them are whole. Until then, and if that never comes, the
-/// folder holds what it held. All members throw Error(UnwritableFile).
-class StagedFolder {
+/// folder holds what it held. All members throw Error(UnwritableFile). ChunkFolder is one of
+/// chunks.
+class TUFA_API StagedFolder {
  public:
   /// Makes the folder if it is not there.
   explicit StagedFolder(std::filesystem::path folder);
@@ -31,4 +32,4 @@ class StagedFolder {
   bool made_ = false;  ///< the folder, for these files
 };
 
-}  // namespace tufa::tools
+}  // namespace tufa
