@@ -47,7 +47,7 @@ class AdaptiveNoise : public testing::TestWithParam<Ambiguity> {};
 TEST_P(AdaptiveNoise, KeepsTheTopologyAtAnyTolerance) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     test::NoiseOptions noise;
-    noise.size = seed == 1 ? 32 : 20;
+    noise.size = seed == 1 ? 24 : 16;
     noise.seed = seed;
     const auto grid = test::noise<openvdb::FloatGrid>(noise);
     ContourOptions options;
