@@ -8,8 +8,8 @@ namespace tufa {
 
 /// A folder that gets new files all together: they are written beside the old ones, to a folder in
 /// it, and take their places when all of them are whole. Until then, and if that never comes, the
-/// folder holds what it held. All members throw Error(UnwritableFile). ChunkFolder is one of
-/// chunks.
+/// folder holds what it held. All members throw Error(UnwritableFile). For chunks there is
+/// ChunkFolder.
 class TUFA_API StagedFolder {
  public:
   /// Makes the folder if it is not there.
