@@ -18,10 +18,10 @@ namespace {
 
 // Voxels between two vertices on a crease, one after the other: just more than what
 // withdrawPlacements() takes for the same point.
-constexpr double kOrderedApart = 0.16;
+constexpr double kSpacing = 0.16;
 // Voxels that a vertex may slide in all, as creases bend.
 constexpr double kFarthest = 0.75;
-constexpr int kMostOrderings = 64;
+constexpr int kMostOrderRounds = 64;
 // What is left of a violated order counts for nothing, voxels.
 constexpr double kSlack = 1e-3;
 // Vertices are on one crease if its directions at them are within so many degrees (14), and one is
@@ -71,7 +71,7 @@ class CreaseOrder {
     if (orders_.empty()) return 0;
     findBetweenSheets();
     nameVertices();
-    for (int round = 0; round < kMostOrderings && push(round == 0); ++round) {
+    for (int round = 0; round < kMostOrderRounds && push(round == 0); ++round) {
       job_.checkCancelled(0, 1);
     }
     return apply();
@@ -269,7 +269,7 @@ class CreaseOrder {
     for (const Order& order : orders_) {
       if (!isFirst && hasMoved_[order.first] == 0 && hasMoved_[order.second] == 0) continue;
       const double missing =
-          kOrderedApart - (placeOf(order.second) - placeOf(order.first)).dot(order.along);
+          kSpacing - (placeOf(order.second) - placeOf(order.first)).dot(order.along);
       if (missing < kSlack) continue;
       const double back = directions_[order.first].dot(order.along);
       const double forth = directions_[order.second].dot(order.along);

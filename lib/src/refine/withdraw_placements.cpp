@@ -14,7 +14,7 @@ namespace {
 
 // A vertex moves a bounded number of times, so rounds end by themselves; this many are a sign of a
 // fault.
-constexpr int kMostWithdrawals = 64;
+constexpr int kMostWithdrawalRounds = 64;
 // How often others may move vertices afterwards.
 constexpr int kMostReturns = 3;
 // A vertex that slides along its crease keeps so many voxels from the others of the conflict.
@@ -57,7 +57,7 @@ class PlacementGuard {
       const std::vector<VertexIndex> moved = withdrawFrom(conflicts);
       if (moved.empty()) return;
       finder_.noteMoved(moved);
-      if (round == kMostWithdrawals) return;
+      if (round == kMostWithdrawalRounds) return;
       conflicts = finder_.findAroundMoved(ConflictFinder::Pairs::WithCandidate);
     }
   }

@@ -17,7 +17,7 @@ namespace {
 using base::Box;
 
 // Rounds of small changes at most, and again of last resorts.
-constexpr int kMostRepairs = 40;
+constexpr int kMostRepairRounds = 40;
 // Where more than one in so many polygons intersects another, as in white noise, there is no fine
 // shape to preserve: all vertices involved go to their mass points at once.
 constexpr std::size_t kCrowded = 20;
@@ -66,7 +66,7 @@ class Repairer {
  private:
   void repairInRounds(bool lastResort) {
     stuck_.clear();
-    for (int round = 0; round < kMostRepairs && stuck_.size() < pairs_.size(); ++round) {
+    for (int round = 0; round < kMostRepairRounds && stuck_.size() < pairs_.size(); ++round) {
       readFallbacks();
       lookAgain(repairGroups(lastResort));
     }
