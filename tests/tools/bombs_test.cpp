@@ -78,7 +78,7 @@ class Bombs : public ::testing::Test {
   const std::string file = folder / "bomb.vdb";
 };
 
-/// Leaves of one value: some bytes in the file, two kilobytes in memory, with vectors twelve.
+/// Leaves of one value: some bytes in the file, two kilobytes in memory, with vectors six.
 template <class GridT>
 openvdb::GridBase::Ptr makeSolid(int side) {
   using Value = typename GridT::ValueType;

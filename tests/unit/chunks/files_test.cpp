@@ -4,7 +4,6 @@
 
 #include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
-#include <tufa/staged_folder.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -445,7 +444,9 @@ TEST_F(ChunkFolders, HoldChunksOnceTheyAreCommitted) {
     add(left, 0);
   }
   EXPECT_FALSE(std::filesystem::exists(place));
-  writeAll();
+  ChunkFolder to(place);
+  for (std::size_t i = 0; i < chunks.size(); ++i) add(to, i);
+  to.commit(index);
   EXPECT_EQ(names().size(), 7U);
   const ChunkIndex read = readChunkIndex(place);
   for (std::size_t i = 0; i < chunks.size(); ++i) {

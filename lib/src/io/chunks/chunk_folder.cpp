@@ -119,6 +119,7 @@ class ChunkFolder::Writer {
     writeChunkIndex(written, staged().path());
     const std::vector<std::filesystem::path> old = filesLeftOver(folder_, written);
     staged().commit(kIndexName);
+    staged_.reset();
     for (const std::filesystem::path& file : old) {
       std::error_code ignored;
       std::filesystem::remove(file, ignored);
