@@ -128,6 +128,11 @@ TEST_F(ChunksCommand, MakesChunksAloneAsTheyAreTogether) {
   }
   expectFailure("chunks v.vdb -o d --chunk 16 --levels 2 --only 0,0,0", 2,
                 "of other options: they differ in the tolerances; make");
+  makeChunks("--quiet");
+  for (const std::string other : {"--iso 0.01", "--offset 1", "--min-angle 20"}) {
+    expectFailure("chunks v.vdb -o d --chunk 16 --levels 3 --only 0,0,0 " + other, 2,
+                  "differ in the surface");
+  }
 }
 
 TEST_F(ChunksCommand, ASecondRunLeavesNoFileOfTheFirst) {

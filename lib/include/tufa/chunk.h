@@ -95,6 +95,9 @@ struct ChunkIndex {
   /// Names, widths and roles of the attributes in the files, without values; what writes chunks
   /// fills it in.
   std::vector<Attribute> attributes = {};
+  /// FNV-1a of 64 bits, in hexadecimal digits, of the LODs of all chunks, whichever were asked for:
+  /// tells another volume and other options that shape its surface apart. Empty: unknown.
+  std::string surface;
   std::vector<ChunkEntry> chunks;  ///< sorted by index
 
   /// The place of a chunk in `chunks`, or -1.

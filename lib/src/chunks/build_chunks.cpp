@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/box.h"
+#include "base/checksum.h"
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "base/run_call.h"
@@ -54,6 +55,11 @@ void requireOptions(const ChunkOptions& options) {
         "cells");
   }
   octree::requireFactor(options.factor);
+  if (options.levels > 1 && options.contour.tolerance == 0) {
+    refuse(
+        "no level can follow one of tolerance 0, as each level's tolerance is a multiple of that "
+        "before: ask for one level");
+  }
   if (!(options.creaseAngle >= 0 && options.creaseAngle <= 180)) {
     refuse("the crease angle must be between 0 and 180 degrees");
   }
@@ -121,6 +127,15 @@ ChunkLevelEntry entryOf(const ChunkLevel& level, std::size_t pairsLeft, double m
   return out;
 }
 
+std::string checksumOf(const std::vector<chunks::ChainLevel>& levels) {
+  base::Checksum sum;
+  for (const chunks::ChainLevel& level : levels) {
+    sum.addAll(level.positions);
+    sum.addAll(level.triangles);
+  }
+  return sum.text();
+}
+
 // For each chunk the pairs of triangles of a level that intersect, as they are, beside the next
 // level, or on some faces beside it.
 std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::ChainLevel& level,
@@ -183,6 +198,7 @@ class ChunkBuilder {
       index.step = 0;
       index.compression = GlbCompression::None;
     }
+    index.surface = checksumOf(levels_);
     handOut(cut, index);
     return index;
   }

@@ -499,6 +499,23 @@ TEST_F(ChunkFolders, KeepTheOtherChunksWhereThatIsAskedFor) {
                     [&] { others.commit(one, true); });
 }
 
+TEST_F(ChunkFolders, KeepNoChunksOfAnotherSurfaceOrFormat) {
+  index.surface = "93c1d0a6e5f27b48";
+  writeAll();
+  EXPECT_EQ(readChunkIndex(place).surface, index.surface);
+  ChunkFolder other(place);
+  add(other, 1);
+  ChunkIndex one = indexOfOne(1);
+  one.surface.back() = one.surface.back() == '0' ? '1' : '0';
+  test::expectError(ErrorCode::InvalidArgument, "differ in the surface",
+                    [&] { other.commit(one, true); });
+  ChunkFolder ply(place, ChunkFormat::Ply);
+  add(ply, 1);
+  one = indexOfOne(1);
+  test::expectError(ErrorCode::InvalidArgument, "differ in the format",
+                    [&] { ply.commit(one, true); });
+}
+
 TEST_F(ChunkFolders, TellWhereTheyCannotBe) {
   ChunkFolder to((folder / "missing" / "drum").string());
   for (std::size_t i = 0; i < chunks.size(); ++i) add(to, i);

@@ -12,9 +12,9 @@
 #include <numeric>
 #include <utility>
 
+#include "base/checksum.h"
 #include "base/known_enum.h"
 #include "base/single_precision.h"
-#include "io/checksum.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb_document.h"
 #include "io/mesh/file_attributes.h"
@@ -62,7 +62,7 @@ class SummedFile {
 
  private:
   io::OutputFile file_;
-  io::Checksum checksum_;
+  base::Checksum checksum_;
 };
 
 std::size_t triangleCount(const ChunkLevel& level) {

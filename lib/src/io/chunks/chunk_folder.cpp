@@ -31,9 +31,26 @@ bool sameNames(const std::vector<Attribute>& a, const std::vector<Attribute>& b)
   });
 }
 
+/// That of an index's files; empty if there are none.
+std::filesystem::path endingIn(const ChunkIndex& index) {
+  for (const ChunkEntry& chunk : index.chunks) {
+    for (const ChunkLevelEntry& level : chunk.levels) {
+      if (!level.file.empty()) return std::filesystem::path(level.file).extension();
+    }
+  }
+  return {};
+}
+
+/// Whether both have files, with other endings.
+bool haveOtherFormats(const ChunkIndex& a, const ChunkIndex& b) {
+  const std::filesystem::path first = endingIn(a), second = endingIn(b);
+  return !first.empty() && !second.empty() && first != second;
+}
+
 /// In what chunks of an earlier run differ, so that they would not meet those of this one, with
 /// commas between.
 std::string differences(const ChunkIndex& before, const ChunkIndex& index) {
+  const bool isKnown = !before.surface.empty() && !index.surface.empty();
   const std::pair<const char*, bool> parts[] = {
       {"the grid", before.grid != index.grid},
       {"its transform", before.transform != index.transform || !(before.origin == index.origin)},
@@ -44,10 +61,15 @@ std::string differences(const ChunkIndex& before, const ChunkIndex& index) {
       {"the axis that points up", before.up != index.up},
       {"the scale", before.scale != index.scale},
       {"the attributes", !sameNames(before.attributes, index.attributes)},
+      {"the format", haveOtherFormats(before, index)},
   };
   std::string text;
   for (const auto& [name, differs] : parts) {
     if (differs) text += (text.empty() ? "" : ", ") + std::string(name);
+  }
+  // Most of these come with another surface.
+  if (text.empty() && isKnown && before.surface != index.surface) {
+    return "the surface, as with other values, another isovalue or a filter";
   }
   return text;
 }

@@ -78,7 +78,8 @@ Json headOf(const ChunkIndex& index) {
           {"step", index.step},
           {"up", index.up == UpAxis::Z ? "z" : "y"},
           {"metres_per_unit", index.scale},
-          {"attributes", toJson(index.attributes)}};
+          {"attributes", toJson(index.attributes)},
+          {"surface", index.surface}};
 }
 
 std::string textOf(const Json& json) {
@@ -197,6 +198,7 @@ class IndexReader {
     index.scale = json.value("metres_per_unit", 1.0);
     require(index.scale > 0, "its metres are not above 0");
     if (json.contains("attributes")) readAttributes(json["attributes"], index);
+    index.surface = json.value("surface", "");
   }
 
   void readAttributes(const Json& json, ChunkIndex& index) const {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "io/checksum.h"
+#include "base/checksum.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb_file.h"
 #include "io/gltf/glb_streams.h"
@@ -117,7 +117,7 @@ void requireInside(const std::filesystem::path& path, const std::filesystem::pat
 /// Throws Error(UnreadableFile) if the file is another one than chunks.json lists.
 void requireListed(const ChunkLevelEntry& entry, const io::InputBytes& input) {
   if (entry.checksum.empty()) return;  // of a program that knows none
-  io::Checksum checksum;
+  base::Checksum checksum;
   checksum.add(input.view());
   if (checksum.text() == entry.checksum) return;
   input.fail("it has another checksum than chunks.json says: it is damaged, or of another run");

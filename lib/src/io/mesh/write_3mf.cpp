@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "base/checksum.h"
 #include "base/parallel_sort.h"
 #include "base/printable.h"
 #include "base/require_at_most.h"
-#include "io/checksum.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -149,7 +149,7 @@ class Model {
   }
 
   void add(const std::string& name, Geometry geometry) {
-    Checksum checksum;
+    base::Checksum checksum;
     checksum.add(bytesOf(geometry.vertices));
     checksum.add(bytesOf(geometry.triangles));
     all_.add(checksum.text());
@@ -191,7 +191,7 @@ class Model {
   }
 
   Owned<NMR::PLib3MFModel> model_;
-  Checksum all_;
+  base::Checksum all_;
   std::size_t identifiers_ = 0;
 };
 
