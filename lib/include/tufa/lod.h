@@ -63,8 +63,8 @@ struct LodChain {
   Position centre{0, 0, 0};  ///< of the bounding sphere of LOD 0
   double radius = 0;         ///< of that sphere, world units
   double sharedSeconds = 0;  ///< wall clock of what all LODs share: reading, uniform mesh, clusters
-  /// Why there are fewer LODs than asked for; empty if there are not. A number of triangles that is
-  /// out of reach ends the chain with the LOD before.
+  /// Why there are fewer LODs than asked for; empty if there are not. A number of triangles that
+  /// the LOD before does not exceed is left out; one that is out of reach ends the chain.
   std::string stopped;
 };
 

@@ -53,9 +53,13 @@ std::vector<Target> budgetsOf(const LodOptions& options) {
   }
   std::vector<Target> targets;
   for (std::size_t i = 0; i < options.triangles.size(); ++i) {
-    if (options.triangles[i] < 4) refuse("a level needs at least 4 triangles");
+    if (options.triangles[i] < 4) {
+      refuse("a level needs at least 4 triangles, not " + std::to_string(options.triangles[i]));
+    }
     if (i > 0 && options.triangles[i] >= options.triangles[i - 1]) {
-      refuse("numbers of triangles must fall from level to level");
+      refuse("numbers of triangles must fall from level to level: " +
+             std::to_string(options.triangles[i]) + " follows " +
+             std::to_string(options.triangles[i - 1]));
     }
     targets.push_back({options.contour.tolerance, options.triangles[i]});
   }
@@ -90,21 +94,24 @@ std::vector<Target> targetsOf(const LodOptions& options) {
   for (std::size_t i = 0; i < targets.size(); ++i) {
     octree::requireTolerance(targets[i].tolerance);
     if (i > 0 && !(targets[i].tolerance > targets[i - 1].tolerance)) {
-      refuse("tolerances must rise from level to level");
+      refuse("tolerances must rise from level to level: " + base::numberText(targets[i].tolerance) +
+             " follows " + base::numberText(targets[i - 1].tolerance));
     }
   }
   return targets;
+}
+
+// That a number of triangles was left out, as the LOD before has no more.
+std::string leftOut(const Target& target, const std::vector<Lod>& before) {
+  return "a level of " + std::to_string(target.triangles) + " triangles was left out: level " +
+         std::to_string(before.size() - 1) + " has " +
+         std::to_string(before.back().mesh.triangleCount()) + " already";
 }
 
 // Why an LOD is no coarser, or not as coarse as asked for, and was left out: `worthwhile` is what
 // it had to stay below.
 std::string stopOf(std::size_t level, const Target& target, std::size_t triangles,
                    std::size_t worthwhile, const std::vector<Lod>& before) {
-  if (target.triangles > 0 && triangles <= target.triangles) {
-    return "level " + std::to_string(level) + " was left out: level " + std::to_string(level - 1) +
-           " has " + std::to_string(triangles) + " triangles, fewer than the " +
-           std::to_string(target.triangles) + " asked for, already";
-  }
   if (target.triangles > 0) {
     return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
            " triangles: the surface allows no fewer than " + std::to_string(triangles) +
@@ -116,6 +123,11 @@ std::string stopOf(std::size_t level, const Target& target, std::size_t triangle
          std::to_string(worthwhile) + ", of the " +
          std::to_string(before.back().mesh.triangleCount()) + " of level " +
          std::to_string(level - 1);
+}
+
+// Adds a reason why there are fewer LODs than asked for.
+void tell(LodChain& chain, const std::string& reason) {
+  chain.stopped += (chain.stopped.empty() ? "" : "; ") + reason;
 }
 
 // An LOD with so many triangles or more is not worth its error: at four times the tolerance three
@@ -201,15 +213,20 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const Clock::time_point begin = Clock::now();
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
-    job.beginStage("level " + std::to_string(i), kFirstLevelEnd + (1 - kFirstLevelEnd) * share,
+    const std::size_t level = chain.levels.size();
+    job.beginStage("level " + std::to_string(level), kFirstLevelEnd + (1 - kFirstLevelEnd) * share,
                    base::Length::Unknown);
     const Target& target = targets[i];
-    const std::size_t most = i > 0 ? tooMany(target, chain.levels.back()) : 0;
+    const std::size_t most = level > 0 ? tooMany(target, chain.levels.back()) : 0;
+    if (level > 0 && target.triangles > 0 && most <= target.triangles) {
+      tell(chain, leftOut(target, chain.levels));
+      continue;
+    }
     refine::AdaptiveMesh adaptive = maker.next(target);
     const std::size_t triangles = adaptive.extracted.mesh.triangleCount();
-    const bool coarser = i == 0 || triangles < most || !adaptive.dropped.empty();
+    const bool coarser = level == 0 || triangles < most || !adaptive.dropped.empty();
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
-      chain.stopped = stopOf(i, target, triangles, most, chain.levels);
+      tell(chain, stopOf(level, target, triangles, most, chain.levels));
       break;
     }
     Lod lod;

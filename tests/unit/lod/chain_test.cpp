@@ -132,10 +132,19 @@ TEST(LodChain, EndsBeforeABudgetThatCannotBeMet) {
   EXPECT_NE(chain.stopped.find("level 1 cannot have 4 triangles"), std::string::npos)
       << chain.stopped;
   expectPromises(chain);
-  options.triangles = {1000000, 900000};
-  EXPECT_NE(
-      buildLods(*test::shapeOf(Shape::Torus, 0.05), options).stopped.find("fewer than the 900000"),
-      std::string::npos);
+}
+
+TEST(LodChain, LeavesOutBudgetsThatTheLevelBeforeMeetsAlready) {
+  LodOptions options;
+  options.triangles = {1000000, 900000, 800000, 500};
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.05), options);
+  ASSERT_EQ(chain.levels.size(), 2u);
+  EXPECT_LE(chain.levels[1].mesh.triangleCount(), 500u);
+  const std::string count = std::to_string(chain.levels[0].mesh.triangleCount());
+  EXPECT_EQ(chain.stopped, "a level of 900000 triangles was left out: level 0 has " + count +
+                               " already; a level of 800000 triangles was left out: level 0 has " +
+                               count + " already");
+  expectPromises(chain);
 }
 
 TEST(LodChain, SaysWhatWasComparedForALevelLeftOut) {
