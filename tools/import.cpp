@@ -96,6 +96,7 @@ std::shared_ptr<openvdb::GridBase> importImage(const ImportArguments& arguments,
   SliceOptions options;
   options.threshold = arguments.options.threshold;
   options.labels = arguments.options.labels;
+  options.distances = arguments.options.distances;
   options.threads = arguments.options.threads;
   options.progress = bar.callback();
   return importSlices(image, options);
@@ -134,9 +135,11 @@ int runImport(const ImportArguments& arguments) {
   });
   if (grid->empty()) {
     printNote("note: the volume is empty: every value is background" +
-              (arguments.options.threshold ? ", as none is above the threshold of " +
-                                                 formatNumber(*arguments.options.threshold)
-                                           : std::string()));
+              (arguments.options.threshold
+                   ? ", as none is " +
+                         std::string(arguments.options.distances ? "below" : "above") +
+                         " the threshold of " + formatNumber(*arguments.options.threshold)
+                   : std::string()));
   }
   WrittenGrid written;
   written.input = arguments.inputs.front();
@@ -171,6 +174,7 @@ void addImportCommand(CLI::App& app, Command& chosen) {
   command
       ->add_option("--header", options.headerBytes,
                    "bytes at the beginning of each file to leave out")
+      ->check(wholeNumberFrom(0))
       ->capture_default_str();
   command->add_option("--spacing", arguments->spacing,
                       "X,Y,Z: world units between voxels; default: the image's, or 1,1,1");
@@ -178,9 +182,12 @@ void addImportCommand(CLI::App& app, Command& chosen) {
                       "X,Y,Z: place of the first voxel; default: the image's, or 0,0,0");
   command->add_option("--series", arguments->series, "UID of the DICOM series in the folder");
   command->add_option("--threshold", options.threshold,
-                      "values up to it are background; default: the least value");
+                      "values up to it are background; default: the least value. With --distances: "
+                      "values from it on; default: the greatest");
   command->add_flag("--labels", options.labels,
                     "the values name things: keep them as integers, 0 is background");
+  command->add_flag("--distances", options.distances,
+                    "the values are signed distances in world units, below 0 inside: a level set");
   addThreadsOption(*command, options.threads);
   command->add_flag("--json", arguments->json, "one JSON object on standard output");
   command->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");

@@ -5,6 +5,7 @@
 
 #include <tufa/import.h>
 #include <tufa/io.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -118,6 +119,40 @@ TEST_F(Import, ThresholdsAndNaNAreBackground) {
   EXPECT_EQ(grid->tree().getValue(openvdb::Coord(1, 1, 1)), 8);
   ASSERT_EQ(run("import v -o v.vdb --type f32 --size 2,2,2").exitCode, 0);
   EXPECT_EQ(gridOf("v.vdb")->background(), -5);
+}
+
+TEST_F(Import, SignedDistancesAreALevelSet) {
+  constexpr int kSide = 20;
+  std::vector<float> values;
+  for (int z = 0; z < kSide; ++z) {
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        values.push_back(static_cast<float>(std::hypot(x - 9.6, y - 9.3, z - 9.8) * 0.5 - 3));
+      }
+    }
+  }
+  const float greatest = *std::max_element(values.begin(), values.end());
+  writeBytes(folder / "d", {reinterpret_cast<const char*>(values.data()), 4 * values.size()});
+  const std::string command =
+      "import d -o v.vdb --type f32 --size 20,20,20 --spacing 0.5,0.5,0.5 --distances ";
+  ASSERT_EQ(run(command).exitCode, 0);
+  EXPECT_EQ(gridOf("v.vdb")->background(), greatest);
+  ASSERT_EQ(run(command + "--threshold 1.5").exitCode, 0);
+  const auto grid = gridOf("v.vdb");
+  EXPECT_EQ(grid->getName(), "surface");
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
+  EXPECT_EQ(grid->background(), 1.5F);
+  EXPECT_EQ(grid->tree().getValue(openvdb::Coord(9, 9, 9)), values[9 * 421]);
+  const Outcome made = run("mesh v.vdb -o v.ply --check --json");
+  ASSERT_EQ(made.exitCode, 0) << made.err;
+  const Json report = test::parseJson(made.out);
+  EXPECT_EQ(report.at("isovalue"), 0);
+  EXPECT_EQ(report.at("inside"), "below");
+  EXPECT_NEAR(report.at("check").at("volume").get<double>(), 4.0 / 3 * 3.14159265 * 27, 1);
+  expectFailure(command + "--threshold -1", 2, "the threshold of distances must be above 0");
+  expectFailure(command + "--labels", 2, "labels or distances, not both");
+  writeBytes(folder / "d", std::string(4 * values.size(), '\0'));
+  expectFailure(command, 3, "none of the values is above 0");
 }
 
 TEST_F(Import, KeepsToTheRoomThatAReaderIsGiven) {

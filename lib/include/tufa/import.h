@@ -33,8 +33,9 @@ struct RawImport {
   /// World units between voxels along x, y and z: 10^-4 to 10^20.
   std::array<double, 3> spacing{1, 1, 1};
   Position origin{0, 0, 0};         ///< of the first voxel, world units
-  std::optional<double> threshold;  ///< values up to it are background; none: the least one
+  std::optional<double> threshold;  ///< as SliceOptions::threshold
   bool labels = false;              ///< as SliceOptions::labels
+  bool distances = false;           ///< as SliceOptions::distances
   int threads = 0;                  ///< most threads; 0: all. Never changes the result.
   Progress progress;                ///< called from the calling thread; may cancel
 };
@@ -54,17 +55,22 @@ struct ImageSlices {
 
 /// Options of importSlices().
 struct SliceOptions {
-  /// Values up to it are background; unset: the least value. Not for labels.
+  /// Values up to it are background; of distances, values from it on, above 0. Unset: the least
+  /// value, of distances the greatest. Not for labels.
   std::optional<double> threshold = {};
   /// The values name things: an Int32 grid of the name "labels", in which 0 is background.
   bool labels = false;
+  /// The values are signed distances in world units, below 0 inside: a level set of the name
+  /// "surface". Not with labels.
+  bool distances = false;
   int threads = 0;         ///< most threads; 0: all. Never changes the result.
   Progress progress = {};  ///< called from the calling thread; may cancel
 };
 
 /// Makes a sparse grid of an image, eight slices at a time: of floats as importRaw() does, or of
 /// labels. Throws Error: InvalidArgument (size, steps, origin, threshold), UnreadableFile (labels
-/// that are not whole, or beyond 2^24), Cancelled, and what `read` throws.
+/// that are not whole, or beyond 2^24; distances of which none is above 0), Cancelled, and what
+/// `read` throws.
 [[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> importSlices(
     const ImageSlices& image, const SliceOptions& options = {});
 
@@ -73,9 +79,10 @@ struct SliceOptions {
 
 /// Reads an image of which the values lie one after the other in one or more files, x running
 /// fastest, then y. Voxels above the threshold are active in the float grid that it makes; the
-/// others have the threshold's value, and so has all beyond the image. NaN is background. Only
-/// eight slices and the grid are in memory. Throws Error: InvalidArgument (size, spacing, origin),
-/// UnreadableFile (files that do not hold just so many values), Cancelled.
+/// others have the threshold's value, and so has all beyond the image; of distances those below it
+/// are active. NaN is background. Only eight slices and the grid are in memory. Throws Error:
+/// InvalidArgument (size, spacing, origin), UnreadableFile (files that do not hold just so many
+/// values), Cancelled.
 [[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> importRaw(
     const std::vector<std::filesystem::path>& files, const RawImport& options);
 

@@ -42,6 +42,7 @@ std::shared_ptr<openvdb::GridBase> importRaw(const std::vector<std::filesystem::
   SliceOptions sliceOptions;
   sliceOptions.threshold = options.threshold;
   sliceOptions.labels = options.labels;
+  sliceOptions.distances = options.distances;
   sliceOptions.threads = options.threads;
   sliceOptions.progress = options.progress;
   return importSlices(image, sliceOptions);

@@ -9,8 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,11 @@ void requireUsable(const ImageSlices& image, const SliceOptions& options) {
     refuse("the threshold must be finite");
   }
   if (options.threshold && options.labels) refuse("labels have no threshold: 0 is background");
+  if (options.distances && options.labels) refuse("values are labels or distances, not both");
+  if (options.distances && options.threshold && !(*options.threshold > 0)) {
+    refuse("the threshold of distances must be above 0, not " +
+           base::numberText(*options.threshold));
+  }
 }
 
 openvdb::math::Transform::Ptr transformOf(const ImageSlices& image) {
@@ -94,14 +100,16 @@ void forLayers(const ImageSlices& image, base::Job& job, const Visit& visit) {
   }
 }
 
-float leastOf(const ImageSlices& image, base::Job& job) {
-  float least = std::numeric_limits<float>::infinity();
+/// The first of all values in an order, or 0 if there is none that is finite.
+template <class Before>
+float firstOf(const ImageSlices& image, base::Job& job, const Before& before) {
+  std::optional<float> first;
   forLayers(image, job, [&](std::int64_t, const std::vector<float>& values) {
     for (const float value : values) {
-      if (value < least) least = value;
+      if (std::isfinite(value) && (!first || before(value, *first))) first = value;
     }
   });
-  return std::isfinite(least) ? least : 0;
+  return first.value_or(0.0F);
 }
 
 /// What of an image is kept: values above the threshold.
@@ -109,6 +117,15 @@ struct Densities {
   using Tree = openvdb::FloatTree;
   float background = 0;
   [[nodiscard]] bool keeps(float value) const { return value > background; }
+  [[nodiscard]] static float valueOf(float value) { return value; }
+  void require(const std::vector<float>& /*values*/) const {}
+};
+
+/// Distances below the threshold, inside and near it.
+struct Distances {
+  using Tree = openvdb::FloatTree;
+  float background = 0;
+  [[nodiscard]] bool keeps(float value) const { return value < background; }
   [[nodiscard]] static float valueOf(float value) { return value; }
   void require(const std::vector<float>& /*values*/) const {}
 };
@@ -192,6 +209,28 @@ std::shared_ptr<openvdb::GridBase> gridOf(const ImageSlices& image, const Kind& 
   return grid;
 }
 
+/// The value that counts as background: the threshold, or else the first value in an order.
+template <class Before>
+float backgroundOf(const ImageSlices& image, const SliceOptions& options, base::Job& job,
+                   const Before& before) {
+  if (options.threshold) return static_cast<float>(*options.threshold);
+  job.beginStage("looking for the background", 0.3);
+  return firstOf(image, job, before);
+}
+
+std::shared_ptr<openvdb::GridBase> levelSetOf(const ImageSlices& image, const SliceOptions& options,
+                                              base::Job& job) {
+  const Distances distances{backgroundOf(image, options, job, std::greater<>())};
+  if (!(distances.background > 0)) {
+    throw Error(ErrorCode::UnreadableFile,
+                "none of the values is above 0, as signed distances are outside");
+  }
+  auto grid = gridOf(image, distances, options, job);
+  grid->setName("surface");
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  return grid;
+}
+
 }  // namespace
 
 std::shared_ptr<openvdb::GridBase> importSlices(const ImageSlices& image,
@@ -203,15 +242,10 @@ std::shared_ptr<openvdb::GridBase> importSlices(const ImageSlices& image,
   if (options.labels) {
     grid = gridOf(image, Labels{}, options, job);
     grid->setName("labels");
+  } else if (options.distances) {
+    grid = levelSetOf(image, options, job);
   } else {
-    Densities densities;
-    if (options.threshold) {
-      densities.background = static_cast<float>(*options.threshold);
-    } else {
-      job.beginStage("looking for the background", 0.3);
-      densities.background = leastOf(image, job);
-    }
-    grid = gridOf(image, densities, options, job);
+    grid = gridOf(image, Densities{backgroundOf(image, options, job, std::less<>())}, options, job);
     grid->setName("image");
   }
   job.finish();
