@@ -139,7 +139,7 @@ TEST_F(Bombs, OfOneValueTakeMemoryInProportion) {
 
 TEST_F(Bombs, OfNoiseTakeMemoryInProportion) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer takes memory of its own";
-  write(makeNoise(7), COMPRESS_ZIP | COMPRESS_ACTIVE_MASK);
+  write(makeNoise(6), COMPRESS_ZIP | COMPRESS_ACTIVE_MASK);
   expectProportion({"mesh", file, "--iso", "0", "--uniform", "--quiet", "-o", folder / "m.ply"},
                    1500);
   write(makeNoise(4), COMPRESS_ZIP | COMPRESS_ACTIVE_MASK);

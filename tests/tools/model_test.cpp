@@ -37,7 +37,7 @@ TEST_F(Model, SampleScenesBecomeClosedMeshes) {
     all += readBytes(scene);
     const double voxel = test::parseJson(readBytes(scene)).at("voxel").get<double>();
     const Outcome made =
-        run("model " + scene + " -o s.vdb --json --voxel " + std::to_string(2 * voxel));
+        run("model " + scene + " -o s.vdb --json --voxel " + std::to_string(3 * voxel));
     ASSERT_EQ(made.exitCode, 0) << scene << made.err;
     const Json json = test::parseJson(made.out);
     EXPECT_EQ(json.at("grid"), entry.path().stem().string());
@@ -48,7 +48,7 @@ TEST_F(Model, SampleScenesBecomeClosedMeshes) {
     // Rays to the formulas see what was meshed.
     const Outcome seen =
         run("picture " + scene + " -o s.png --size 48x36 --samples 1 --json --compare s.ply " +
-            "--voxel " + std::to_string(2 * voxel));
+            "--voxel " + std::to_string(3 * voxel));
     ASSERT_EQ(seen.exitCode, 0) << scene << seen.err;
     const Json picture = test::parseJson(seen.out);
     EXPECT_GT(picture.at("covered"), 0.1) << scene;

@@ -50,7 +50,7 @@ TEST(Mc33, HasTheTopologyOfTheTrilinearSurfaceInAMillionRandomCells) {
 TEST(Mc33, HasTheComponentsThatAFineLatticeShows) {
   Cells cells(2);
   int compared = 0, tubes = 0;
-  for (int i = 0; i < 12'000; ++i) {
+  for (int i = 0; i < 8'000; ++i) {
     const CornerValues values = cells.next();
     const CornerMask mask = maskOf(values);
     if (mask == 0 || mask == 255) continue;

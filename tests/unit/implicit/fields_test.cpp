@@ -106,7 +106,7 @@ void expectBoundsHold(const Field& field, const Box& box, int samples, Places& p
 TEST(Fields, BoundsHoldAllSamples) {
   for (const auto& [name, field] : allFields()) {
     Places places;
-    for (int n = 0; n < 17000; ++n) {
+    for (int n = 0; n < 8000; ++n) {
       ASSERT_NO_FATAL_FAILURE(expectBoundsHold(*field, places.box(), 60, places, name));
     }
   }
