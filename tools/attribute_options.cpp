@@ -36,11 +36,10 @@ Word readWord(const std::string& text) {
 
 }  // namespace
 
-void addAttributeOptions(CLI::App& app, AttributeWords& words) {
-  app.add_option(
-         "--attribute", words.grids,
-         "a grid of the file whose values the vertices get, in .ply, .glb and .usda; with =colour "
-         "as colours")
+void addAttributeOptions(CLI::App& app, AttributeWords& words, const std::string& formats) {
+  app.add_option("--attribute", words.grids,
+                 "a grid of the file whose values the vertices get, in " + formats +
+                     "; with =colour as colours")
       ->allow_extra_args(false);
   app.add_option(
       "--velocity", words.velocity,

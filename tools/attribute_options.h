@@ -26,7 +26,8 @@ struct AttributeWords {
 };
 
 /// Declares `--attribute`, `--velocity` and `--shutter`.
-void addAttributeOptions(CLI::App& app, AttributeWords& words);
+void addAttributeOptions(CLI::App& app, AttributeWords& words,
+                         const std::string& formats = ".ply, .glb and .usda");
 
 /// The seconds that `--shutter` says. Throws Error(InvalidArgument) for what says none.
 [[nodiscard]] double readShutter(const AttributeWords& words);

@@ -69,6 +69,19 @@ void requireMesh(const std::string& file) {
                                               file + " --lods all:0 -o MESH --check checks them");
 }
 
+/// Says of a file of a chunk that it is no mesh by itself.
+void noteChunk(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!file.filename().string().starts_with("chunk_") ||
+      !std::filesystem::exists(file.parent_path() / "chunks.json", error)) {
+    return;
+  }
+  printNote(
+      "note: " + file.string() +
+      " is one chunk, both strips at each face in it; tufa chunks --assemble makes one mesh of "
+      "its folder");
+}
+
 int checkFile(const std::string& file, const Truth& truth, const CheckArguments& arguments,
               FileList& files) {
   requireMesh(file);
@@ -94,8 +107,10 @@ int checkFile(const std::string& file, const Truth& truth, const CheckArguments&
     }
     files.add(std::move(json));
   } else if (!arguments.quiet) {
+    if (distance) noteIsovalue(arguments.isovalue, *truth.grid, distance->isovalue);
     print(shownInput(file) + "\n" + (distance ? describe(*distance) : "") + describe(report));
   }
+  if (!report.watertight() && !arguments.quiet) noteChunk(file);
   return report.watertight() ? kDone : kPromiseBroken;
 }
 

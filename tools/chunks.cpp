@@ -124,7 +124,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   noteMissing(run.index, options.only);
   if (options.compression != run.index.compression) noteFloats("every level");
   if (options.only.empty() && run.index.chunks.empty()) {
-    requireSurface({}, run.contour.isovalue, *grid, arguments.input);
+    requireSurface({}, run.contour.isovalue, *grid, arguments.input, run.filters.text());
   }
   run.writeSeconds += timed([&] { folder.commit(run.index, !options.only.empty()); });
   return run;
@@ -206,9 +206,9 @@ void addBuildOptions(CLI::App& app, ChunksArguments& arguments) {
                  "normals are split where faces differ by more, in degrees")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
-  addFrameOptions(app, options.up, options.scale);
+  addFrameOptions(app, options.up, options.scale, ".glb");
   addCompressionOptions(app, options.compression);
-  addAttributeOptions(app, arguments.attributes);
+  addAttributeOptions(app, arguments.attributes, ".ply and .glb");
   app.add_option("--only", arguments.only,
                  "indices of the chunks to make, such as 0,-1,2, behind FILE; default: all");
 }

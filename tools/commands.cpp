@@ -4,6 +4,7 @@
 
 #include <tufa/version.h>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -36,6 +37,7 @@ void declareCommand(CLI::App& app, Command& chosen) {
   app.description("Watertight 2-manifold meshes from sparse OpenVDB volumes");
   app.set_version_flag("--version", std::string("tufa ") + tufa::version());
   app.require_subcommand(1);
+  nameFlagsAsTyped(app);
   addMakeCommand(app, chosen);
   addVoxelizeCommand(app, chosen);
   addModelCommand(app, chosen);
@@ -65,10 +67,19 @@ void addHelpCommand(CLI::App& app, Command& chosen) {
 CLI::Validator above0() {
   return {[](std::string& text) {
             const auto number = numberIn<double>(text);
-            if (number && *number > 0) return std::string();
+            if (number && *number > 0 && std::isfinite(*number)) return std::string();
             return text + " is not a number above 0";
           },
           "NUMBER > 0"};
+}
+
+CLI::Validator wholeNumberFrom(std::size_t least) {
+  return {[least](std::string& text) {
+            const auto number = numberIn<std::size_t>(text);
+            if (number && *number >= least) return std::string();
+            return text + " is not a whole number, " + std::to_string(least) + " or more";
+          },
+          "INT >= " + std::to_string(least)};
 }
 
 void addThreadsOption(CLI::App& app, int& threads) {
@@ -97,10 +108,10 @@ void addNonFiniteOption(CLI::App& app, NonFinite& nonFinite) {
                        "what to do with NaN and infinite values (default refuse)");
 }
 
-void addFrameOptions(CLI::App& app, UpAxis& up, double& scale) {
+void addFrameOptions(CLI::App& app, UpAxis& up, double& scale, const std::string& formats) {
   addChoice<UpAxis>(app, "--up", up, {{"y", UpAxis::Y}, {"z", UpAxis::Z}},
-                    ".glb, .usda and .3mf: axis of the volume that points up (default y)");
-  app.add_option("--scale", scale, ".glb, .usda and .3mf: metres in a world unit")
+                    formats + ": axis of the volume that points up (default y)");
+  app.add_option("--scale", scale, formats + ": metres in a world unit")
       ->check(above0())
       ->capture_default_str();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 
 namespace CLI {
@@ -39,6 +40,9 @@ void addThreadsOption(CLI::App& app, int& threads);
 
 /// For options that take a number above 0.
 [[nodiscard]] CLI::Validator above0();
+
+/// That an option is a whole number, `least` or more: CLI11 alone takes -1 for the greatest.
+[[nodiscard]] CLI::Validator wholeNumberFrom(std::size_t least);
 
 /// Exit codes of the command.
 inline constexpr int kDone = 0;

@@ -32,7 +32,7 @@ constexpr std::array<Declared, 9> kDeclared = {{
      "in world units"},
     {"open", "move it inward and back: takes away what is thinner than twice the distance"},
     {"close", "move it outward and back: closes gaps narrower than twice the distance"},
-    {"resample", "sample the volume anew with voxels of this size"},
+    {"resample", "sample the volume anew with voxels of this size in world units"},
     {"clip",
      "keep what lies in a box, X0,Y0,Z0,X1,Y1,Z1 in world units, or in the active voxels of a grid "
      "of the file"},
@@ -196,6 +196,12 @@ std::shared_ptr<openvdb::GridBase> filterVolume(const std::shared_ptr<openvdb::G
     filtered = applyFilters(*grid, filters, options, &run.reports);
   });
   return filtered;
+}
+
+std::string FilterRun::text() const {
+  std::string text;
+  for (const FilterWord& word : words) text += " --" + word.option + " " + word.value;
+  return text;
 }
 
 void requireLeft(const openvdb::GridBase& grid, const std::string& file, const FilterRun& run) {

@@ -33,6 +33,8 @@ struct FilterRun {
   std::vector<FilterWord> words;
   std::vector<FilterReport> reports;  ///< one for each word
   double seconds = 0;
+  /// " --offset 1 --open 2": the filters as they were given; empty without.
+  [[nodiscard]] std::string text() const;
   /// NaN and infinite values that were taken as outside before the first one.
   [[nodiscard]] std::size_t nonFiniteValues() const {
     return reports.empty() ? 0 : reports.front().nonFiniteValues;

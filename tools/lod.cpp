@@ -24,6 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t kLeastTriangles = 4;  // of a closed surface
+
 /// Prints what the user should know to standard error; returns the exit code.
 int judge(const LodRun& run) {
   const bool isFiltered = !run.filters.reports.empty() && !run.chain.levels.empty();
@@ -151,6 +153,7 @@ void addChainOptions(CLI::App& app, LodArguments& arguments) {
   app.add_option("--triangles", arguments.lod.triangles,
                  "most triangles of all levels, falling, with commas between: each level has up to "
                  "5 % fewer")
+      ->check(wholeNumberFrom(kLeastTriangles))
       ->delimiter(',')
       ->allow_extra_args(false)
       ->excludes("--levels")

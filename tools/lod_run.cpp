@@ -53,7 +53,7 @@ void buildChain(const LodArguments& arguments, ProgressBar& bar, LodRun& run) {
   }
   if (!arguments.allowEmpty) {
     requireSurface(run.chain.levels.empty() ? Mesh() : run.chain.levels[0].mesh,
-                   run.contour.isovalue, *grid, arguments.input);
+                   run.contour.isovalue, *grid, arguments.input, run.filters.text());
   }
   if (!arguments.report) return;
   ContourOptions uniform = options.contour;

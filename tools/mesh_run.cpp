@@ -72,7 +72,7 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
                     (run.filters.reports.empty() ? "" : " once it is filtered") +
                     "; --allow-empty goes on with an empty mesh");
   }
-  requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input);
+  requireSurface(run.mesh, run.contour.isovalue, *grid, arguments.input, run.filters.text());
 }
 
 void sampleAttributes(const MeshArguments& arguments, std::optional<AttributeGrids>& attributes,

@@ -28,7 +28,7 @@ const PageText& pageText(const std::string& subcommand) {
       {"picture",
        {"Takes a picture of a volume or a scene by ray casting, without a mesh.",
         {{"tufa picture head.vdb -o bone.png --iso 1150", "the surface at a value"},
-         {"tufa picture part.vdb --compare part.ply", "where a mesh looks different"}}}},
+         {"tufa picture part.vdb --compare part.ply", "how much of a mesh looks different"}}}},
       {"info",
        {"Says what the grids of a file are, how large they are, and whether they can be meshed.",
         {{"tufa info smoke.vdb", "all grids of a file"}}}},
@@ -65,8 +65,8 @@ const PageText& pageText(const std::string& subcommand) {
          {"tufa chunks --assemble terrain --lods camera:0,0,5 -o seen.ply --check",
           "what a camera sees, as one mesh"}}}},
       {"check",
-       {"Says whether meshes are closed, manifold, oriented and free of intersections, by exact "
-        "predicates of CGAL.",
+       {"Says whether meshes are watertight: closed, manifold and oriented; and counts what "
+        "intersects, by exact predicates of CGAL.",
         {{"tufa check part.ply --against part.vdb",
           "with the distance to the surface of a grid"}}}},
       {"fit",

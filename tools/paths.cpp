@@ -22,7 +22,8 @@ void requireFormat(MeshFormat format) {
   if (hasFormat(format)) return;
   throw Error(
       ErrorCode::InvalidArgument,
-      "this tufa was built without lib3mf, which writes .3mf; write .stl or another format");
+      "this tufa was built without lib3mf, which writes .3mf: install lib3mf-dev and configure "
+      "with -DTUFA_USE_LIB3MF=ON, or write .stl or another format");
 }
 
 void requireEnding(const std::string& output, const std::string& what, const std::string& ending) {

@@ -5,7 +5,10 @@
 #include <tufa/error.h>
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <numeric>
+
+#include "option_words.h"
 
 namespace tufa::tools {
 namespace {
@@ -34,19 +37,35 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// Says that there is no such subcommand, and which one may have been meant: the nearest, if at
-/// most every other letter differs, or one that the word begins.
-std::string unknownSubcommand(const CLI::App& app, const std::string& word) {
+/// Which of some names may have been meant: the nearest, if at most `most` letters differ, or one
+/// that the word begins; empty if there is none.
+std::string didYouMean(const std::string& word, const std::vector<std::string>& names,
+                       std::size_t most) {
   std::string nearest;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 2) + 1;
-  for (const std::string& name : subcommandNames(app)) {
+  std::size_t least = most + 1;
+  for (const std::string& name : names) {
     const std::size_t distance = name.starts_with(word) ? 0 : editDistance(word, name);
     if (distance >= least) continue;
     least = distance;
     nearest = name;
   }
-  return "there is no subcommand " + word +
-         (nearest.empty() ? "" : "; did you mean " + nearest + "?");
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+}
+
+std::string unknownSubcommand(const CLI::App& app, const std::string& word) {
+  const std::size_t most = std::max<std::size_t>(1, word.size() / 2);
+  return "there is no subcommand " + word + didYouMean(word, subcommandNames(app), most);
+}
+
+/// Of an option that a subcommand does not have, without the value that may stand behind it.
+std::string unknownOption(const CLI::App& command, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : optionsOf(command, false)) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  const std::string name = word.substr(0, word.find('='));
+  return "there is no option " + word +
+         didYouMean(name, names, std::max<std::size_t>(1, name.size() / 4));
 }
 
 std::string oneLine(std::string text) {
@@ -56,14 +75,36 @@ std::string oneLine(std::string text) {
   return text;
 }
 
-/// CLI11 lists what it did not expect from the last to the first.
-std::string unexpected(const std::vector<std::string>& extras) {
+std::string unexpected(const CLI::App& command, const std::vector<std::string>& extras) {
+  for (const std::string& word : extras) {
+    if (word.starts_with("--")) return unknownOption(command, word);
+  }
   std::string text = extras.size() == 1 ? "unexpected argument" : "unexpected arguments";
   for (const std::string& word : extras) text += " " + word;
+  // What a shell makes of *.vdb.
+  if (extras.front().ends_with(".vdb")) {
+    text += "; tufa mesh takes the frames of a sequence by one name in quotes, 'smoke.####.vdb'";
+  }
   return text;
 }
 
+class Formatter : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool isPositional) const override {
+    if (isPositional) return CLI::Formatter::make_option_name(option, isPositional);
+    std::string names;
+    const auto add = [&](const char* dashes, const std::vector<std::string>& all) {
+      for (const std::string& name : all) names += (names.empty() ? "" : ",") + (dashes + name);
+    };
+    add("-", option->get_snames());
+    add("--", option->get_lnames());
+    return names;
+  }
+};
+
 }  // namespace
+
+void nameFlagsAsTyped(CLI::App& app) { app.formatter(std::make_shared<Formatter>()); }
 
 std::string describeMisuse(const CLI::App& app, const CLI::ParseError& error,
                            const std::vector<std::string>& words) {
@@ -77,7 +118,7 @@ std::string describeMisuse(const CLI::App& app, const CLI::ParseError& error,
   }
   const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
   const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty();
-  const std::string what = extra ? unexpected(extras) : oneLine(error.what());
+  const std::string what = extra ? unexpected(*parsed.front(), extras) : oneLine(error.what());
   return what + " (see tufa" + command + " --help)";
 }
 

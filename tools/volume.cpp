@@ -135,7 +135,8 @@ std::optional<double> readIsovalue(const std::optional<std::string>& text,
   if (!info.minValue) {
     throw Error(ErrorCode::InvalidArgument, "a fog volume needs --iso, and grid \"" +
                                                 grid.getName() + "\" in " + shownInput(file) +
-                                                " has no values that could tell a good one");
+                                                " has no values that could tell a good one; "
+                                                "tufa info on a frame that has some does");
   }
   throw Error(ErrorCode::InvalidArgument,
               "a fog volume needs --iso: grid \"" + grid.getName() + "\" in " + shownInput(file) +
@@ -238,7 +239,7 @@ void requireVoxels(const openvdb::GridBase& grid, const std::string& file) {
 }
 
 void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
-                    const std::string& file) {
+                    const std::string& file, const std::string& filters) {
   if (mesh.triangleCount() > 0) return;
   const GridInfo info = describeGrid(grid);
   const auto reaches = [&](const std::optional<double>& value, bool above) {
@@ -251,6 +252,7 @@ void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& 
   throw Error(ErrorCode::UnsupportedGrid,
               "no surface at isovalue " + formatNumber(isovalue) + ": grid \"" + grid.getName() +
                   "\" in " + shownInput(file) + " " + describeValues(info) +
+                  (filters.empty() ? "" : " after" + filters) +
                   (runsOut ? "; it runs out of the data, where --cap of tufa mesh closes it" : ""));
 }
 
@@ -295,7 +297,9 @@ void noteBroken(const CheckReport& check, const ContourReport& report, const std
     printNote("note: " + what + " has " + formatCount(check.boundaryEdges) +
               " boundary edges where the data ends");
   } else {
-    printNote(what + " is not watertight: " + brokenPromises(check));
+    const bool isInsideOut = check.closed && check.oriented && !check.outward;
+    printNote(what + " is not watertight: " + brokenPromises(check) +
+              (isInsideOut ? "; --inside says which side of the isovalue is solid" : ""));
   }
 }
 

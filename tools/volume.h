@@ -26,7 +26,8 @@ void addContourOptions(CLI::App& app, ContourOptions& options, std::optional<std
                        bool methods = false);
 
 /// Declares `--up` and `--scale`, for formats that say what is up and how long a metre is.
-void addFrameOptions(CLI::App& app, UpAxis& up, double& scale);
+void addFrameOptions(CLI::App& app, UpAxis& up, double& scale,
+                     const std::string& formats = ".glb, .usda and .3mf");
 
 /// Declares `--quantize` and `--compress`, for .glb.
 void addCompressionOptions(CLI::App& app, GlbCompression& compression);
@@ -101,9 +102,10 @@ struct Length {
 /// Throws Error(UnsupportedGrid) if the grid has no active voxels.
 void requireVoxels(const openvdb::GridBase& grid, const std::string& file);
 
-/// Throws Error(UnsupportedGrid) with the grid's range of values if its mesh is empty.
+/// Throws Error(UnsupportedGrid) with the grid's range of values if its mesh is empty. `filters`:
+/// what the grid of the file went through, as FilterRun::text() has it.
 void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& grid,
-                    const std::string& file);
+                    const std::string& file, const std::string& filters = {});
 
 /// Prints what the user should know about the data to standard error. That the surface is open,
 /// only if a mesh is given that is: where grids are clipped, data may end beside a surface that is

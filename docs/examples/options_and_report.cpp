@@ -13,7 +13,6 @@ int main() {
     options.isovalue = 0.5;                           // in the grid's own unit
     options.inside = tufa::Inside::Above;             // a density: the solid is where there is more
     options.ambiguity = tufa::Ambiguity::Asymptotic;  // how ambiguous cell faces are joined
-    options.tolerance = 0.25;                         // voxels: larger cells where that is kept
     options.tolerance = 0.05;                         // voxels; the default is 0.1
     options.threads = 2;                              // never changes the result
     options.progress = [](std::string_view stage, double fraction) {

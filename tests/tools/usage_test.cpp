@@ -199,6 +199,54 @@ TEST_F(Usage, SuggestsASubcommand) {
   EXPECT_NE(run("help").out.find("voxelize"), std::string::npos);
 }
 
+TEST_F(Usage, SuggestsAnOption) {
+  makeSphere();
+  expectFailure("mesh s.vdb -o m.ply --tolerence 0.2", 2,
+                "there is no option --tolerence; did you mean --tolerance? (see tufa mesh");
+  expectFailure("lod s.vdb -o m.glb --triangle=30", 2, "did you mean --triangles?");
+  expectFailure("mesh s.vdb -o m.ply --wavelength 3", 2, "there is no option --wavelength (see");
+  expectFailure("mesh s.1.vdb s.2.vdb -o m.ply", 2, "by one name in quotes, 'smoke.####.vdb'");
+}
+
+TEST_F(Usage, NamesFlagsAsTheyAreTyped) {
+  const std::string help = run("help mesh").out;
+  EXPECT_NE(help.find("--simplify,--no-simplify,--fast\n"), std::string::npos) << help;
+  EXPECT_EQ(help.find("{false}"), std::string::npos) << help;
+}
+
+TEST_F(Usage, RefusesCountsBelowWhatTheyMayBe) {
+  makeSphere();
+  expectFailure("lod s.vdb -o m.glb --triangles -5", 2,
+                "--triangles: -5 is not a whole number, 4 or more");
+  expectFailure("lod s.vdb -o m.glb --triangles 100,3", 2, "3 is not a whole number, 4 or more");
+  expectFailure("lod s.vdb -o m.glb --triangles 100,200", 2, "200 follows 100");
+  expectFailure("lod s.vdb -o m.glb --tolerances 0.5,0.1", 2, "0.1 follows 0.5");
+  expectFailure("import s.vdb -o o.vdb --size 1,1,1 --header -3", 2,
+                "--header: -3 is not a whole number, 0 or more");
+  expectFailure("lod s.vdb -o m.glb --scale inf", 2, "inf is not a number above 0");
+  expectFailure("chunks s.vdb -o d --tolerance 0", 2, "no level can follow one of tolerance 0");
+}
+
+TEST_F(Usage, TellsOfTheWrongSide) {
+  makeSphere();
+  const Outcome outcome = run("mesh s.vdb -o m.ply --inside above --check");
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_NE(outcome.err.find("not outward; --inside says which side of the isovalue is solid"),
+            std::string::npos)
+      << outcome.err;
+}
+
+TEST_F(Usage, TellsOfOneChunkThatItIsNoMesh) {
+  makeSphere();
+  ASSERT_EQ(run("chunks s.vdb -o d --chunk 8 --quiet").exitCode, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "d")) {
+    const std::string name = entry.path().filename().string();
+    if (!name.ends_with("_LOD0.glb")) continue;
+    expectFailure("check d/" + name, 1, "is one chunk, both strips at each face in it");
+    break;
+  }
+}
+
 TEST_F(Usage, SaysWhatIsWrongInFewWords) {
   makeSphere();
   expectFailure("mesh s.vdb a b c -o m.ply", 2,

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "advise/feature_size.h"
 #include "advise/hidden_sheets.h"
 #include "base/huge_pages.h"
+#include "base/number_text.h"
 #include "base/run_call.h"
 #include "extract/loop_crossings.h"
 #include "extract/marching_cubes.h"
@@ -30,13 +32,15 @@ constexpr double kBlocksEnd = 0.1, kCrossingsEnd = 0.5, kCreasesEnd = 0.6, kSize
 void requireOptions(const AdviseOptions& options) {
   const auto refuse = [](const std::string& what, double value, const char* range) {
     throw Error(ErrorCode::InvalidArgument,
-                what + " is " + std::to_string(value) + ", must be " + range);
+                what + " is " + base::numberText(value) + ", must be " + range);
   };
   constexpr double kMostVoxels = 100;
-  for (const double voxels : {options.smoothVoxels, options.sharpVoxels, options.sheetVoxels}) {
-    if (!(voxels > 0 && voxels <= kMostVoxels)) {
-      refuse("a number of voxels of a feature", voxels, "above 0 and at most 100");
-    }
+  const std::pair<const char*, double> features[] = {{"a smooth feature", options.smoothVoxels},
+                                                     {"a sharp feature", options.sharpVoxels},
+                                                     {"a sheet", options.sheetVoxels}};
+  for (const auto& [feature, voxels] : features) {
+    if (voxels > 0 && voxels <= kMostVoxels) continue;
+    refuse("the number of voxels of " + std::string(feature), voxels, "above 0 and at most 100");
   }
   if (!(options.sharpAngle >= 0 && options.sharpAngle <= 180)) {
     refuse("the sharp angle", options.sharpAngle, "0 to 180 degrees");

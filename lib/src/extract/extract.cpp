@@ -8,6 +8,7 @@
 
 #include "base/job.h"
 #include "base/known_enum.h"
+#include "base/number_text.h"
 #include "base/part_of_progress.h"
 #include "base/run_call.h"
 #include "extract/cms.h"
@@ -56,12 +57,12 @@ Mesh meshOf(const grid::Volume& volume, Method method, const ExtractOptions& all
 void requireAngle(double degrees) {
   if (degrees >= 0 && degrees <= 180) return;
   throw Error(ErrorCode::InvalidArgument,
-              "the sharp angle is " + std::to_string(degrees) + ", must be 0 to 180 degrees");
+              "the sharp angle is " + base::numberText(degrees) + ", must be 0 to 180 degrees");
 }
 
 void requireTolerance(const std::string& what, double voxels) {
   if (voxels >= 0 && std::isfinite(voxels)) return;
-  throw Error(ErrorCode::InvalidArgument, what + " is " + std::to_string(voxels) +
+  throw Error(ErrorCode::InvalidArgument, what + " is " + base::numberText(voxels) +
                                               " voxels, must be 0 or a finite number above it");
 }
 
