@@ -12,6 +12,7 @@
 #include "intersect/cut_candidates.h"
 #include "intersect/surface.h"
 #include "refine/cut_distance.h"
+#include "refine/local_frame.h"
 #include "refine/rounding.h"
 #include "refine/split_cells.h"
 #include "topology/misplaced.h"
@@ -110,10 +111,11 @@ class Cutter {
   Cutter(const SurfaceModel& model, const octree::CutRule& rule, base::Job& job)
       : model_(model),
         forest_(model.forest()),
-        rule_(rule),
+        frame_(model.mesh().positions, model.affine().voxelSize(), job),
+        rule_(withinFrame(rule)),
         job_(job),
         forbidden_(forest_),
-        distance_(model.view(), rule, job) {}
+        distance_(model.view(), frame_, rule_, job) {}
 
   AdaptiveMesh run(bool drop) {
     do {
@@ -128,6 +130,11 @@ class Cutter {
   }
 
  private:
+  [[nodiscard]] octree::CutRule withinFrame(octree::CutRule rule) const {
+    rule.tolerance = frame_.within(rule.tolerance);
+    return rule;
+  }
+
   void makeNext() {
     const uniform::SurfaceView base = model_.view();
     const octree::Cut before = std::move(cut_);
@@ -188,7 +195,7 @@ class Cutter {
     extracted.baseQuads.insert(extracted.baseQuads.end(), made_.triangleSources.begin(),
                                made_.triangleSources.end());
     const Deviation deviation = distance_.total(cut_, made_.mesh);
-    adaptive_.largestError = deviation.largest;
+    adaptive_.largestError = deviation.largest + (deviation.largest > 0 ? frame_.rounding() : 0);
     adaptive_.meanError = deviation.mean;
     extracted.mesh = std::move(made_.mesh);
     (void)removeUnused(extracted.mesh, extracted.baseVertices);
@@ -196,7 +203,8 @@ class Cutter {
 
   const SurfaceModel& model_;
   const octree::ClusterForest& forest_;
-  const octree::CutRule& rule_;
+  const LocalFrame frame_;
+  const octree::CutRule rule_;
   base::Job& job_;
   octree::CellFlags forbidden_;
   octree::CellFlags merged_{forest_};

@@ -237,9 +237,9 @@ class Measure {
 
 }  // namespace
 
-CutDistance::CutDistance(const uniform::SurfaceView& base, const octree::CutRule& rule,
-                         base::Job& job)
-    : owners_(base, rule, job) {}
+CutDistance::CutDistance(const uniform::SurfaceView& base, const LocalFrame& frame,
+                         const octree::CutRule& rule, base::Job& job)
+    : owners_(base, frame, rule, job) {}
 
 std::vector<VertexIndex> CutDistance::measure(const octree::Cut& cut, const octree::CutMesh& made,
                                               const std::vector<std::uint8_t>& changed) {
@@ -288,7 +288,7 @@ Deviation CutDistance::measureWhole(const octree::Cut& cut, const Mesh& mesh,
       {}, owners_.job);
   std::vector<Vec3f> positions(mesh.positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i)
-    positions[i] = owners_.toVoxels(mesh.positions[i]);
+    positions[i] = owners_.frame.toLocal(mesh.positions[i]);
   reduce::Surface surface =
       reduce::makeSurface(std::move(positions), triangulate(mesh), owners_.job);
   reduce::locateAll(surface, reference, cut.vertexOf, owners_.job);

@@ -31,8 +31,10 @@ struct Deviation {
 /// Cost: about half a microsecond a uniform vertex at first.
 class CutDistance {
  public:
-  /// `base` is the uniform mesh. It, the rule and `job` must outlive this object.
-  CutDistance(const uniform::SurfaceView& base, const octree::CutRule& rule, base::Job& job);
+  /// `base` is the uniform mesh, `frame` that of its positions. They, the rule and `job` must
+  /// outlive this object.
+  CutDistance(const uniform::SurfaceView& base, const LocalFrame& frame,
+              const octree::CutRule& rule, base::Job& job);
 
   /// Measures the next mesh. `changed`: for each vertex of the cut, whether it is not as in the
   /// mesh before; for the first one, whether its cell is larger than a voxel. Returns the vertices

@@ -79,8 +79,9 @@ void CutOverlay::collectTriangles(const std::vector<std::uint8_t>& isCorner) {
   for (int i = 0; i < 3; ++i) marks = grown(mesh_, marks, owners_.job);
   addMarked(marks);
   base::resizeLarge(triangles_.positions, mesh_.positions.size(), owners_.job);
-  forEach(owners_.job, mesh_.positions.size(),
-          [&](std::size_t i) { triangles_.positions[i] = owners_.toVoxels(mesh_.positions[i]); });
+  forEach(owners_.job, mesh_.positions.size(), [&](std::size_t i) {
+    triangles_.positions[i] = owners_.frame.toLocal(mesh_.positions[i]);
+  });
   corners_.emplace(mesh_.positions.size(), triangles_.corners, owners_.job);
   triangles_.opposite = reduce::oppositeCorners(triangles_.corners, *corners_, owners_.job);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/box.h"
 #include "base/huge_pages.h"
 #include "octree/cluster_forest.h"
 #include "refine/tolerance_scales.h"
@@ -15,28 +14,22 @@ constexpr float kRounding = 1e-4f;
 
 }  // namespace
 
-CutOwners::CutOwners(const uniform::SurfaceView& view, const octree::CutRule& rule,
-                     base::Job& theJob)
+CutOwners::CutOwners(const uniform::SurfaceView& view, const LocalFrame& theFrame,
+                     const octree::CutRule& rule, base::Job& theJob)
     : base(view),
       job(theJob),
       tolerance(static_cast<float>(rule.tolerance)),
       minLevel(rule.minLevel),
-      scales(scalesOf(view.mesh, view.affine, rule, theJob)) {
+      scales(scalesOf(view.mesh, view.affine, rule, theJob)),
+      frame(theFrame) {
   const std::size_t count = base.mesh.positions.size();
-  base::Box box = base::Box::empty();
-  for (const Position& p : base.mesh.positions) box.add(Vec3(p));
-  middle = box.centre();
   base::resizeLarge(points, count, job);
   job.forRanges(count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = toVoxels(base.mesh.positions[i]);
+    for (std::size_t i = begin; i < end; ++i) points[i] = frame.toLocal(base.mesh.positions[i]);
   });
   base::resizeLarge(owner, count, job, octree::kNone);
   base::resizeLarge(distance, count, job);
   base::resizeLarge(faceBound, 2 * base.mesh.quads.size(), job);
-}
-
-base::Vec3f CutOwners::toVoxels(const Position& p) const {
-  return Vec3f((Vec3(p) - middle) * (1 / base.affine.voxelSize()));
 }
 
 float CutOwners::limitOf(const Triangle& face) const {

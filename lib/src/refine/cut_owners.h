@@ -7,6 +7,7 @@
 #include "base/job.h"
 #include "base/vec3f.h"
 #include "octree/cut_rule.h"
+#include "refine/local_frame.h"
 #include "uniform/surface_view.h"
 
 namespace tufa::refine {
@@ -19,10 +20,10 @@ inline constexpr float kFarOff = std::numeric_limits<float>::max();
 struct CutOwners {
   using Vec3f = base::Vec3f;
 
-  /// `base` and `job` must outlive this object.
-  CutOwners(const uniform::SurfaceView& base, const octree::CutRule& rule, base::Job& job);
+  /// `base`, `frame` and `job` must outlive this object.
+  CutOwners(const uniform::SurfaceView& base, const LocalFrame& frame, const octree::CutRule& rule,
+            base::Job& job);
 
-  [[nodiscard]] Vec3f toVoxels(const Position& p) const;
   [[nodiscard]] float toleranceAt(std::size_t vertex) const {
     return scales.empty() ? tolerance : tolerance * scales[vertex];
   }
@@ -38,8 +39,8 @@ struct CutOwners {
   float tolerance;
   int minLevel;               ///< cells up to this level are not split
   std::vector<float> scales;  ///< of the tolerance at each vertex; empty: 1
-  Vec3 middle;                ///< positions in voxels are seen from here
-  std::vector<Vec3f> points;  ///< of the vertices, in voxels
+  const LocalFrame& frame;    ///< of the uniform mesh
+  std::vector<Vec3f> points;  ///< of the vertices, in the frame
   /// For each vertex its owner, twice the uniform quad that its polygon comes from plus its number
   /// in that polygon, and the distance.
   std::vector<std::uint32_t> owner;

@@ -106,7 +106,7 @@ class Finder {
       if (seed == octree::kNone) return;
       const auto& [a, b, c] = r.vertices;
       const std::array<Vec3f, 3> p{owners_.points[a], owners_.points[b], owners_.points[c]};
-      const Vec3f at = owners_.toVoxels(made_.mesh.positions[seed]);
+      const Vec3f at = owners_.frame.toLocal(made_.mesh.positions[seed]);
       const float limit = owners_.limitOf(r);
       reduce::Box3f box = reduce::boxOf(p.data());
       box.growBy(2 * limit);

@@ -29,8 +29,9 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
   // One array after the other, so that few are there twice.
   normals_ = base::PackedNormals(model.takeNormals(), job);
   faces_ = model.takeFaces(job);
+  frame_ = LocalFrame(mesh.positions, model.affine().voxelSize(), job);
   takePositions(mesh.positions);
-  keepsExact_ = model.report().openEdges > 0 ||
+  keepsExact_ = model.report().openEdges > 0 || frame_.rounding() > 0 ||
                 rule.tolerance < static_cast<double>(reduce::kLeastTolerance) ||
                 std::any_of(scales.begin(), scales.end(), [](float scale) { return scale == 0; });
   if (!keepsExact_) model.releasePositions();
@@ -44,33 +45,21 @@ SurfaceReduction::SurfaceReduction(SurfaceModel& model, const octree::CutRule& r
 }
 
 void SurfaceReduction::takePositions(const std::vector<Position>& exact) {
-  base::Box box = base::Box::empty();
-  for (const Position& p : exact) box.add(Vec3(p));
-  middle_ = box.centre();
-  size_ = box.size().length() / model_.affine().voxelSize();
   std::vector<Vec3f> positions;
   base::resizeLarge(positions, exact.size(), job_);
-  const double perVoxel = 1 / model_.affine().voxelSize();
   job_.forRanges(positions.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      positions[i] = Vec3f((Vec3(exact[i]) - middle_) * perVoxel);
-    }
+    for (std::size_t i = begin; i < end; ++i) positions[i] = frame_.toLocal(exact[i]);
   });
   positions_ = std::move(positions);
-}
-
-Position SurfaceReduction::positionAt(const Vec3f& local) const {
-  const Vec3 p = middle_ + Vec3(local) * model_.affine().voxelSize();
-  return {p[0], p[1], p[2]};
 }
 
 Position SurfaceReduction::positionOf(const reduce::ReducedMesh& reduced,
                                       std::size_t vertex) const {
   const reduce::Index source = reduced.sources[vertex];
-  if (source == reduce::kNone) return positionAt(reduced.positions[vertex]);
+  if (source == reduce::kNone) return frame_.toExact(reduced.positions[vertex]);
   if (keepsExact_) return model_.mesh().positions[source];
   const auto found = std::lower_bound(closeVertices_.begin(), closeVertices_.end(), source);
-  if (found == closeVertices_.end() || *found != source) return positionAt(positions_[source]);
+  if (found == closeVertices_.end() || *found != source) return frame_.toExact(positions_[source]);
   return closePositions_[static_cast<std::size_t>(found - closeVertices_.begin())];
 }
 
@@ -104,7 +93,7 @@ std::vector<reduce::Index> SurfaceReduction::findIntersecting(const reduce::Redu
 
 AdaptiveMesh SurfaceReduction::toTolerance(double tolerance, bool drops) {
   isSearched_ = false;
-  reduction_->toTolerance(static_cast<float>(tolerance));
+  reduction_->toTolerance(static_cast<float>(frame_.within(tolerance)));
   AdaptiveMesh adaptive;
   const reduce::ReducedMesh reduced = extract(adaptive);
   if (!drops) return adaptive;
@@ -121,7 +110,8 @@ AdaptiveMesh SurfaceReduction::toCount(std::size_t triangles, bool drops) {
   const auto count = static_cast<reduce::Index>(
       std::min<std::size_t>(triangles, std::numeric_limits<reduce::Index>::max()));
   isSearched_ = false;
-  reduction_->toCount(count, static_cast<float>(size_));
+  const auto most = static_cast<float>(frame_.within(frame_.size()));
+  if (most >= reduce::kLeastTolerance) reduction_->toCount(count, most);
   AdaptiveMesh adaptive;
   const reduce::ReducedMesh reduced = extract(adaptive);
   std::size_t left = reduced.triangles.size();
@@ -146,7 +136,9 @@ AdaptiveMesh SurfaceReduction::toCount(std::size_t triangles, bool drops) {
 
 reduce::ReducedMesh SurfaceReduction::extract(AdaptiveMesh& adaptive) const {
   const reduce::Certificate certificate = reduction_->certificate();
-  adaptive.largestError = static_cast<double>(certificate.largest);
+  const bool isReduced = reduction_->triangleCount() < faces_.size();
+  adaptive.largestError =
+      static_cast<double>(certificate.largest) + (isReduced ? frame_.rounding() : 0);
   adaptive.meanError = static_cast<double>(certificate.mean);
   adaptive.rounds = reduction_->attempts();
   reduce::ReducedMesh reduced = reduction_->mesh();
@@ -194,7 +186,7 @@ void SurfaceReduction::findComponents() {
       counts.push_back(0);
     }
     const std::uint32_t component = componentOf_[i] = componentOf_[lowest[i]];
-    const Vec3 point(positionAt(positions_[i]));
+    const Vec3 point(frame_.toExact(positions_[i]));
     boxes[component].add(point);
     ++counts[component];
     double& scale = components_[component].scale;

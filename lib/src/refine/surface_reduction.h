@@ -14,6 +14,7 @@
 #include "octree/cut_rule.h"
 #include "reduce/reduction.h"
 #include "refine/adapt.h"
+#include "refine/local_frame.h"
 #include "refine/surface_model.h"
 
 namespace tufa::refine {
@@ -22,10 +23,11 @@ namespace tufa::refine {
 /// reduce/reduction.h. Rounding to single precision comes after it and moves vertices by
 /// kMostRounding at most; so the result is the same wherever in the world the grid lies.
 ///
-/// Positions are kept in single precision, counted from the mesh's middle. Where vertices of the
-/// uniform mesh are to stay as they are, in double precision too: on open borders, beside which
-/// another mesh may go on, where the tolerance is 0, or may be in places, and those of polygons so
-/// close to each other that the last bit tells whether they intersect once they are rounded.
+/// Positions are kept in single precision, see LocalFrame. Where vertices of the uniform mesh are
+/// to stay as they are, in double precision too: on open borders, beside which another mesh may go
+/// on, where the tolerance is 0, or may be in places, in a mesh so large that rounding counts, and
+/// those of polygons so close to each other that the last bit tells whether they intersect once
+/// they are rounded.
 class SurfaceReduction {
  public:
   /// The rule's scale holds for all tolerances. All arguments must outlive this. Releases the
@@ -49,7 +51,6 @@ class SurfaceReduction {
   };
 
   void takePositions(const std::vector<Position>& exact);
-  [[nodiscard]] Position positionAt(const base::Vec3f& local) const;
   [[nodiscard]] Position positionOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   [[nodiscard]] Normal normalOf(const reduce::ReducedMesh& reduced, std::size_t vertex) const;
   [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
@@ -65,9 +66,8 @@ class SurfaceReduction {
   const SurfaceModel& model_;
   const octree::CutRule& rule_;
   base::Job& job_;
-  Vec3 middle_{0.0};  ///< of the mesh, counted like its positions
-  double size_ = 0;   ///< diagonal of the mesh's box, voxels
-  // Of the uniform mesh; positions in voxels, from the middle.
+  LocalFrame frame_;  ///< of the mesh
+  // Of the uniform mesh; positions in the frame.
   base::SharedArray<base::Vec3f> positions_;
   base::TriangleArray faces_;
   base::PackedNormals normals_;

@@ -46,6 +46,41 @@ void expectWholeSurface(const FloatGrid& grid, const CoordBBox& window, const ch
   EXPECT_GT(test::volume(mesh), 0) << what;
 }
 
+// Two balls, however far from each other: single precision does not tell their voxels apart from
+// one middle.
+TEST(ContourPlaces, OfPiecesFarApartKeepTheTolerance) {
+  constexpr double kRadius = 12.3;
+  for (const int far : {1 << 14, 1 << 19, 1 << 30}) {
+    auto grid = FloatGrid::create(3);
+    const openvdb::Coord centres[] = {{far, -far, 5}, {-far, far / 2, -far}};
+    for (const openvdb::Coord& centre : centres) {
+      for (auto at = CoordBBox(centre.offsetBy(-16), centre.offsetBy(16)).begin(); at; ++at) {
+        const double distance = (*at - centre).asVec3d().length() - kRadius;
+        if (std::abs(distance) < 3) grid->tree().setValueOn(*at, static_cast<float>(distance));
+        if (distance <= -3) grid->tree().setValueOff(*at, -3);
+      }
+    }
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    for (const bool simplify : {true, false}) {
+      ContourOptions options;
+      options.simplify = simplify;
+      ContourReport report;
+      const Mesh mesh = contour(*grid, options, &report);
+      EXPECT_LT(mesh.triangleCount(), simplify ? 1500u : 4000u) << far;
+      EXPECT_LE(report.certificate->maxErrorVoxels, 0.1) << far;
+      const test::MeshTopology topology = test::inspect(mesh);
+      EXPECT_TRUE(topology.manifold() && topology.closed() && topology.components == 2) << far;
+      for (const Position& p : mesh.positions) {
+        const openvdb::Coord& centre = centres[p.x > 0 ? 0 : 1];
+        const double off =
+            std::hypot(p.x - centre.x(), p.y - centre.y(), p.z - centre.z()) - kRadius;
+        // The uniform mesh is 0.02 voxels off the ball.
+        ASSERT_LE(std::abs(off), report.certificate->maxErrorVoxels + 0.02) << far;
+      }
+    }
+  }
+}
+
 TEST(ContourPlaces, BetweenALeafAndATile) {
   auto grid = FloatGrid::create(1);
   grid->tree().addTile(1, openvdb::Coord(0), -1, true);

@@ -24,6 +24,10 @@ octree::CutRule ruleOf(double tolerance) {
   return rule;
 }
 
+LocalFrame frameOf(test::ModelOf& model) {
+  return {model.model().mesh().positions, model.model().affine().voxelSize(), model.job()};
+}
+
 // A ball, its uniform mesh as a cut, and vertices of it that are elsewhere.
 struct Ball {
   test::ModelOf model{test::ballOf(10.3, kVoxel)};
@@ -43,7 +47,8 @@ struct Ball {
 TEST(CutDistance, FindsNoErrorOnTheUniformMesh) {
   Ball ball;
   const octree::CutRule rule = ruleOf(0.1);
-  CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+  const LocalFrame frame = frameOf(ball.model);
+  CutDistance distance(ball.model.model().view(), frame, rule, ball.model.job());
   EXPECT_TRUE(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
   const Deviation total = distance.total(ball.mesh.cut, ball.mesh.made.mesh);
   EXPECT_EQ(total.largest, 0);
@@ -56,7 +61,8 @@ TEST(CutDistance, TellsHowFarAVertexWasMoved) {
     ball.move(100, voxels);
     // What is within the tolerance need not be found tightly.
     const octree::CutRule rule = ruleOf(1.1 * std::abs(voxels));
-    CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+    const LocalFrame frame = frameOf(ball.model);
+    CutDistance distance(ball.model.model().view(), frame, rule, ball.model.job());
     EXPECT_TRUE(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
     const Deviation total = distance.total(ball.mesh.cut, ball.mesh.made.mesh);
     // The surface bends by a tenth of a voxel from vertex to vertex.
@@ -70,7 +76,8 @@ TEST(CutDistance, NamesTheCellsThatAreTooFarAndMeasuresThemToo) {
   Ball ball;
   ball.move(100, 0.3);
   const octree::CutRule rule = ruleOf(0.1);
-  CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+  const LocalFrame frame = frameOf(ball.model);
+  CutDistance distance(ball.model.model().view(), frame, rule, ball.model.job());
   EXPECT_EQ(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed),
             std::vector<VertexIndex>{100});
   EXPECT_NEAR(distance.total(ball.mesh.cut, ball.mesh.made.mesh).largest, 0.3, 0.03);
@@ -84,7 +91,8 @@ TEST(CutDistance, NamesTheCellsThatFoldTheMesh) {
   ball.mesh.cut.clusters[100].level = 1;
   ball.changed[100] = 1;
   const octree::CutRule rule = ruleOf(5);
-  CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+  const LocalFrame frame = frameOf(ball.model);
+  CutDistance distance(ball.model.model().view(), frame, rule, ball.model.job());
   EXPECT_TRUE(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
   moved = Vec3(moved) + along * (2.5 * kVoxel);
   EXPECT_EQ(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed),
@@ -96,7 +104,8 @@ TEST(CutDistance, MeasuresAgainWhatChangedOnly) {
   ball.move(100, 0.3);
   ball.move(500, 0.05);
   const octree::CutRule rule = ruleOf(0.1);
-  CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+  const LocalFrame frame = frameOf(ball.model);
+  CutDistance distance(ball.model.model().view(), frame, rule, ball.model.job());
   EXPECT_EQ(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed),
             std::vector<VertexIndex>{100});
   // Back to where it was; the other one stays off.
@@ -120,7 +129,8 @@ TEST(CutDistance, AsksTheToleranceWhereThingsLie) {
     rule.scale = [=](const Vec3& point) {
       return (point - moved).length() < 4 ? there : elsewhere;
     };
-    CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+    const LocalFrame frame = frameOf(ball.model);
+    CutDistance distance(ball.model.model().view(), frame, rule, ball.model.job());
     return distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed);
   };
   EXPECT_EQ(tooFar(0.1, 1), std::vector<VertexIndex>{100});
@@ -143,7 +153,8 @@ TEST(CutDistance, NamesComponentsThatTheUniformMeshLeavesOutInPart) {
       all.push_back(v);
     }
     const octree::CutRule rule = ruleOf(0.1);
-    CutDistance distance(speck.model().view(), rule, speck.job());
+    const LocalFrame frame = frameOf(speck);
+    CutDistance distance(speck.model().view(), frame, rule, speck.job());
     const std::vector<std::uint8_t> changed(8, 1);
     EXPECT_TRUE(distance.measure(mesh.cut, mesh.made, changed).empty());
     EXPECT_EQ(distance.findUncovered(mesh.cut, mesh.made),
@@ -162,7 +173,8 @@ TEST(CutDistance, MeasuresWhatStaysUncoveredBothWays) {
     mesh.cut.clusters[v].level = 1;
   }
   const octree::CutRule rule = ruleOf(0.1);
-  CutDistance distance(speck.model().view(), rule, speck.job());
+  const LocalFrame frame = frameOf(speck);
+  CutDistance distance(speck.model().view(), frame, rule, speck.job());
   EXPECT_TRUE(distance.measure(mesh.cut, mesh.made, std::vector<std::uint8_t>(8, 1)).empty());
   EXPECT_LE(distance.total(mesh.cut, mesh.made.mesh).largest, 0.1);
   EXPECT_FALSE(distance.findUncovered(mesh.cut, mesh.made).empty());
@@ -173,7 +185,8 @@ TEST(CutDistance, FindsNothingUncoveredOnABall) {
   Ball ball;
   for (const VertexIndex moved : {100, 500, 700}) ball.move(moved, 0.2);
   const octree::CutRule rule = ruleOf(0.25);
-  CutDistance distance(ball.model.model().view(), rule, ball.model.job());
+  const LocalFrame frame = frameOf(ball.model);
+  CutDistance distance(ball.model.model().view(), frame, rule, ball.model.job());
   EXPECT_TRUE(distance.measure(ball.mesh.cut, ball.mesh.made, ball.changed).empty());
   EXPECT_TRUE(distance.findUncovered(ball.mesh.cut, ball.mesh.made).empty());
 }
@@ -186,7 +199,8 @@ TEST(CutDistance, IsABoundFromMeshToMesh) {
   octree::CutRule rule = ring.rule();
   rule.tolerance = 0.06;
   octree::CellFlags forbidden(forest);
-  CutDistance distance(ring.model().view(), rule, ring.job());
+  const LocalFrame frame = frameOf(ring);
+  CutDistance distance(ring.model().view(), frame, rule, ring.job());
   octree::Cut before;
   int meshes = 0;
   for (bool isDone = false; !isDone; ++meshes) {

@@ -30,18 +30,13 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
       chunkSize_(chunkSize),
       singlePrecision_(singlePrecision),
       job_(job),
+      frame_(cut_.mesh.positions, affine.voxelSize(), job),
       curveVertices_(static_cast<VertexIndex>(cut_.mesh.positions.size())) {
-  base::Box box = base::Box::empty();
-  for (std::size_t v = 0; v < cut_.mesh.positions.size(); ++v) {
-    job.pollCancelled(v);
-    box.add(Vec3(cut_.mesh.positions[v]));
-  }
-  middle_ = box.centre();
   const auto localsOf = [&](const std::vector<Position>& from) {
     std::vector<Vec3f> local;
     base::resizeLarge(local, from.size(), job);
     job.forRanges(local.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) local[i] = localOf(from[i]);
+      for (std::size_t i = begin; i < end; ++i) local[i] = frame_.toLocal(from[i]);
     });
     return local;
   };
@@ -68,7 +63,9 @@ reduce::Regions ChunkChain::regionsOf() const {
   regions.mayHold = [this](reduce::Index region, reduce::Index plane, Vec3f place, Vec3f a,
                            Vec3f b) {
     const Coord& chunk = cut_.chunks[region];
-    const auto latticeOf = [&](Vec3f p) { return affine_.latticePoint(positionOf(p), Coord(0)); };
+    const auto latticeOf = [&](Vec3f p) {
+      return affine_.latticePoint(frame_.toExact(p), Coord(0));
+    };
     const Vec3 at = latticeOf(place);
     bool isDeep = true;
     double depth[6];
@@ -94,17 +91,8 @@ reduce::Regions ChunkChain::regionsOf() const {
   return regions;
 }
 
-Vec3f ChunkChain::localOf(const Position& p) const {
-  return Vec3f((Vec3(p) - middle_) * (1 / affine_.voxelSize()));
-}
-
-Position ChunkChain::positionOf(const Vec3f& local) const {
-  const Vec3 p = middle_ + Vec3(local) * affine_.voxelSize();
-  return {p[0], p[1], p[2]};
-}
-
 ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
-  const float kept = static_cast<float>(std::max(0.0, tolerance - cut_.moved));
+  const float kept = static_cast<float>(frame_.within(std::max(0.0, tolerance - cut_.moved)));
   if (before != nullptr) {
     reduction_->toTolerance(kept, reduce::LineMode::Alone);
     setInto(*before);
@@ -145,7 +133,8 @@ void ChunkChain::setInto(ChainLevel& level) {
 }
 
 std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate) const {
-  std::vector<double> errors(cut_.chunks.size(), cut_.moved);
+  const bool isReduced = reduction_->triangleCount() < faces_.size();
+  std::vector<double> errors(cut_.chunks.size(), cut_.moved + (isReduced ? frame_.rounding() : 0));
   for (std::size_t i = 0; i < certificate.ofRegion.size(); ++i) {
     errors[i] += static_cast<double>(certificate.ofRegion[i]);
   }
@@ -159,11 +148,12 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
   level.cutVertex.push_back(kind == reduce::LineKind::Off ? ChainLevel::kNone : source);
   level.isEnd.push_back(kind == reduce::LineKind::End ? 1 : 0);
   Position p;
-  if (source != reduce::kNone && localOf(cut_.mesh.positions[source]) == reduced.positions[v]) {
+  if (source != reduce::kNone &&
+      frame_.toLocal(cut_.mesh.positions[source]) == reduced.positions[v]) {
     p = cut_.mesh.positions[source];
     level.normals.push_back(normals_[source]);
   } else {
-    p = positionOf(reduced.positions[v]);
+    p = frame_.toExact(reduced.positions[v]);
     const auto [a, b, c] = faces_[reduced.faces[v]].vertices;
     const std::vector<Position>& at = cut_.mesh.positions;
     level.normals.push_back(base::interpolatedNormal(

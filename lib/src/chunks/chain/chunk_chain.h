@@ -14,6 +14,7 @@
 #include "grid/affine.h"
 #include "octree/cut_rule.h"
 #include "reduce/reduction.h"
+#include "refine/local_frame.h"
 
 namespace tufa::chunks {
 
@@ -64,8 +65,6 @@ class ChunkChain {
   [[nodiscard]] reduce::Regions regionsOf() const;
   [[nodiscard]] ChainLevel extract(const ChainLevel* before) const;
   void add(ChainLevel& level, const reduce::ReducedMesh& reduced, VertexIndex v) const;
-  [[nodiscard]] Position positionOf(const base::Vec3f& local) const;
-  [[nodiscard]] base::Vec3f localOf(const Position& p) const;
   void setInto(ChainLevel& level);
   [[nodiscard]] std::vector<double> errorsOf(const reduce::Certificate& certificate) const;
 
@@ -76,7 +75,7 @@ class ChunkChain {
   int chunkSize_;
   bool singlePrecision_;
   base::Job& job_;
-  Vec3 middle_{0.0};
+  refine::LocalFrame frame_;             ///< of the cut mesh
   std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
   VertexIndex curveVertices_;            ///< numbers in use, see ChainLevel::curveVertex
   std::optional<reduce::Reduction> reduction_;
