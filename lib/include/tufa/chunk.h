@@ -40,7 +40,7 @@ struct ChunkLevel {
   /// The chunk's curves on each face, for strips to neighbours that are coarser by more.
   std::array<std::vector<ChunkSeam>, kChunkFaces> seams;
   double maxErrorVoxels = 0;         ///< certified, with the regular strips
-  double transitionErrorVoxels = 0;  ///< certified, with the transition strips
+  double transitionErrorVoxels = 0;  ///< certified, with the transition strips; 0 at the last LOD
 };
 
 /// A cube of chunkSize voxels along each edge, from index * chunkSize on, that the surface passes.

@@ -54,8 +54,8 @@ TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOption
 
 /// The triangles of a chunk to draw: its interior, and for each face the transition strip if the
 /// face's bit in `mask` is set, else the regular one. Only the vertices that they use, with their
-/// attributes. Throws Error(InvalidArgument) where there are no such strips: a mask other than 0 at
-/// the last LOD.
+/// attributes. Throws Error(InvalidArgument) where there are no such strips, a mask other than 0 at
+/// the last LOD, and for a chunk whose indices point nowhere.
 [[nodiscard]] TUFA_API Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask);
 
 /// A bit for each face of a chunk whose neighbour is drawn at a coarser LOD. `lods` has an LOD for
@@ -69,8 +69,10 @@ TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOption
 TUFA_API void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lods);
 
 /// For each chunk the coarsest LOD whose certified error covers at most `pixelError` pixels, made
-/// finer where neighbours would differ by more than one LOD. Throws Error(InvalidArgument) if a
-/// chunk of the index has no levels, and as selectLod().
+/// finer where neighbours would differ by more than one LOD. Errors are seen from the nearest point
+/// of a chunk; a strip beside a coarser neighbour has up to the error of that neighbour's LOD,
+/// which is judged from where the neighbour begins. Throws Error(InvalidArgument) if a chunk of the
+/// index has no levels, and as selectLod().
 [[nodiscard]] TUFA_API std::vector<std::size_t> selectLods(const ChunkIndex& index,
                                                            const Camera& camera,
                                                            double pixelError = 1);
@@ -78,7 +80,8 @@ TUFA_API void restrictLods(const ChunkIndex& index, std::vector<std::size_t>& lo
 /// One mesh of all chunks, each at its own LOD; vertices at equal positions become one. LODs of
 /// neighbours may differ by more than one if the chunks have their seams. Missing chunks leave
 /// their neighbours open. Attributes are left out: sample them at the mesh's vertices. Throws
-/// Error(InvalidArgument) if `lods` does not fit, or where seams are needed and missing.
+/// Error(InvalidArgument) if `lods` does not fit, for chunks whose indices point nowhere, or where
+/// seams are needed and missing.
 [[nodiscard]] TUFA_API Mesh assembleChunks(const std::vector<Chunk>& chunks,
                                            const std::vector<std::size_t>& lods);
 

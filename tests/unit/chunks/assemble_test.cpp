@@ -91,6 +91,23 @@ TEST(AssembleChunks, RefusesSeamsThatLeadNowhere) {
   });
 }
 
+TEST(AssembleChunks, RefusesIndicesThatPointNowhere) {
+  const auto refused = [](const auto& damage) {
+    std::vector<Chunk> drum = makeDrum();
+    damage(drum[0].levels[1]);
+    test::expectError(ErrorCode::InvalidArgument, "is not sound at level 1", [&] {
+      static_cast<void>(assembleChunks(drum, {1, 1}));
+    });
+    test::expectError(ErrorCode::InvalidArgument, "is not sound at level 1",
+                      [&] { static_cast<void>(meshForMask(drum[0], 1, 0)); });
+  };
+  refused([](ChunkLevel& level) { level.interior[0].vertices[1] = 1000000; });
+  refused([](ChunkLevel& level) { level.regular[1].emplace_back(0, 1, 1000000); });
+  refused([](ChunkLevel& level) { level.seams[1][0].vertices[0] = 1000000; });
+  refused([](ChunkLevel& level) { level.seams[1][0].vertices.resize(1); });
+  refused([](ChunkLevel& level) { level.normals.pop_back(); });
+}
+
 TEST(AssembleChunks, LeavesChunksOpenWhoseNeighboursAreMissing) {
   std::vector<Chunk> drum = makeDrum();
   drum.pop_back();

@@ -209,6 +209,33 @@ std::map<VertexIndex, VertexIndex> verticesAt(const Chunk& chunk, std::size_t lo
   return becomes;
 }
 
+/// Throws Error(InvalidArgument) unless all that an LOD indexes is there, and every curve has two
+/// ends.
+void requireSound(const Chunk& chunk, std::size_t number) {
+  const ChunkLevel& level = levelOf(chunk, number);
+  const std::size_t count = level.positions.size();
+  bool isSound = level.normals.size() == count;
+  const auto look = [&](const std::vector<Triangle>& triangles) {
+    for (const Triangle& t : triangles) {
+      for (const VertexIndex v : t.vertices) isSound &= v < count;
+    }
+  };
+  look(level.interior);
+  for (std::size_t face = 0; face < kChunkFaces; ++face) {
+    look(level.regular[face]);
+    look(level.transition[face]);
+    for (const ChunkSeam& seam : level.seams[face]) {
+      isSound &= seam.vertices.size() >= 2;
+      for (const VertexIndex v : seam.vertices) isSound &= v < count;
+    }
+  }
+  if (isSound) return;
+  throw Error(ErrorCode::InvalidArgument,
+              nameOf(chunk.index) + " is not sound at level " + std::to_string(number) +
+                  ": a position has no normal, a triangle or a seam a vertex that is not there, or "
+                  "a seam fewer than two");
+}
+
 /// Adds the strip on `face` of a chunk at LOD `lod` towards a neighbour at LOD `coarse`: that to
 /// the next LOD, and what lies in the face between the curves of that and of the neighbour.
 void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, std::size_t face,
@@ -252,6 +279,7 @@ std::ptrdiff_t ChunkIndex::neighbour(std::size_t chunk, int face) const {
 
 Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask) {
   const ChunkLevel& own = levelOf(chunk, level);
+  requireSound(chunk, level);
   if (mask >= 1u << kChunkFaces || (mask != 0 && level + 1 == chunk.levels.size())) {
     throw Error(ErrorCode::InvalidArgument, nameOf(chunk.index) + " has no strips for mask " +
                                                 std::to_string(mask) + " at level " +
@@ -297,6 +325,9 @@ Mesh assembleChunks(const std::vector<Chunk>& chunks, const std::vector<std::siz
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     if (!lodAt.emplace(chunks[i].index, lods[i]).second) {
       throw Error(ErrorCode::InvalidArgument, nameOf(chunks[i].index) + " is there twice");
+    }
+    for (std::size_t level = 0; level < chunks[i].levels.size(); ++level) {
+      requireSound(chunks[i], level);
     }
   }
   Mesh mesh;
