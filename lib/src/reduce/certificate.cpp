@@ -75,14 +75,10 @@ class WayForth {
     return false;
   }
 
-  // The way from a face to the triangles around its owners, by halving. Notes where the map may
-  // jump.
-  void halve(Index f, std::vector<Gap>& gaps, Measured& measured) const {
+  // The way from a face to the triangles around its owners, by halving.
+  void halve(Index f, Measured& measured) const {
     const OwnedFace face = ownedFace(reference_, owner_, f);
     const std::vector<Index> around = trianglesAround(s_.triangles, corners_, face.owners);
-    for (const Index t : around) {
-      if (isBetween(t, face.owners)) gaps.push_back({t, f});
-    }
     const auto toTriangle = [&](Vec3f q, Index t) { return distance(q, t); };
     const float limit = limits_.ofFace(f);
     const float way =
@@ -91,10 +87,27 @@ class WayForth {
     measured.see(way, f, limit);
   }
 
+  // The triangles that the ways along the edges of halved faces pass, but for edges between two of
+  // them: the border of what all other faces go to. `halved`: sorted.
+  [[nodiscard]] std::vector<Gap> gapsAt(const std::vector<Index>& halved) const {
+    std::vector<Gap> gaps;
+    for (const Index f : halved) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Index across = reference_.faceAcross(f, i);
+        if (across == kNone || !std::binary_search(halved.begin(), halved.end(), across)) {
+          addWay(f, i, across == kNone ? f : across, gaps);
+        }
+      }
+    }
+    return gaps;
+  }
+
   [[nodiscard]] const CornersOfVertices& corners() const { return corners_; }
   [[nodiscard]] std::span<const Index> owner() const { return owner_; }
-  [[nodiscard]] Uncovered uncovered(std::span<const Index> gaps, base::Job& job) const {
-    return findUncovered(overlay_, corners_, reference_, owner_, gaps, limits_.most(), job);
+  [[nodiscard]] Uncovered uncovered(const std::vector<Index>& halved, const std::vector<Gap>& gaps,
+                                    base::Job& job) const {
+    return findUncovered({overlay_, corners_, reference_, owner_, limits_.most()}, halved, gaps,
+                         job);
   }
 
  private:
@@ -120,9 +133,24 @@ class WayForth {
     const float limit = limits_.ofFace(f),
                 way = std::sqrt(overlayBound2(overlay_, face, limit * limit));
     if (!(way <= limit)) return false;
-    regions_.seeAround(face.owners, way);
+    if (!regions_.isEmpty()) seeRegions(face, way, limit);
     measured.see(way, f, limit);
     return true;
+  }
+
+  // The regions of all triangles that a face lies over.
+  void seeRegions(const OwnedFace& face, float way, float limit) const {
+    regions_.seeAround(face.owners, way);
+    const auto findPath = [&](std::size_t a, std::size_t b, OverlayPath& path) {
+      const bool isFound = findOverlayPath(overlay_, {face.corners[a], face.corners[b]},
+                                           face.owners[a], face.owners[b], limit * limit, path);
+      for (int k = 0; k < path.count; ++k) {
+        regions_.see(path.triangles[static_cast<std::size_t>(k)], way);
+      }
+      return isFound;
+    };
+    const auto onTurn = [&](const OverlayTurn& turn) { regions_.seeVertex(turn.vertex, way); };
+    static_cast<void>(overlayBound2(overlay_, face, limit * limit, findPath, onTurn));
   }
 
   [[nodiscard]] float distance(Vec3f p, Index t) const {
@@ -138,18 +166,23 @@ class WayForth {
         exactSquaredDistanceToTriangle(p, s_.corner(t, 0), s_.corner(t, 1), s_.corner(t, 2))));
   }
 
-  // Whether t is an owner or touches two of them: what lies between, where a map may jump.
-  [[nodiscard]] bool isBetween(Index t, const std::array<Index, 3>& owners) const {
-    int touched = 0;
-    for (const Index owner : owners) {
-      if (t == owner) return true;
-      bool isCommon = false;
-      for (const Index v : s_.triangles[t].vertices) {
-        for (const Index w : s_.triangles[owner].vertices) isCommon |= v == w;
-      }
-      touched += isCommon;
+  // The way along a face's edge from its corner i on, as overlayBound2() has it for the face
+  // `other` at that edge. At borders there may be none: then what is known of it, its ends.
+  void addWay(Index f, std::size_t i, Index other, std::vector<Gap>& gaps) const {
+    const OwnedFace face = ownedFace(reference_, owner_, f);
+    const std::size_t j = (i + 1) % 3;
+    const bool isTurned = face.vertices[i] > face.vertices[j];
+    const std::size_t a = isTurned ? j : i, b = isTurned ? i : j;
+    const float limit = limits_.ofFace(other);
+    OverlayPath path;
+    if (!findOverlayPath(overlay_, {face.corners[a], face.corners[b]}, face.owners[a],
+                         face.owners[b], limit * limit, path)) {
+      path.count = 2;
+      path.triangles[0] = face.owners[a], path.triangles[1] = face.owners[b];
     }
-    return touched >= 2;
+    for (int k = 0; k < path.count; ++k) {
+      gaps.push_back({path.triangles[static_cast<std::size_t>(k)], f});
+    }
   }
 
   const Surface& s_;
@@ -176,7 +209,7 @@ void measureEach(std::size_t count, std::size_t grain, std::vector<Measured>& pa
   });
 }
 
-// The way back from where the map may jump. Sorts the gaps.
+// The way back from gaps. Sorts them.
 void measureGaps(const WayForth& forth, const Surface& s, const ReferenceMesh& reference,
                  const Limits& limits, RegionMaxima& regions, std::vector<Gap>& gaps,
                  std::vector<Measured>& parts, base::Job& job) {
@@ -217,21 +250,23 @@ Certificate certify(const Surface& s, const ReferenceMesh& reference, float expe
     }
   });
   Certificate all;
-  std::vector<Gap> gaps;
+  std::vector<Index> halved;
   Measured last;
   for (const Measured& p : parts) {
     for (const Index f : p.open) {
       job.checkCancelled(0, 1);
       if (forth.findOwners(f, last)) continue;
-      forth.halve(f, gaps, last);
-      ++all.halved;
+      forth.halve(f, last);
+      halved.push_back(f);
     }
   }
   parts.push_back(last);
+  all.halved = static_cast<Index>(halved.size());
+  std::sort(halved.begin(), halved.end());
+  std::vector<Gap> gaps = forth.gapsAt(halved);  // once all owners are found
   if (!gaps.empty()) measureGaps(forth, s, reference, limits, regions, gaps, parts, job);
-  std::vector<Index> jumps;
-  for (const Gap& gap : gaps) jumps.push_back(gap.triangle);
-  if (const Uncovered uncovered = forth.uncovered(jumps, job); !uncovered.triangles.empty()) {
+  if (const Uncovered uncovered = forth.uncovered(halved, gaps, job);
+      !uncovered.triangles.empty()) {
     const FacesNear near(reference, uncovered.faces, job);
     constexpr std::size_t kTogether = 64;
     measureEach(uncovered.triangles.size(), kTogether, parts, job,

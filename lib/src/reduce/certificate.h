@@ -35,9 +35,10 @@ struct Certificate {
 /// reference do no harm.
 ///
 /// Where a face has no such pieces within `expected` voxels, another owner is sought for one of its
-/// corners. If there is none, the face is halved until a bound of the way forth is tight, and so
-/// are the triangles around it for the way back. The sums are in single precision: a millionth of
-/// the coordinates is left to rounding.
+/// corners. If there is none, the face is halved until a bound of the way forth is tight, and
+/// nothing is said of where it goes: the way back is measured from the triangles that its edges
+/// pass, and from those that they cut off from the rest. The sums are in single precision: a
+/// millionth of the coordinates is left to rounding.
 ///
 /// Cost: about 60 ns a reference vertex, and some milliseconds for each face that is halved.
 [[nodiscard]] Certificate certify(const Surface& surface, const ReferenceMesh& reference,

@@ -17,6 +17,8 @@ namespace {
 // Cells that a part is divided into at once: at least so large, in voxels, and at most so many.
 constexpr float kLeastCell = 2.5f;
 constexpr double kMostCells = 65536;
+// Where parts have so many times as many triangles of others as there are, all is narrow.
+constexpr std::size_t kMostShared = 4;
 // Normals that look so far apart have no common direction.
 constexpr float kOpposite = -0.93f;
 
@@ -230,15 +232,24 @@ void markNarrow(Surface& surface, const Partition& partition, float reach, base:
     }
   });
   std::vector<List> others(partition.size());
+  std::size_t shared = 0;
   const auto share = [&](Index t, Index own) {
+    job.pollCancelled(shared);
     partition.forPartsAt(boxAbout(t), [&](Index part) {
-      if (part != own) others[part].push_back(t);
+      if (part != own) others[part].push_back(t), ++shared;
     });
   };
-  for (Index p = 0; p < reaching.size(); ++p) {
+  const std::size_t most = kMostShared * surface.triangles.size();
+  for (Index p = 0; p < reaching.size() && shared <= most; ++p) {
     for (const Index t : reaching[p]) share(t, p);
   }
-  for (const Index t : partition.acrossParts()) share(t, kNone);
+  for (const Index t : partition.acrossParts()) {
+    if (shared <= most) share(t, kNone);
+  }
+  if (shared > most) {  // most parts are near most others
+    for (std::uint8_t& flags : surface.flags) flags |= kNarrow;
+    return;
+  }
   job.forRanges(others.size(), 1, [&](std::size_t begin, std::size_t end) {
     List all;
     for (std::size_t p = begin; p < end; ++p) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "reduce/corners.h"
 #include "reduce/triangles.h"
 
 namespace tufa::reduce {

@@ -14,7 +14,8 @@
 
 namespace tufa::reduce {
 
-/// A triangle beside a face of the reference, where the map may jump.
+/// A triangle that the way along an edge of a halved face of the reference passes: what of it lies
+/// near that face, none may go to.
 struct Gap {
   Index triangle;
   Index face;
@@ -71,6 +72,11 @@ class RegionMaxima {
   void see(Index triangle, float value) {
     if (!largest_.empty()) raise(largest_[s_.region[triangle]], value);
   }
+
+  [[nodiscard]] bool isEmpty() const { return largest_.empty(); }
+
+  /// All triangles at a vertex.
+  void seeVertex(Index v, float value) { raise(atVertex_[v], value); }
 
   /// A way over the triangles around some owners: at lines those of other regions are among them.
   void seeAround(const std::array<Index, 3>& owners, float value) {

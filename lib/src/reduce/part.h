@@ -49,8 +49,7 @@ class Part {
   /// What was tried in all parts so far.
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
   void clearCounts() { counts_ = {}; }
-  /// Changes of LineVertex::change in all parts so far: vertices of the surface and planes. Other
-  /// parts may have the same vertices.
+  /// Changes of LineVertex::change in all parts so far: vertices of the surface and planes.
   [[nodiscard]] std::vector<std::array<Index, 2>>& changes() { return changes_; }
   /// Triangles that have changed for the first time, as they were, in all parts so far.
   [[nodiscard]] std::vector<Form>& forms() { return newForms_; }

@@ -222,6 +222,9 @@ void Part::applyFlip(const Index* v) {
   giveSamples();
   for (int i = 0; i < newAxes_; ++i) axis_[newAxis_[i].vertex] = newAxis_[i].axis;
   for (int k = 0; k < 4; ++k) ++version_[v[k]];
+  // A triangle in a narrow place keeps a marked corner.
+  const unsigned narrow = (flags_[v[1]] | flags_[v[2]]) & kNarrow;
+  for (const Index i : {v[0], v[3]}) flags_[i] = static_cast<std::uint8_t>(flags_[i] | narrow);
   if (hasBoxList_) renewBox(c / 3), renewBox(d / 3);
 }
 

@@ -49,6 +49,8 @@ constexpr int kMostValenceAtLines = 40;
 // Where the topology or the shape of triangles is in the way, slivers, fans and turns are allowed.
 constexpr int kMostValenceAtLast = 40;
 constexpr float kMostTurnAtLast = 120;
+// Voxels that a mesh may be expected to be off which has come in beside its reference.
+constexpr float kUnknown = 0.1f;
 // Voxels; at larger tolerances the first attempt lets edges end anywhere near.
 constexpr float kLooseTolerance = 4;
 // A proxy is good for tolerances from so many times its error on: sample meshes have as many
@@ -127,7 +129,10 @@ Reduction::~Reduction() = default;
 void Reduction::toTolerance(float tolerance, LineMode lines) {
   tolerance *= largestScale_;
   if (lines == LineMode::Alone) beginLines();
-  if (tolerance < kLeastTolerance) return;
+  if (tolerance < kLeastTolerance) {
+    if (!isReference_ && tolerance_ == 0) measureWithin(kUnknown);
+    return;
+  }
   chooseReference(tolerance);
   tolerance -= proxyError();
   lines_ = lines;
@@ -178,7 +183,7 @@ void Reduction::chooseReference(float tolerance) {
 // Less is allowed around some faces of the reference than the tolerance.
 void Reduction::hold(const std::vector<Index>& faces, float tolerance) {
   const float share = kHeldShare * tolerance < kLeastHeld ? 0 : kHeldShare;
-  reference_.hold(faces, kHeldTolerances * tolerance + kHeldVoxels, share);
+  reference_.hold(faces, kHeldTolerances * tolerance + kHeldVoxels, share, job_);
 }
 
 // The surface as it was while the mesh was the reference. Made again where it is asked for, which

@@ -49,8 +49,8 @@ struct Options {
   /// place of as many. Clusters do, in the first phase; later ones take those away.
   float sliverShare = 0.08f;
   bool clusters = true;  ///< whether clusters are contracted first
-  /// Triangles of a result that may not be, say as they intersect once they are written in another
-  /// precision. Around them less is reduced. Empty: none.
+  /// Triangles of a result to a tolerance that may not be, say as they intersect once they are
+  /// written in another precision. Around them less is reduced. Empty: none.
   std::function<std::vector<Index>(const ReducedMesh&)> faults;
   int attempts = 6;  ///< most to reduce less where the certificate or `faults` ask for it
   /// For tests: a guard that is not asked, so that what it guards against is seen to happen.
@@ -91,7 +91,7 @@ class Reduction {
   void setRegions(std::function<Regions()> regions);
 
   /// As few triangles as can be found within `tolerance` voxels of the reference. Below
-  /// kLeastTolerance nothing is done.
+  /// kLeastTolerance nothing is done but to measure a mesh that is not the reference.
   void toTolerance(float tolerance, LineMode lines = LineMode::Free);
 
   /// At most `count` triangles and few less, within the least tolerance found that reaches it, up

@@ -29,10 +29,15 @@ void ReferenceMesh::setOpposite(Index c, Index other) {
   }
 }
 
-void ReferenceMesh::hold(std::span<const Index> faces, float radius, float share) {
+void ReferenceMesh::hold(std::span<const Index> faces, float radius, float share, base::Job& job) {
+  constexpr float kTogether = 0.125f;
+  const float close2 = kTogether * kTogether * radius * radius;
   std::vector<Index> seenFrom(positions_.size(), kNone), reached;
-  std::vector<std::uint8_t> isNew(positions_.size(), 0);
+  std::vector<std::uint8_t> isNew(positions_.size(), 0), isClose(positions_.size(), 0);
   for (const Index face : faces) {
+    job.checkCancelled(0, 1);
+    const auto [a, b, c] = vertices(face);
+    if (isClose[a] != 0 && isClose[b] != 0 && isClose[c] != 0) continue;
     const auto corners = cornersOf(face);
     const Vec3f middle = (corners[0] + corners[1] + corners[2]) * (1.0f / 3);
     reached.clear();
@@ -48,7 +53,9 @@ void ReferenceMesh::hold(std::span<const Index> faces, float radius, float share
     for (std::size_t i = 0; i < reached.size(); ++i) {
       const Index v = reached[i];
       isNew[v] = 1;
-      if (squaredLength(positions_[v] - middle) <= radius * radius) allAround(v, reach);
+      const float away2 = squaredLength(positions_[v] - middle);
+      if (away2 <= close2) isClose[v] = 1;
+      if (away2 <= radius * radius) allAround(v, reach);
     }
   }
   heldShare_ = share;

@@ -42,8 +42,9 @@ class ReferenceMesh {
     return hasScales() ? scales_[vertex] : 1;
   }
   /// Holds faces near others: within `radius` voxels of them, over connected faces, all vertices
-  /// count as rough, and guards allow a share of the tolerance; 0, where they are held already.
-  void hold(std::span<const Index> faces, float radius, float share);
+  /// count as rough, and guards allow a share of the tolerance; 0, where they are held already. Of
+  /// faces within an eighth of the radius of each other one stands for all.
+  void hold(std::span<const Index> faces, float radius, float share, base::Job& job);
   void releaseAll();
   /// Whether a vertex of a face is held.
   [[nodiscard]] bool isHeld(Index face) const {
@@ -85,6 +86,12 @@ class ReferenceMesh {
   [[nodiscard]] Index around(Index c) const {
     const Index across = opposite(nextCorner(c));
     return across == kNone ? kNone : nextCorner(across);
+  }
+
+  /// The face across the edge from a face's corner i to the next one, or kNone.
+  [[nodiscard]] Index faceAcross(Index face, std::size_t i) const {
+    const Index c = opposite(3 * face + static_cast<Index>((i + 2) % 3));
+    return c == kNone ? kNone : c / 3;
   }
 
   [[nodiscard]] bool isAtBorder(Index vertex) const {

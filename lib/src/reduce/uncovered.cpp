@@ -22,19 +22,24 @@ enum class Answer : std::uint8_t { Covered, Uncovered, Unknown };
 
 class Finder {
  public:
-  Finder(const OverlaySurface& overlay, const CornersOfVertices& corners,
-         const ReferenceMesh& reference, std::span<const Index> owner, std::span<const Index> gaps,
-         float expected, base::Job& job)
-      : overlay_(overlay),
-        corners_(corners),
-        reference_(reference),
-        owner_(owner),
-        gaps_(gaps),
-        limit2_(expected * expected),
-        reach_(2 * expected),
-        job_(job) {}
+  Finder(const Measuring& measuring, const std::vector<Index>& halved, const std::vector<Gap>& gaps,
+         base::Job& job)
+      : overlay_(measuring.overlay),
+        corners_(measuring.corners),
+        reference_(measuring.reference),
+        owner_(measuring.owner),
+        halved_(halved),
+        limit2_(measuring.expected * measuring.expected),
+        reach_(2 * measuring.expected),
+        job_(job) {
+    if (gaps.empty()) return;
+    isGap_.assign(overlay_.surface.triangles.size(), 0);
+    for (const Gap& gap : gaps) isGap_[gap.triangle] = 1;
+  }
 
   Uncovered run() {
+    componentOf_ = connected([](Index) { return true; });
+    findPieces();
     findComponents();
     const auto isOpen = [](Answer answer) { return answer == Answer::Unknown; };
     for (int attempt = 0; attempt < kTries; ++attempt) {
@@ -50,19 +55,64 @@ class Finder {
     return componentOf_[overlay_.vertex(triangle, 0)];
   }
 
-  // Nothing is asked of open ones.
+  [[nodiscard]] bool isGap(Index triangle) const {
+    return !isGap_.empty() && isGap_[triangle] != 0;
+  }
+
+  // Vertices by what some triangles connect.
+  template <class Connects>
+  [[nodiscard]] std::vector<Index> connected(const Connects& connects) const {
+    const base::TriangleArray& triangles = overlay_.surface.triangles;
+    return base::connectedItems(overlay_.surface.position.size(), [&](const auto& connect) {
+      for (Index t = 0; t < triangles.size(); ++t) {
+        if (!connects(t)) continue;
+        connect(triangles.vertex(t, 0), triangles.vertex(t, 1));
+        connect(triangles.vertex(t, 0), triangles.vertex(t, 2));
+      }
+    });
+  }
+
+  // Chooses the pieces that are asked of: the largest of each closed component, and those at open
+  // borders of others.
+  void findPieces() {
+    if (isGap_.empty()) return;
+    const base::TriangleArray& triangles = overlay_.surface.triangles;
+    pieceOf_ = connected([&](Index t) { return !isGap(t); });
+    std::vector<Index> sizes(pieceOf_.size(), 0), largest(pieceOf_.size(), kNone);
+    std::vector<std::uint8_t> isOpen(pieceOf_.size(), 0);
+    isAsked_.assign(pieceOf_.size(), 0);
+    for (Index t = 0; t < triangles.size(); ++t) {
+      const Index piece = pieceOf_[triangles.vertex(t, 0)];
+      sizes[piece] += isGap(t) ? 0 : 1;
+      for (Index c = 3 * t; c < 3 * t + 3; ++c) {
+        if (overlay_.opposite[c] != kNone) continue;
+        isOpen[componentOf(t)] = 1;
+        if (!isGap(t)) isAsked_[piece] = 1;
+      }
+    }
+    for (Index piece = 0; piece < sizes.size(); ++piece) {
+      if (sizes[piece] == 0 || isOpen[componentOf_[piece]] != 0) continue;
+      Index& most = largest[componentOf_[piece]];
+      if (most == kNone || sizes[piece] > sizes[most]) most = piece;
+    }
+    for (const Index piece : largest) {
+      if (piece != kNone) isAsked_[piece] = 1;
+    }
+  }
+
+  // Whether a vertex is in a piece that is asked of.
+  [[nodiscard]] bool isAsked(Index vertex) const {
+    return pieceOf_.empty() || isAsked_[pieceOf_[vertex]] != 0;
+  }
+
+  // Of open ones nothing is counted.
   void findComponents() {
     const base::TriangleArray& triangles = overlay_.surface.triangles;
     const std::size_t count = overlay_.surface.position.size();
-    componentOf_ = base::connectedItems(count, [&](const auto& connect) {
-      for (const Triangle& t : triangles) {
-        connect(t.vertices[0], t.vertices[1]);
-        connect(t.vertices[0], t.vertices[2]);
-      }
-    });
     mayBeSeed_.assign(count, 0);
-    for (Index v = 0; v < count; ++v) mayBeSeed_[v] = corners_.of(v).empty() ? 0 : 1;
-    for (const Index t : gaps_) {
+    for (Index v = 0; v < count; ++v) mayBeSeed_[v] = !corners_.of(v).empty() && isAsked(v);
+    for (Index t = 0; t < isGap_.size(); ++t) {
+      if (!isGap(t)) continue;
       for (const Index v : triangles[t].vertices) mayBeSeed_[v] = 0;
     }
     seedsOf_.assign(count, 0);
@@ -111,6 +161,7 @@ class Finder {
     const Index seed = seedOf_[faces.front().first];
     MapDegree degree(overlay_, seed, corners_.of(seed).front() / 3);
     for (const auto& [component, face] : faces) {
+      if (std::binary_search(halved_.begin(), halved_.end(), face)) continue;
       const OwnedFace owned = ownedFace(reference_, owner_, face);
       if (owned.hasOneOwner()) continue;
       const float found =
@@ -156,16 +207,26 @@ class Finder {
            squaredDistanceToTriangle(p, corners[0], corners[1], corners[2]) <= limit2_;
   }
 
+  // A gap outside its sphere is covered if its corners are, see WayBack::fromGaps().
+  [[nodiscard]] bool isCovered(Index t) const {
+    if (answers_[componentOf(t)] != Answer::Covered) return false;
+    const auto v = overlay_.surface.triangles[t].vertices;
+    return isAsked(v[0]) && isAsked(v[1]) && isAsked(v[2]);
+  }
+
   [[nodiscard]] Uncovered partsOfUncovered() const {
     Uncovered uncovered;
+    std::vector<std::uint8_t> isUncovered(componentOf_.size(), 0);
     for (Index t = 0; t < overlay_.surface.triangles.size(); ++t) {
-      if (answers_[componentOf(t)] != Answer::Covered) uncovered.triangles.push_back(t);
+      if (isCovered(t)) continue;
+      uncovered.triangles.push_back(t);
+      isUncovered[componentOf(t)] = 1;
     }
     if (uncovered.triangles.empty()) return uncovered;
     std::vector<std::uint8_t> hasFaces(componentOf_.size(), 0);
     for (Index face = 0; face < reference_.faceCount(); ++face) {
       const Index t = owner_[reference_.vertices(face)[0]];
-      if (t == kNone || answers_[componentOf(t)] == Answer::Covered) continue;
+      if (t == kNone || isUncovered[componentOf(t)] == 0) continue;
       uncovered.faces.push_back(face);
       hasFaces[componentOf(t)] = 1;
     }
@@ -182,10 +243,14 @@ class Finder {
   const CornersOfVertices& corners_;
   const ReferenceMesh& reference_;
   std::span<const Index> owner_;
-  std::span<const Index> gaps_;
+  const std::vector<Index>& halved_;
   float limit2_, reach_;
   base::Job& job_;
   std::vector<Index> componentOf_;  // of each vertex, by its lowest vertex
+  // Of triangles, of vertices and of pieces by their lowest vertex; empty without gaps.
+  std::vector<std::uint8_t> isGap_;
+  std::vector<Index> pieceOf_;
+  std::vector<std::uint8_t> isAsked_;
   std::vector<std::uint8_t> mayBeSeed_;
   std::vector<Index> seedsOf_;  // of each component: how many may be
   std::vector<Answer> answers_;
@@ -205,10 +270,9 @@ std::vector<base::Box> boxesOf(const ReferenceMesh& reference, const std::vector
 
 }  // namespace
 
-Uncovered findUncovered(const OverlaySurface& overlay, const CornersOfVertices& corners,
-                        const ReferenceMesh& reference, std::span<const Index> owner,
-                        std::span<const Index> gaps, float expected, base::Job& job) {
-  return Finder(overlay, corners, reference, owner, gaps, expected, job).run();
+Uncovered findUncovered(const Measuring& measuring, const std::vector<Index>& halved,
+                        const std::vector<Gap>& gaps, base::Job& job) {
+  return Finder(measuring, halved, gaps, job).run();
 }
 
 FacesNear::FacesNear(const ReferenceMesh& reference, std::vector<Index> faces, base::Job& job)

@@ -43,18 +43,21 @@ WayBack::WayBack(const Surface& s, const ReferenceMesh& reference, const Corners
 void WayBack::fromGaps(std::span<const Gap> gaps, Measured& measured) const {
   const auto [a, b, c] = cornersOf(s_, gaps.front().triangle);
   const float area = length(cross(b - a, c - a)) / 2;
-  std::vector<Sphere> parts;
-  float partsArea = 0;
+  std::vector<Sphere> spheres;
+  Sphere all{{}, 0};
   for (const Gap& gap : gaps) {
     const Corners face = reference_.cornersOf(gap.face);
     Sphere about{(face[0] + face[1] + face[2]) * (1.0f / 3), 0};
     for (const Vec3f& p : face) about.radius = std::max(about.radius, length(p - about.middle));
     about.radius += 2 * limits_.ofFace(gap.face) + kBeyond;
-    parts.push_back(about);
-    partsArea += 3 * about.radius * about.radius;
+    spheres.push_back(about);
+    all.middle = all.middle + about.middle * (1 / static_cast<float>(gaps.size()));
   }
-  if (partsArea > area) return fromGap(gaps.front(), {{}, kEverywhere}, measured);
-  for (std::size_t i = 0; i < gaps.size(); ++i) fromGap(gaps[i], parts[i], measured);
+  for (const Sphere& about : spheres) {
+    all.radius = std::max(all.radius, length(about.middle - all.middle) + about.radius);
+  }
+  if (3 * all.radius * all.radius > area) all = {{}, kEverywhere};
+  fromGap(gaps.front(), all, measured);
 }
 
 // From what of a triangle is in a sphere. With a large tolerance a few of the faces nearby do for

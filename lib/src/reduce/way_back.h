@@ -18,8 +18,10 @@ class WayBack {
   WayBack(const Surface& s, const ReferenceMesh& reference, const CornersOfVertices& corners,
           std::span<const Index> owner, const Limits& limits, RegionMaxima& regions);
 
-  /// From the parts of a triangle about some faces, to all faces nearby at reference vertices of
-  /// the triangles around. From the whole triangle, if that is less. All gaps are of one triangle.
+  /// From what of a triangle lies in a sphere about some faces, to all faces nearby at reference
+  /// vertices of the triangles around. From the whole triangle, if that is less. All gaps are of
+  /// one triangle. One sphere, as what is outside a convex part of a triangle is connected to its
+  /// corners, of which uncovered.h tells.
   void fromGaps(std::span<const Gap> gaps, Measured& measured) const;
 
  private:

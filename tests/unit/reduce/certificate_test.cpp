@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "unit/reduce/meshes.h"
 
@@ -130,6 +133,50 @@ TEST(Certificate, BoundsTheWayBackFromASideThatIsLeftOut) {
     EXPECT_GE(c.largest, 0.3f * 0.999f) << expected;
     EXPECT_LE(c.largest, std::max(0.31f, expected)) << expected;
     EXPECT_LE(c.mean, 0.04f);
+  }
+}
+
+// A face with rings in it and a spike in their middle: none of the face's pieces is within a
+// distance of all rings, so that nothing goes there.
+TEST(Certificate, BoundsTheWayBackFromWhatAHalvedFaceEncloses) {
+  const test::FineMesh plain = test::subdivided(test::box(8, 8, 8), 2);
+  for (const float height : {0.0f, 1.0f, 5.0f}) {
+    test::FineMesh spiked = plain;
+    constexpr Index kFace = 20;
+    std::array<Index, 3> outer = spiked.triangles[kFace].vertices;
+    const std::array<Vec3f, 3> corners = {spiked.positions[outer[0]], spiked.positions[outer[1]],
+                                          spiked.positions[outer[2]]};
+    const Vec3f middle = (corners[0] + corners[1] + corners[2]) * (1.0f / 3);
+    std::vector<Triangle> within;
+    for (const float share : {0.6f, 0.3f, 0.05f}) {
+      const auto first = static_cast<Index>(spiked.positions.size());
+      const std::array<Index, 3> inner = {first, first + 1, first + 2};
+      for (const Vec3f& p : corners) spiked.positions.push_back(middle + (p - middle) * share);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        within.emplace_back(outer[i], outer[j], inner[j]);
+        within.emplace_back(outer[i], inner[j], inner[i]);
+      }
+      outer = inner;
+    }
+    const auto tip = static_cast<Index>(spiked.positions.size());
+    const Vec3f normal = base::unit(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    spiked.positions.push_back(middle + normal * height);
+    for (std::size_t i = 0; i < 3; ++i) within.emplace_back(outer[i], outer[(i + 1) % 3], tip);
+    spiked.triangles[kFace] = within.back();
+    within.pop_back();
+    for (const Triangle& t : within) spiked.triangles.push_back(t);
+    for (const float expected : {0.1f, 0.3f}) {
+      base::Job job(1, {});
+      const ReferenceMesh to(surfaceOf(plain, job), {}, job);
+      Surface surface = surfaceOf(spiked, job);
+      std::vector<Index> same(plain.positions.size());
+      std::iota(same.begin(), same.end(), 0);
+      locateAll(surface, to, same, job);
+      const Certificate c = certify(surface, to, expected, job);
+      EXPECT_GE(c.largest, 0.999f * height) << expected;
+      EXPECT_LE(c.largest, std::max(1.01f * height, 0.5f)) << expected;
+    }
   }
 }
 

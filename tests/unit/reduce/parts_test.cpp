@@ -180,21 +180,21 @@ TEST_F(ReferenceMeshTest, HoldsAShareFirstAndAllTheSecondTime) {
     return far;
   };
   EXPECT_FALSE(reference.isScaled());
-  reference.hold({&face, 1}, 2, 0.25f);
+  reference.hold({&face, 1}, 2, 0.25f, job);
   EXPECT_TRUE(reference.isScaled());
   EXPECT_FALSE(reference.hasScales());
   EXPECT_TRUE(reference.isHeld(face));
   EXPECT_EQ(reference.scaleAt(reference.vertices(face)[0]), 0.25f);
   EXPECT_NEAR(farthest(0.25f), 2.5f, 1);
   EXPECT_EQ(farthest(0), 0);
-  reference.hold({&face, 1}, 1, 0.25f);
+  reference.hold({&face, 1}, 1, 0.25f, job);
   EXPECT_EQ(reference.scaleAt(reference.vertices(face)[0]), 0);
   EXPECT_LT(farthest(0), farthest(0.25f));
   EXPECT_EQ(reference.promisedScaleAt(reference.vertices(face)[0]), 1);
   reference.releaseAll();
   EXPECT_FALSE(reference.isScaled());
   EXPECT_FALSE(reference.isHeld(face));
-  reference.hold({&face, 1}, 1, 0);
+  reference.hold({&face, 1}, 1, 0, job);
   EXPECT_GT(farthest(0), 0);
 }
 
@@ -489,6 +489,35 @@ TEST(Clearance, MarksNothingBetweenSidesThatAPlaneParts) {
   EXPECT_EQ(marksOfPlate(1, 0.8f, true), 0U);
   EXPECT_GT(marksOfPlate(1, 1.2f, true), 50U);
   EXPECT_GT(marksOfPlate(0.05f, 0.4f, true), 50U);
+}
+
+// Nothing is listed for each pair of a triangle and a part.
+TEST(Clearance, MarksAllWhereEverythingIsNearEverything) {
+  test::FineMesh ball = test::subdivided(test::octahedron(4), 2);
+  for (Vec3f& p : ball.positions) p = unit(p) * 4;
+  test::FineMesh many;
+  for (int i = 0; i < 343; ++i) {
+    const auto first = static_cast<Index>(many.positions.size());
+    const Vec3f at(12 * static_cast<float>(i % 7), 12 * static_cast<float>(i / 7 % 7),
+                   12 * static_cast<float>(i / 49));
+    for (const Vec3f& p : ball.positions) many.positions.push_back(p + at);
+    for (Triangle t : ball.triangles) {
+      for (Index& v : t.vertices) v += first;
+      many.triangles.push_back(t);
+    }
+  }
+  base::Job job(1, {});
+  for (const float reach : {0.1f, 100.0f}) {
+    Surface surface = surfaceOf(many, job);
+    Partition partition;
+    partition.build(surface, {500}, 0.5f, job);
+    ASSERT_GT(partition.size(), 10U);
+    surface.flags.assign(surface.flags.size(), 0);
+    markNarrow(surface, partition, reach, job);
+    const auto marks = std::count_if(surface.flags.begin(), surface.flags.end(),
+                                     [](unsigned flags) { return (flags & kNarrow) != 0; });
+    EXPECT_EQ(marks, reach > 1 ? std::ssize(surface.flags) : 0);
+  }
 }
 
 // A section that starts at a vertex may begin in any face there, not only in one that it passes.

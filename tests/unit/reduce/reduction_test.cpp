@@ -310,6 +310,22 @@ TEST(Reduction, MeasuresToAReferenceThatIsNotItsInput) {
   expectSound(fine, reduction.mesh(), certificate);
 }
 
+// As a cut mesh may be whose vertices were separated.
+TEST(Reduction, MeasuresWhatCameInAtAToleranceOfNothing) {
+  const test::FineMesh plain = test::subdivided(test::box(8, 8, 8), 2);
+  test::FineMesh moved = plain;
+  moved.positions[30] = moved.positions[30] * 1.01f;
+  const float off = length(moved.positions[30] - plain.positions[30]);
+  std::vector<Index> same(plain.positions.size());
+  for (Index v = 0; v < same.size(); ++v) same[v] = v;
+  base::Job job(1, {});
+  Reduction reduction(moved.input(), plain.input(), same, {}, {}, job);
+  reduction.toTolerance(0);
+  EXPECT_EQ(reduction.triangleCount(), plain.triangles.size());
+  EXPECT_GT(reduction.certificate().largest, 0.3f * off);
+  EXPECT_LE(reduction.certificate().largest, std::max(1.01f * off, 0.1f));
+}
+
 TEST(Reduction, StopsWhenItIsCancelled) {
   const test::FineMesh mesh = test::noiseSolid(14, 5, 3);
   int calls = 0;
