@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
-#include <openvdb/points/PointDataGrid.h>
 #include <tufa/attributes.h>
 
 #include <tufa/contour.h>
@@ -179,7 +178,7 @@ TEST(Attributes, RefuseWhatCannotBeSampled) {
   colour.role = AttributeRole::Colour;
   expectError(ErrorCode::InvalidArgument, "colour",
               [&] { static_cast<void>(sampleAttribute(mesh, *grid, colour)); });
-  const auto points = openvdb::points::PointDataGrid::create();
+  const auto points = openvdb::Grid<openvdb::tree::Tree4<openvdb::PointIndex32>::Type>::create();
   points->setName("points");
   expectError(ErrorCode::UnsupportedGrid, "numbers, booleans or vectors",
               [&] { static_cast<void>(sampleAttribute(mesh, *points)); });

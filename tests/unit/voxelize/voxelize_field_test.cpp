@@ -214,11 +214,11 @@ void expectClosed(const std::string& text) {
   const auto field =
       combine(Operation::Intersection,
               {implicit::makeExpression(text), implicit::makeBox({0.5, 0.25, 0}, Vec3(2.5), 0)}, 0);
-  constexpr double kVoxel = 0.125;
+  constexpr double kVoxel = 0.15625;
   const auto grid = voxelize(*field, voxelsOf(kVoxel));
-  for (int x = -30; x <= 30; ++x) {
-    for (int y = -30; y <= 30; ++y) {
-      for (int z = -30; z <= 30; ++z) {
+  for (int x = -24; x <= 24; ++x) {
+    for (int y = -24; y <= 24; ++y) {
+      for (int z = -24; z <= 24; ++z) {
         const double truth = field->value({x * kVoxel, y * kVoxel, z * kVoxel});
         ASSERT_EQ(grid->tree().getValue(openvdb::Coord(x, y, z)) < 0, truth < 0)
             << text << " at " << x << " " << y << " " << z;
