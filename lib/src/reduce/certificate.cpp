@@ -130,27 +130,36 @@ class WayForth {
     const auto& v = reference_.vertices(f);
     if (owner_[v[0]] == owner_[v[1]] && owner_[v[1]] == owner_[v[2]]) return true;
     const OwnedFace face = ownedFace(reference_, owner_, f);
-    const float limit = limits_.ofFace(f),
-                way = std::sqrt(overlayBound2(overlay_, face, limit * limit));
+    const float limit = limits_.ofFace(f);
+    const float way = regions_.isEmpty() ? std::sqrt(overlayBound2(overlay_, face, limit * limit))
+                                         : wayOverRegions(face, limit);
     if (!(way <= limit)) return false;
-    if (!regions_.isEmpty()) seeRegions(face, way, limit);
     measured.see(way, f, limit);
     return true;
   }
 
-  // The regions of all triangles that a face lies over.
-  void seeRegions(const OwnedFace& face, float way, float limit) const {
-    regions_.seeAround(face.owners, way);
+  // The way of a face, which the regions of all triangles that it lies over see.
+  float wayOverRegions(const OwnedFace& face, float limit) const {
+    std::array<OverlayPath, 3> paths;
+    std::size_t found = 0;
+    std::vector<Index> turned;
     const auto findPath = [&](std::size_t a, std::size_t b, OverlayPath& path) {
       const bool isFound = findOverlayPath(overlay_, {face.corners[a], face.corners[b]},
                                            face.owners[a], face.owners[b], limit * limit, path);
+      paths[found++] = path;
+      return isFound;
+    };
+    const auto onTurn = [&](const OverlayTurn& turn) { turned.push_back(turn.vertex); };
+    const float way = std::sqrt(overlayBound2(overlay_, face, limit * limit, findPath, onTurn));
+    if (!(way <= limit)) return way;
+    regions_.seeAround(face.owners, way);
+    for (const OverlayPath& path : paths) {
       for (int k = 0; k < path.count; ++k) {
         regions_.see(path.triangles[static_cast<std::size_t>(k)], way);
       }
-      return isFound;
-    };
-    const auto onTurn = [&](const OverlayTurn& turn) { regions_.seeVertex(turn.vertex, way); };
-    static_cast<void>(overlayBound2(overlay_, face, limit * limit, findPath, onTurn));
+    }
+    for (const Index v : turned) regions_.seeVertex(v, way);
+    return way;
   }
 
   [[nodiscard]] float distance(Vec3f p, Index t) const {
