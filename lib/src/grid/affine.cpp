@@ -10,14 +10,10 @@
 namespace tufa::grid {
 
 Affine::Affine(const Transform& transform, const Coord& origin) : origin_(origin) {
-  const Vec3 zero = transform.indexToWorld(Vec3(0));
   const Vec3 start = transform.indexToWorld(Vec3(origin));
+  const base::Lattice lattice = transform.lattice();
   openvdb::math::Mat3d linear;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3 unit(0);
-    unit[axis] = 1;
-    linear.setCol(axis, toVdb(transform.indexToWorld(unit) - zero));
-  }
+  for (int axis = 0; axis < 3; ++axis) linear.setCol(axis, toVdb(lattice.steps[axis]));
   const double size = std::cbrt(std::abs(linear.det()));
   const openvdb::math::Mat3d inverse = linear.inverse();
   for (int i = 0; i < 3; ++i) {

@@ -17,27 +17,46 @@ constexpr double kUnitTolerance = 0.2;
 constexpr std::size_t kSampledLeaves = 512;
 
 openvdb::math::Mat3d linearPart(const openvdb::math::Transform& transform) {
-  const openvdb::Vec3d origin = transform.indexToWorld(openvdb::Vec3d(0));
-  openvdb::math::Mat3d columns;
-  for (int axis = 0; axis < 3; ++axis) {
-    openvdb::Vec3d unit(0);
-    unit[axis] = 1;
-    columns.setCol(axis, transform.indexToWorld(unit) - origin);
+  return transform.baseMap()->getAffineMap()->getMat4().getMat3().transpose();
+}
+
+// Some of the leaves, all over the tree.
+template <class TreeT>
+std::vector<const typename TreeT::LeafNodeType*> someLeaves(const TreeT& tree) {
+  std::vector<const typename TreeT::LeafNodeType*> all, some;
+  tree.getNodes(all);
+  const std::size_t step = std::max<std::size_t>(1, all.size() / kSampledLeaves);
+  for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
+  return some;
+}
+
+// Scales values that are so large or small that the squares of their differences are no floats,
+// such as densities of 1e-24. By a power of two, as directions are all that counts of a field that
+// is no distance.
+template <class TreeT>
+void bringIntoRange(const TreeT& tree, FieldScale& scale) {
+  constexpr double kSmall = 1e-10, kLarge = 1e10, kLargestFactor = 1e38;
+  double largest = 0;
+  for (const auto* leaf : someLeaves(tree)) {
+    const auto* values = leaf->buffer().data();
+    for (int i = 0; i < 512; ++i) {
+      const double size = std::abs((values[i] - scale.isovalue) * scale.factor);
+      if (std::isfinite(size)) largest = std::max(largest, size);
+    }
   }
-  return columns;
+  if (!(largest > 0) || (largest >= kSmall && largest <= kLarge)) return;
+  const double factor = std::ldexp(scale.factor, -std::ilogb(largest));
+  const bool isFloat = std::is_same_v<typename TreeT::ValueType, float>;
+  scale.factor = isFloat ? std::clamp(factor, -kLargestFactor, kLargestFactor) : factor;
 }
 
 // Whether enough of the gradients near the surface have a length near 1.
 template <class TreeT>
 bool hasUnitGradient(const TreeT& tree, const FieldScale& scale, const IsoChoice& iso) {
-  using Leaf = typename TreeT::LeafNodeType;
-  std::vector<const Leaf*> leaves;
-  tree.getNodes(leaves);
-  const std::size_t step = std::max<std::size_t>(1, leaves.size() / kSampledLeaves);
   std::size_t units = 0, all = 0;
-  for (std::size_t i = 0; i < leaves.size(); i += step) {
-    const auto* values = leaves[i]->buffer().data();
-    const auto& mask = leaves[i]->getValueMask();
+  for (const auto* leaf : someLeaves(tree)) {
+    const auto* values = leaf->buffer().data();
+    const auto& mask = leaf->getValueMask();
     for (int cell = 0; cell < 512; ++cell) {
       const int x = cell >> 6, y = (cell >> 3) & 7, z = cell & 7;
       if (x == 0 || x == 7 || y == 0 || y == 7 || z == 0 || z == 7 || !mask.isOn(cell)) continue;
@@ -84,8 +103,9 @@ FieldScale readScale(const openvdb::Grid<TreeT>& grid, const IsoChoice& iso) {
   for (int axis = 0; axis < 3; ++axis) {
     scale.axisLength[axis] = linear.col(axis).length() / voxel;
   }
-  if (grid.getGridClass() == openvdb::GRID_FOG_VOLUME) return scale;
-  scale.distance = hasUnitGradient(grid.tree(), scale, iso);
+  const bool isFog = grid.getGridClass() == openvdb::GRID_FOG_VOLUME;
+  scale.distance = !isFog && hasUnitGradient(grid.tree(), scale, iso);
+  if (!scale.distance) bringIntoRange(grid.tree(), scale);
   scale.narrowBand = scale.distance && grid.getGridClass() == openvdb::GRID_LEVEL_SET;
   if (scale.narrowBand) {
     // A little less than the background, which a band clamps to.

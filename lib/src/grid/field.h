@@ -10,7 +10,9 @@ namespace tufa::grid {
 /// of its world volume.
 struct FieldScale {
   double isovalue = 0;
-  double factor = 1;  ///< voxels for each unit of value; negative where inside is above
+  /// What values are multiplied with; negative where inside is above. Of a distance the voxels in a
+  /// unit of value; of other fields a power of two beside it where values are very large or small.
+  double factor = 1;
   /// The field is a distance: its gradient has length 1. Creases can be restored from it.
   bool distance = false;
   /// The field is a level set that holds distances only inside its band: samples at or beyond these

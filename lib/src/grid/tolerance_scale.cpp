@@ -33,7 +33,7 @@ std::function<double(const Vec3&)> toleranceScale(
     const openvdb::Vec3d world = toVdb(transform.indexToWorld(point));
     const openvdb::Vec3d place = grid->transform().worldToIndex(world);
     // Coordinates are 32-bit integers.
-    constexpr double kMost = 1e9;
+    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
     const bool isOnLattice =
         std::abs(place[0]) < kMost && std::abs(place[1]) < kMost && std::abs(place[2]) < kMost;
     const float value =

@@ -3,12 +3,16 @@
 #include <openvdb/openvdb.h>
 
 #include <cmath>
+#include <memory>
 
 #include "grid/vdb_coord.h"
 
 namespace tufa::grid {
 
-Transform::Transform(const openvdb::math::Transform& transform) : transform_(transform.copy()) {}
+// Shares the map, which never changes: a copy of one has steps that have lost the digits of its
+// translation.
+Transform::Transform(const openvdb::math::Transform& transform)
+    : transform_(std::make_shared<openvdb::math::Transform>(transform)) {}
 
 Vec3 Transform::indexToWorld(const Vec3& index) const {
   return fromVdb(transform_->indexToWorld(toVdb(index)));
@@ -20,10 +24,10 @@ Vec3 Transform::worldToIndex(const Vec3& world) const {
 
 base::Lattice Transform::lattice() const {
   base::Lattice lattice{fromVdb(transform_->indexToWorld(openvdb::Vec3d(0))), {}};
+  // Not by applyJacobian(), which loses the digits of the translation.
+  const openvdb::Mat4d matrix = transform_->baseMap()->getAffineMap()->getMat4();
   for (int axis = 0; axis < 3; ++axis) {
-    openvdb::Vec3d unit(0);
-    unit[axis] = 1;
-    lattice.steps[axis] = fromVdb(transform_->baseMap()->applyJacobian(unit));
+    lattice.steps[axis] = Vec3(matrix[axis][0], matrix[axis][1], matrix[axis][2]);
   }
   return lattice;
 }

@@ -147,8 +147,9 @@ ClusterForest buildForest(const uniform::SurfaceView& base, int maxLevel, bool a
   std::vector<Patch> patches = buildBlockLevels(base, angles, forest, job);
   while (forest.topLevel() < maxLevel && !forest.levels.back().clusters.empty()) {
     ClusterLevel above = buildLevelAbove(forest.levels.back(), patches, base.affine, job);
-    // No two cells have a common parent, as on both sides of a coordinate plane no cells ever have:
-    // larger cells would join nothing.
+    // No two cells have a common parent, so that no component passes three cells in a row: a cell
+    // that joins some of them holds a whole component, which is no disk. Across a coordinate plane
+    // none ever joins any.
     if (above.cells.size() == forest.levels.back().cells.size()) break;
     forest.levels.push_back(std::move(above));
   }

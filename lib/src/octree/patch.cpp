@@ -70,7 +70,7 @@ bool meetsFacesOnce(const Patch& patch) {
 }  // namespace
 
 void NormalCone::add(const NormalCone& other) {
-  if (axis.squaredLength() == 0) {
+  if (axis.squaredLength() == 0 && angle == 0) {  // of nothing; not of normals that cancel out
     *this = other;
     return;
   }

@@ -46,6 +46,32 @@ void expectWholeSurface(const FloatGrid& grid, const CoordBBox& window, const ch
   EXPECT_GT(test::volume(mesh), 0) << what;
 }
 
+// Densities in whatever unit: squares of their differences are no floats.
+TEST(ContourPlaces, OfValuesOfAnySizeIsTheSame) {
+  constexpr double kRadius = 9.3;
+  const auto meshOf = [](double unit) {
+    const auto fog = test::sampled<FloatGrid>(
+        CoordBBox(openvdb::Coord(-14), openvdb::Coord(14)), 0, [&](const openvdb::Coord& at) {
+          const double r = at.asVec3d().length();
+          return unit * std::max(0.0, 2 + std::sin(kRadius - r) + 0.1 * (kRadius - r));
+        });
+    fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+    ContourOptions options;
+    options.isovalue = static_cast<float>(2 * unit);
+    options.uniform = true;
+    return contour(*fog, options);
+  };
+  const Mesh plain = meshOf(1);
+  for (const int exponent : {-110, -80, -50, 50, 80, 110}) {
+    const Mesh mesh = meshOf(std::ldexp(1.0, exponent));
+    ASSERT_EQ(mesh.positions.size(), plain.positions.size()) << exponent;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      const Position &p = mesh.positions[i], &q = plain.positions[i];
+      ASSERT_LT(std::hypot(p.x - q.x, p.y - q.y, p.z - q.z), 1e-5) << exponent;
+    }
+  }
+}
+
 // Two balls, however far from each other: single precision does not tell their voxels apart from
 // one middle.
 TEST(ContourPlaces, OfPiecesFarApartKeepTheTolerance) {

@@ -23,6 +23,8 @@ TEST(ToleranceScale, IsTheNearestValue) {
   EXPECT_EQ(scale(Vec3(1.6, 2, 3)), 7);
   EXPECT_EQ(scale(Vec3(-1e6, 0, 0)), 7) << "the background";
   EXPECT_EQ(scale(Vec3(1e30, 0, 0)), 7) << "beyond all coordinates";
+  scales->tree().setValue(openvdb::Coord(2100000000, -2100000000, 5), 3);
+  EXPECT_EQ(scale(Vec3(2.1e9, -2.1e9, 5)), 3);
 }
 
 TEST(ToleranceScale, IsZeroWhereTheValueSaysNothing) {

@@ -37,6 +37,19 @@ Vec3 applied(const Mat4d& m, const Vec3& p) {
   return out;
 }
 
+// However far away a grid lies: differences of world points there have few digits.
+TEST(Affine, HasTheStepsOfTheLattice) {
+  for (const double far : {0.0, 1e6, 9e10}) {
+    const auto transform = openvdb::math::Transform::createLinearTransform(0.1);
+    transform->postTranslate(openvdb::Vec3d(far, -far, far / 3));
+    const Affine affine{Transform(*transform)};
+    EXPECT_NEAR(affine.voxelSize(), 0.1, 1e-15) << far;
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(affine.axis(axis)[static_cast<std::size_t>(axis)], 0.1, 1e-15) << far;
+    }
+  }
+}
+
 const std::vector<Vec3> kPoints = {Vec3(0.0), Vec3(1, 2, 3), Vec3(-4.5, 0.25, 100)};
 
 TEST(Transform, IsTheGridsAndItsInverse) {

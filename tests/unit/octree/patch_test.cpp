@@ -71,6 +71,8 @@ TEST(NormalCone, OfOppositeNormalsIsEveryDirection) {
   NormalCone cone{Vec3(0, 1, 0), 0};
   cone.add({Vec3(0, -1, 0), 0});
   EXPECT_NEAR(cone.angle, std::numbers::pi, 1e-12);
+  cone.add({Vec3(1, 0, 0), 0});
+  EXPECT_NEAR(cone.angle, std::numbers::pi, 1e-12);
 }
 
 // The samples of two by two by two cells: which of the 27 lattice points are inside.
