@@ -24,8 +24,8 @@ struct ChunkFile {
 /// Writes the meshes of a chunk into a folder and returns the files, one for each LOD. Each appears
 /// whole or not at all. The index says how a .glb is stored; a .ply is in world units,
 /// uncompressed. May be called from several threads for different chunks. Throws Error:
-/// UnwritableFile, InvalidArgument for compressed chunks off the index's lattice, LimitExceeded for
-/// a .glb above 4 GiB.
+/// UnwritableFile; InvalidArgument for a chunk whose indices point nowhere or whose arrays do not
+/// fit, and for compressed chunks off the index's lattice; LimitExceeded for a .glb above 4 GiB.
 TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
                                            const std::string& folder, ChunkFormat format);
 

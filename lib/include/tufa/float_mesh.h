@@ -32,7 +32,9 @@ struct FloatMesh {
 };
 
 /// Copies a mesh into arrays for hosts. Its attributes are such arrays already: Attribute::values.
-/// Throws Error(LimitExceeded) if an int cannot count the positions or the corners.
+/// Throws Error: InvalidArgument for a position that is not finite, a face that names no vertex,
+/// and normals that are not one for each position; LimitExceeded if an int cannot count the
+/// positions or the corners.
 [[nodiscard]] TUFA_API FloatMesh toFloat(const Mesh& mesh, const FloatMeshOptions& options = {});
 
 }  // namespace tufa

@@ -51,10 +51,15 @@ class Progress {
   /// From any function of a stage and a fraction.
   template <class Function>
   requires(std::is_invocable_r_v<bool, Function&, std::string_view, double>)
-      Progress(Function function)
-      : function_([f = std::move(function)](const ProgressState& state) mutable {
-          return f(state.stage, state.fraction);
-        }) {}
+      Progress(Function function) {
+    if constexpr (std::is_constructible_v<Function, std::nullptr_t> &&
+                  std::is_constructible_v<bool, const Function&>) {
+      if (!static_cast<bool>(function)) return;  // a pointer or std::function of nothing
+    }
+    function_ = [f = std::move(function)](const ProgressState& state) mutable {
+      return f(state.stage, state.fraction);
+    };
+  }
   /// From any function of a state.
   template <class Function>
   requires(std::is_invocable_r_v<bool, Function&, const ProgressState&> &&

@@ -20,6 +20,13 @@ void requireFaces(const Mesh& mesh) {
   std::for_each(mesh.quads.begin(), mesh.quads.end(), requireInside);
 }
 
+void requireNormals(const Mesh& mesh) {
+  if (mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) return;
+  throw Error(ErrorCode::InvalidArgument, "the mesh has " + std::to_string(mesh.normals.size()) +
+                                              " normals for " +
+                                              std::to_string(mesh.positions.size()) + " positions");
+}
+
 void requireFinite(const Mesh& mesh) {
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Position& p = mesh.positions[v];

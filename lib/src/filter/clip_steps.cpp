@@ -6,7 +6,9 @@
 #include <openvdb/tools/LevelSetUtil.h>
 
 #include <tufa/error.h>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "filter/steps.h"
@@ -68,6 +70,21 @@ MaskGrid::Ptr maskOf(const openvdb::GridBase& source, bool inside,
   return MaskGrid::create(tree);
 }
 
+/// Around all leaves, and all tiles that are not background.
+template <class GridT>
+openvdb::CoordBBox boundsOf(const GridT& grid) {
+  openvdb::CoordBBox box;
+  grid.tree().evalLeafBoundingBox(box);
+  auto tile = grid.tree().cbeginValueAll();
+  tile.setMaxDepth(GridT::TreeType::DEPTH - 2);
+  for (; tile; ++tile) {
+    if (tile.isValueOn() || tile.getValue() != grid.background()) {
+      box.expand(tile.getBoundingBox());
+    }
+  }
+  return box;
+}
+
 /// What OpenVDB's clipping leaves out.
 template <class GridT>
 typename GridT::Ptr withMetadataOf(const GridT& source, const typename GridT::Ptr& clipped) {
@@ -84,11 +101,27 @@ typename GridT::Ptr clipToBox(const GridT& grid, const ClipBox& step) {
   const bool sound = a.x < b.x && a.y < b.y && a.z < b.z && std::isfinite(a.x + a.y + a.z) &&
                      std::isfinite(b.x + b.y + b.z);
   if (!sound) {
-    throw Error(ErrorCode::InvalidArgument,
-                "a box to clip to needs a least corner below its greatest one in x, y and z");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "a box to clip to needs finite corners, the least below the greatest in x, y and z");
   }
-  const openvdb::BBoxd box({a.x, a.y, a.z}, {b.x, b.y, b.z});
-  return withMetadataOf(grid, openvdb::tools::clip(grid, box));
+  openvdb::Vec3d least, greatest;
+  openvdb::math::calculateBounds(grid.constTransform(), {a.x, a.y, a.z}, {b.x, b.y, b.z}, least,
+                                 greatest);
+  // As tools::clip() does, but in what the grid holds: of a larger box it would fill all.
+  const openvdb::CoordBBox held = boundsOf(grid);
+  openvdb::CoordBBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = held.min()[axis], high = held.max()[axis];
+    if (held.empty() || !(std::floor(least[axis]) <= high && std::floor(greatest[axis]) >= low)) {
+      return withMetadataOf(grid, openvdb::tools::clip_internal::doClip(grid, MaskGrid(), true));
+    }
+    box.min()[axis] = static_cast<std::int32_t>(std::max(low, std::floor(least[axis])));
+    box.max()[axis] = static_cast<std::int32_t>(std::min(high, std::floor(greatest[axis])));
+  }
+  MaskGrid mask;
+  mask.fill(box, true);
+  return withMetadataOf(grid, openvdb::tools::clip_internal::doClip(grid, mask, true));
 }
 
 template <class GridT>

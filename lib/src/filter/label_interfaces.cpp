@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/require_mesh.h"
 #include "base/single_precision.h"
 #include "base/vec3.h"
 #include "filter/integer_grid.h"
@@ -118,6 +119,8 @@ void requireNets(const std::vector<Mesh>& meshes, const std::vector<std::int64_t
                     std::to_string(labels.size()) + " labels; one for each is needed");
   }
   for (const Mesh& mesh : meshes) {
+    base::requireFaces(mesh);
+    base::requireNormals(mesh);
     if (mesh.cells.size() == mesh.positions.size() && mesh.triangles.empty()) continue;
     throw Error(ErrorCode::InvalidArgument,
                 "interfaces can be shared by meshes of surface nets alone that have the cell of "

@@ -126,8 +126,8 @@ T integral(const SkeletonArc& arc, ConvolutionKernel /*kernel*/, double width,
     // The arctangent is one of half a turn; further ones add up.
     const double turns = std::round(plain(t) / (2 * kPi));
     const T within = t - turns * 2 * kPi;
-    const T half = within * 0.5;
-    const T tangent = sin(half) / cos(half);
+    const T halfAngle = within * 0.5;
+    const T tangent = sin(halfAngle) / cos(halfAngle);
     const T simple = (atan(stretch * tangent) * 2.0 + turns * 2 * kPi) / root;
     return b * sin(within) / (root2 * (a - b * cos(within))) + a * simple / root2;
   };

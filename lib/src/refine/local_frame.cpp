@@ -20,7 +20,7 @@ constexpr std::int64_t kLeftCells = 8;
 constexpr double kLargestAmongVoids = kCell * kLeftCells / 4;
 // From here on, voxels from the middle, single precision tells places apart by a 32nd of a voxel,
 // and triangles would lose their shapes: nothing is reduced.
-constexpr double kFarthest = 262144;
+constexpr double kLargestFrame = 262144;
 
 double lastDigitOf(double x) {
   const auto f = static_cast<float>(x);
@@ -46,7 +46,7 @@ LocalFrame::LocalFrame(const std::vector<Position>& positions, double voxelSize,
   middle_ = box.centre();
   const Vec3 half = box.size() * (0.5 * perVoxel_);
   const double farthest = std::max({half[0], half[1], half[2]});
-  isTooLarge_ = farthest >= kFarthest;
+  isTooLarge_ = farthest >= kLargestFrame;
   // Half of the last digit along each axis, of each of the two meshes.
   if (farthest >= kNear) rounding_ = std::sqrt(3.0) * lastDigitOf(farthest);
 }

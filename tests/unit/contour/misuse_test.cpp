@@ -7,8 +7,10 @@
 #include <tufa/chunks.h>
 #include <tufa/contour.h>
 #include <tufa/fit.h>
+#include <tufa/float_mesh.h>
 #include <tufa/import.h>
 #include <tufa/lod.h>
+#include <tufa/memory.h>
 #include <tufa/rays.h>
 #include <tufa/shapes.h>
 #include <tufa/voxelize.h>
@@ -16,6 +18,9 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "support/expect_error.h"
 #include "support/scratch_folder.h"
@@ -50,6 +55,58 @@ class Misuse : public ::testing::Test {
     expectRefused(part, [&] { (void)buildChunks(*ball, chunks, sink); });
   }
 };
+
+TEST_F(Misuse, OfProgressThatIsNone) {
+  bool (*pointer)(std::string_view, double) = nullptr;
+  const std::function<bool(std::string_view, double)> function;
+  for (const Progress& none : {Progress(pointer), Progress(function), Progress(nullptr)}) {
+    EXPECT_FALSE(none);
+    ContourOptions options;
+    options.progress = none;
+    EXPECT_GT(contour(*ball, options).triangleCount(), 0u);
+  }
+}
+
+TEST_F(Misuse, OfMeshesWhoseIndicesPointNowhere) {
+  Mesh broken = mesh;
+  broken.triangles.at(0).vertices[1] = 1U << 30;
+  Mesh few = mesh;
+  few.normals.resize(1);
+  const auto refused = [](const std::string& part, const Mesh& bad) {
+    LodChain chain;
+    chain.levels.emplace_back().mesh = bad;
+    for (const MeshFormat format : {MeshFormat::Glb, MeshFormat::Usda}) {
+      std::ostringstream stream;
+      expectRefused(part, [&] { writeLods(chain, stream, format); });
+    }
+    expectRefused(part, [&] { (void)toFloat(bad); });
+  };
+  refused("a face names vertex", broken);
+  refused("1 normals", few);
+}
+
+TEST_F(Misuse, OfChunksWhoseIndicesPointNowhere) {
+  ChunkOptions options;
+  options.chunkSize = 16;
+  Chunk chunk;
+  const ChunkIndex index = buildChunks(
+      *ball, options, [&](const ChunkIndex&, Chunk&& each) { chunk = std::move(each); });
+  const auto refused = [&](const char* part, const auto& damage) {
+    Chunk bad = chunk;
+    damage(bad.levels[0]);
+    for (const ChunkFormat format : {ChunkFormat::Glb, ChunkFormat::Ply}) {
+      expectRefused(part, [&] { (void)writeChunk(index, bad, ".", format); });
+    }
+    expectRefused(part, [&] { (void)meshForMask(bad, 0, 0); });
+  };
+  refused("a vertex that is not there",
+          [](ChunkLevel& level) { level.interior.emplace_back(0, 1, 65538); });
+  refused("normals differ", [](ChunkLevel& level) { level.normals.clear(); });
+  refused("not finite", [](ChunkLevel& level) { level.positions[0].x = std::nan(""); });
+  refused("values of an attribute", [](ChunkLevel& level) {
+    level.attributes = {{"a", 2, AttributeRole::Value, {1}}};
+  });
+}
 
 TEST_F(Misuse, OfThreads) {
   for (const int threads : {-1, 4097, 1000000000, std::numeric_limits<int>::max()}) {

@@ -138,6 +138,21 @@ TEST(Filters, ResamplingKeepsThePlaceFarFromTheOrigin) {
   }
 }
 
+// The way to say a half space. Voxels were made of all of it.
+TEST(Filters, ABoxMayBeAsLargeAsItLikes) {
+  const auto grid = makeSphere(1);
+  const auto whole = after(*grid, ClipBox{{-2, -2, -2}, {2, 2, 2}});
+  const auto lower = after(*grid, ClipBox{{-2, -2, -2}, {2, 2, 0}});
+  for (const double far : {1e3, 1e9, 1e20}) {
+    const auto all = after(*grid, ClipBox{{-far, -far, -far}, {far, far, far}});
+    EXPECT_EQ(all->activeVoxelCount(), whole->activeVoxelCount()) << far;
+    EXPECT_EQ(all->activeVoxelCount(), grid->activeVoxelCount()) << far;
+    const auto below = after(*grid, ClipBox{{-far, -far, -far}, {far, far, 0}});
+    EXPECT_EQ(below->activeVoxelCount(), lower->activeVoxelCount()) << far;
+    EXPECT_EQ(after(*grid, ClipBox{{far / 2, 0, 0}, {far, 1, 1}})->activeVoxelCount(), 0u) << far;
+  }
+}
+
 TEST(Filters, ABoxCutsALevelSetOpenUnlessItIsCapped) {
   const auto grid = makeSphere(1);
   const auto half = after(*grid, ClipBox{{-2, -2, -2}, {2, 2, 0}});
@@ -335,6 +350,14 @@ TEST(Labels, MeshesOfAnotherGridShareNoInterfaces) {
   };
   std::vector<Mesh> own = meshes();
   EXPECT_EQ(shareInterfaces(*grid, {3}, own).size(), 1U);
+  own.front().quads.front().vertices[0] = 1U << 30;
+  expectError(ErrorCode::InvalidArgument, "a face names vertex 1073741824",
+              [&] { (void)shareInterfaces(*grid, {3}, own); });
+  own = meshes();
+  own.front().normals.resize(1);
+  expectError(ErrorCode::InvalidArgument, "1 normals",
+              [&] { (void)shareInterfaces(*grid, {3}, own); });
+  own = meshes();
   grid->tree().setValueOn({5, 5, 5}, 4);
   own.front().cells.front() = Coord(100, 0, 0);
   expectError(ErrorCode::InvalidArgument, "mesh of label 3 is not of this grid",

@@ -109,6 +109,19 @@ TEST(GridRays, FogInSlantedVoxelsIsWhereItsMeshIs) {
 }
 
 // OpenVDB's intersector was off by most of a voxel, and missed.
+// A voxel is no step of a ray that begins so far away.
+TEST(GridRays, FromFarAwayComeToAnEnd) {
+  const auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1, {0, 0, 0}, 0.1F);
+  const auto surface = makeRaySurface(grid);
+  for (const double far : {1e4, 1e6, 1e9, 1e15, 1e30}) {
+    const auto hit = castRay(*surface, {{0.01, 0.02, -far}, {0, 0, 1}});
+    if (far > 1e12) continue;  // a hit or none
+    ASSERT_TRUE(hit) << far;
+    EXPECT_NEAR(hit->distance, far - 1, 0.01 + far * 1e-14);
+    EXPECT_NEAR(hit->point.z, -1, 0.01 + far * 1e-14);
+  }
+}
+
 TEST(GridRays, HitLevelSetsFarFromTheirIndexOrigin) {
   for (const int far : {0, 10000, 10000000, 100000000}) {
     const openvdb::Coord centre(far, -far, far);

@@ -8,16 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/require_chunk.h"
 #include "base/vec3.h"
 #include "base/vertex_welder.h"
 
 namespace tufa {
 namespace {
-
-std::string nameOf(const Coord& index) {
-  return "chunk (" + std::to_string(index[0]) + ", " + std::to_string(index[1]) + ", " +
-         std::to_string(index[2]) + ")";
-}
 
 Coord beyond(Coord index, int face) {
   index[face / 2] += face % 2 == 0 ? -1 : 1;
@@ -26,7 +22,7 @@ Coord beyond(Coord index, int face) {
 
 const ChunkLevel& levelOf(const Chunk& chunk, std::size_t level) {
   if (level < chunk.levels.size()) return chunk.levels[level];
-  throw Error(ErrorCode::InvalidArgument, nameOf(chunk.index) + " has " +
+  throw Error(ErrorCode::InvalidArgument, base::chunkText(chunk.index) + " has " +
                                               std::to_string(chunk.levels.size()) +
                                               " levels and no level " + std::to_string(level));
 }
@@ -196,7 +192,7 @@ std::map<VertexIndex, VertexIndex> verticesAt(const Chunk& chunk, std::size_t lo
         const VertexIndex v = seam.vertices[n];
         if (i < coarse && (n >= seam.next.size() || !at.contains(placeOf(seam.next[n])))) {
           throw Error(ErrorCode::InvalidArgument,
-                      nameOf(chunk.index) + " has seams at level " + std::to_string(i) +
+                      base::chunkText(chunk.index) + " has seams at level " + std::to_string(i) +
                           " that do not lead to those of the next level");
         }
         const VertexIndex last = i == coarse ? vertices[v] : at.at(placeOf(seam.next[n]));
@@ -209,33 +205,6 @@ std::map<VertexIndex, VertexIndex> verticesAt(const Chunk& chunk, std::size_t lo
   return becomes;
 }
 
-/// Throws Error(InvalidArgument) unless all that an LOD indexes is there, and every curve has two
-/// ends.
-void requireSound(const Chunk& chunk, std::size_t number) {
-  const ChunkLevel& level = levelOf(chunk, number);
-  const std::size_t count = level.positions.size();
-  bool isSound = level.normals.size() == count;
-  const auto look = [&](const std::vector<Triangle>& triangles) {
-    for (const Triangle& t : triangles) {
-      for (const VertexIndex v : t.vertices) isSound &= v < count;
-    }
-  };
-  look(level.interior);
-  for (std::size_t face = 0; face < kChunkFaces; ++face) {
-    look(level.regular[face]);
-    look(level.transition[face]);
-    for (const ChunkSeam& seam : level.seams[face]) {
-      isSound &= seam.vertices.size() >= 2;
-      for (const VertexIndex v : seam.vertices) isSound &= v < count;
-    }
-  }
-  if (isSound) return;
-  throw Error(ErrorCode::InvalidArgument,
-              nameOf(chunk.index) + " is not sound at level " + std::to_string(number) +
-                  ": a position has no normal, a triangle or a seam a vertex that is not there, or "
-                  "a seam fewer than two");
-}
-
 /// Adds the strip on `face` of a chunk at LOD `lod` towards a neighbour at LOD `coarse`: that to
 /// the next LOD, and what lies in the face between the curves of that and of the neighbour.
 void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, std::size_t face,
@@ -246,7 +215,7 @@ void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, st
   const bool hasStrips = !next.regular[face].empty() || !next.transition[face].empty();
   if (next.seams[face].empty() ? hasStrips : next.seams[face].size() != other.seams[face].size()) {
     throw Error(ErrorCode::InvalidArgument,
-                nameOf(chunk.index) + " has no seams: it cannot be drawn at level " +
+                base::chunkText(chunk.index) + " has no seams: it cannot be drawn at level " +
                     std::to_string(lod) + " beside a chunk at level " + std::to_string(coarse));
   }
   const std::map<VertexIndex, VertexIndex> becomes = verticesAt(chunk, lod + 1, coarse, face, weld);
@@ -279,11 +248,11 @@ std::ptrdiff_t ChunkIndex::neighbour(std::size_t chunk, int face) const {
 
 Mesh meshForMask(const Chunk& chunk, std::size_t level, unsigned mask) {
   const ChunkLevel& own = levelOf(chunk, level);
-  requireSound(chunk, level);
+  base::requireSound(chunk, level);
   if (mask >= 1u << kChunkFaces || (mask != 0 && level + 1 == chunk.levels.size())) {
-    throw Error(ErrorCode::InvalidArgument, nameOf(chunk.index) + " has no strips for mask " +
-                                                std::to_string(mask) + " at level " +
-                                                std::to_string(level));
+    throw Error(ErrorCode::InvalidArgument, base::chunkText(chunk.index) +
+                                                " has no strips for mask " + std::to_string(mask) +
+                                                " at level " + std::to_string(level));
   }
   Mesh mesh;
   mesh.triangles = own.interior;
@@ -324,10 +293,10 @@ Mesh assembleChunks(const std::vector<Chunk>& chunks, const std::vector<std::siz
   std::map<Coord, std::size_t> lodAt;
   for (std::size_t i = 0; i < chunks.size(); ++i) {
     if (!lodAt.emplace(chunks[i].index, lods[i]).second) {
-      throw Error(ErrorCode::InvalidArgument, nameOf(chunks[i].index) + " is there twice");
+      throw Error(ErrorCode::InvalidArgument, base::chunkText(chunks[i].index) + " is there twice");
     }
     for (std::size_t level = 0; level < chunks[i].levels.size(); ++level) {
-      requireSound(chunks[i], level);
+      base::requireSound(chunks[i], level);
     }
   }
   Mesh mesh;

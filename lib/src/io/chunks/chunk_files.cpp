@@ -14,6 +14,7 @@
 
 #include "base/checksum.h"
 #include "base/known_enum.h"
+#include "base/require_chunk.h"
 #include "base/single_precision.h"
 #include "io/chunks/chunk_parts.h"
 #include "io/gltf/glb_document.h"
@@ -217,6 +218,7 @@ std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk& chunk,
     const ChunkLevel& level = chunk.levels[number];
     ChunkFile& made = files.emplace_back();
     if (triangleCount(level) == 0) continue;
+    base::requireSound(chunk, number);
     io::requireSoundAttributes(level.attributes, level.positions.size(),
                                format == ChunkFormat::Glb);
     made.name = io::chunkName(chunk.index, number) + (format == ChunkFormat::Glb ? ".glb" : ".ply");

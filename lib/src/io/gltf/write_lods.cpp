@@ -8,6 +8,7 @@
 #include "base/braces.h"
 #include "base/job.h"
 #include "base/known_enum.h"
+#include "base/require_mesh.h"
 #include "io/gltf/glb.h"
 #include "io/gltf/glb_document.h"
 #include "io/mesh/file_attributes.h"
@@ -281,6 +282,11 @@ template <class Work>
 void runWriter(const LodChain& chain, const LodWriteOptions& options, LodWriteReport* report,
                Work&& work) {
   requireInRange(options);
+  for (const Lod& lod : chain.levels) {
+    base::requireFaces(lod.mesh);
+    base::requireFinite(lod.mesh);
+    base::requireNormals(lod.mesh);
+  }
   LodWriteReport found;
   base::runIsolated([&] {
     LodWriter writer(chain, options, found);

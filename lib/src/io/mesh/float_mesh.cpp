@@ -6,6 +6,7 @@
 
 #include "base/known_enum.h"
 #include "base/require_at_most.h"
+#include "base/require_mesh.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
@@ -36,6 +37,9 @@ void addFace(const Face& face, Winding winding, FloatMesh& out) {
 
 FloatMesh toFloat(const Mesh& mesh, const FloatMeshOptions& options) {
   base::requireKnown(options.winding, Winding::Clockwise, "the winding");
+  base::requireFaces(mesh);
+  base::requireFinite(mesh);
+  base::requireNormals(mesh);
   constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
   const std::uint64_t corners =
       4 * std::uint64_t{mesh.quads.size()} + 3 * std::uint64_t{mesh.triangles.size()};

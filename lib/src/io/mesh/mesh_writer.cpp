@@ -107,10 +107,7 @@ void requireSound(const MeshPart& part, MeshFormat format) {
   base::requireFinite(mesh);
   if (hasFloatsOnly(format)) requireFloatRange(mesh);
   requireSoundAttributes(mesh.attributes, mesh.positions.size(), format == MeshFormat::Glb);
-  if (mesh.normals.empty() || mesh.normals.size() == mesh.positions.size()) return;
-  throw Error(ErrorCode::InvalidArgument, "the mesh has " + std::to_string(mesh.normals.size()) +
-                                              " normals for " +
-                                              std::to_string(mesh.positions.size()) + " positions");
+  base::requireNormals(mesh);
 }
 
 bool splits(const MeshPart& part, const WriteOptions& options) {

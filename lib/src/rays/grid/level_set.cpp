@@ -45,6 +45,13 @@ class LevelSetSurface final : public RaySurface {
   Intersector intersector_;
 };
 
+// How far a ray may be followed before a surface begins; 0 unless it comes from far away.
+double wayTo(const base::Box& bounds, const UnitRay& ray) {
+  constexpr double kFar = 1e3;
+  const double size = bounds.size().length(), away = (bounds.centre() - ray.origin).length();
+  return away > kFar * size ? std::max(0.0, away - 2 * size) : 0;
+}
+
 template <class GridT>
 class LevelSetCaster final : public Caster {
  public:
@@ -53,16 +60,19 @@ class LevelSetCaster final : public Caster {
 
   [[nodiscard]] std::optional<RayHit> cast(const UnitRay& ray) override {
     using OpenVdbRay = typename LevelSetSurface<GridT>::Intersector::RayType;
-    // The intersector takes neither 0 nor infinity.
-    const double least = std::max(ray.least, openvdb::math::Delta<double>::value());
+    // From far away a voxel is no step that the intersector can make: it would not come to an end.
+    const double skipped = wayTo(surface_.bounds(), ray);
+    // It takes neither 0 nor infinity.
+    const double least = std::max(ray.least - skipped, openvdb::math::Delta<double>::value());
     constexpr double kMost = 1e30;
-    const double greatest = std::min(ray.greatest, kMost);
+    const double greatest = std::min(ray.greatest - skipped, kMost);
     if (!(least < greatest)) return std::nullopt;
-    const OpenVdbRay openVdbRay(grid::toVdb(ray.origin), grid::toVdb(ray.direction), least,
+    const OpenVdbRay openVdbRay(grid::toVdb(ray.at(skipped)), grid::toVdb(ray.direction), least,
                                 greatest);
     openvdb::Vec3d place;
     double distance = 0;
     if (!intersector_.intersectsWS(openVdbRay, place, distance)) return std::nullopt;
+    distance += skipped;
     const Vec3 point(place.x(), place.y(), place.z());
     const Vec3 index = surface_.transform().worldToIndex(point);
     return RayHit{distance, point, normalAt(values_, surface_.affine(), index, true)};
