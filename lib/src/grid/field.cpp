@@ -17,7 +17,13 @@ constexpr double kUnitTolerance = 0.2;
 constexpr std::size_t kSampledLeaves = 512;
 
 openvdb::math::Mat3d linearPart(const openvdb::math::Transform& transform) {
-  return transform.baseMap()->getAffineMap()->getMat4().getMat3().transpose();
+  openvdb::math::Mat3d columns;
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d unit(0);
+    unit[axis] = 1;
+    columns.setCol(axis, transform.baseMap()->applyJacobian(unit));
+  }
+  return columns;
 }
 
 // Some of the leaves, all over the tree.

@@ -24,10 +24,10 @@ Vec3 Transform::worldToIndex(const Vec3& world) const {
 
 base::Lattice Transform::lattice() const {
   base::Lattice lattice{fromVdb(transform_->indexToWorld(openvdb::Vec3d(0))), {}};
-  // Not by applyJacobian(), which loses the digits of the translation.
-  const openvdb::Mat4d matrix = transform_->baseMap()->getAffineMap()->getMat4();
   for (int axis = 0; axis < 3; ++axis) {
-    lattice.steps[axis] = Vec3(matrix[axis][0], matrix[axis][1], matrix[axis][2]);
+    openvdb::Vec3d unit(0);
+    unit[axis] = 1;
+    lattice.steps[axis] = fromVdb(transform_->baseMap()->applyJacobian(unit));
   }
   return lattice;
 }
