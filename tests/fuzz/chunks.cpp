@@ -47,6 +47,7 @@ tufa::ChunkOptions optionsFrom(Source& source) {
   options.contour.cap = source.coin();
   options.contour.repair = source.coin();
   options.contour.tolerance = source.next() / 64.0;
+  if (options.contour.tolerance == 0) options.levels = 1;  // no other can follow
   options.contour.threads = 1;
   return options;
 }
