@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/atomic_bits.h"
+#include "base/collect.h"
 #include "base/connected.h"
 #include "reduce/box3f.h"
 #include "reduce/map_degree.h"
@@ -223,20 +225,45 @@ class Finder {
       isUncovered[componentOf(t)] = 1;
     }
     if (uncovered.triangles.empty()) return uncovered;
-    std::vector<std::uint8_t> hasFaces(componentOf_.size(), 0);
-    for (Index face = 0; face < reference_.faceCount(); ++face) {
+    uncovered.faces = facesWithin(reach_, uncovered.triangles, [&](Index face) {
       const Index t = owner_[reference_.vertices(face)[0]];
-      if (t == kNone || isUncovered[componentOf(t)] == 0) continue;
-      uncovered.faces.push_back(face);
-      hasFaces[componentOf(t)] = 1;
-    }
-    const bool isLost = std::any_of(uncovered.triangles.begin(), uncovered.triangles.end(),
-                                    [&](Index t) { return hasFaces[componentOf(t)] == 0; });
-    if (isLost) {  // no face goes to some component: all of the reference must do
+      return t != kNone && isUncovered[componentOf(t)] != 0;
+    });
+    if (uncovered.faces.empty()) {  // some triangle is farther: all of the reference must do
       uncovered.faces.resize(reference_.faceCount());
       std::iota(uncovered.faces.begin(), uncovered.faces.end(), Index{0});
     }
     return uncovered;
+  }
+
+  // The faces, of those wanted, whose boxes are within `reach` of the boxes of some triangles; none
+  // if one of these has none.
+  template <class IsWanted>
+  [[nodiscard]] std::vector<Index> facesWithin(float reach, const std::vector<Index>& triangles,
+                                               const IsWanted& isWanted) const {
+    std::vector<base::Box> boxes;
+    for (const Index t : triangles) {
+      base::Box& box = boxes.emplace_back(base::Box::empty());
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 p(overlay_.surface.corner(t, i));
+        box.add(p - Vec3(reach, reach, reach)), box.add(p + Vec3(reach, reach, reach));
+      }
+    }
+    const base::Bvh tree(std::move(boxes), job_);
+    base::AtomicBits isMet(triangles.size());
+    std::vector<Index> faces = base::collectIf(job_, reference_.faceCount(), [&](Index face) {
+      if (!isWanted(face)) return false;
+      base::Box box = base::Box::empty();
+      for (const Vec3f& p : reference_.cornersOf(face)) box.add(Vec3(p));
+      bool isNear = false;
+      tree.itemsMeeting(box,
+                        [&](std::uint32_t i, const base::Box&) { isMet.add(i), isNear = true; });
+      return isNear;
+    });
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      if (!isMet.has(i)) return {};
+    }
+    return faces;
   }
 
   const OverlaySurface& overlay_;

@@ -23,7 +23,9 @@ namespace tufa::reduce {
 /// these.
 struct Uncovered {
   std::vector<Index> triangles;
-  std::vector<Index> faces;  ///< those of the reference that go to these components
+  /// Those of the reference that go to these components and are within twice the expected distance
+  /// of one of the triangles; all, if that leaves a triangle without.
+  std::vector<Index> faces;
 };
 
 /// What certify() measures.
