@@ -31,8 +31,8 @@ TUFA_API std::vector<ChunkFile> writeChunk(const ChunkIndex& index, const Chunk&
 
 /// Writes chunks.json. The index is that of buildChunks(), with the ChunkFile that writeChunk()
 /// gave for each LOD put into its ChunkLevelEntry: readChunk() needs them. Throws Error:
-/// UnwritableFile, InvalidArgument for an index without levels, which readChunkIndex() would
-/// refuse.
+/// UnwritableFile, InvalidArgument for an index that readChunkIndex() would refuse: one without
+/// levels, unsorted, with numbers that are not finite, with files outside the folder.
 TUFA_API void writeChunkIndex(const ChunkIndex& index, const std::string& folder);
 
 /// A folder that gets chunks all together: until commit(), and if that never comes, it holds what

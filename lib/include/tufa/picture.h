@@ -63,8 +63,8 @@ struct SurfaceComparison {
 /// Compares what is seen of two surfaces, by a ray through the middle of each pixel. Where one
 /// alone is seen, the pixel differs if rays moved sideways by `tolerance`, in world units, do not
 /// meet the other either; where both are seen, if their depths differ by more than that across the
-/// surface, and such rays find neither near the other. The view is fitted to the first. Throws
-/// Error as takePicture() does.
+/// surface, and such rays find neither near the other. The view is fitted to the first, unless that
+/// is empty. Throws Error as takePicture() does.
 [[nodiscard]] TUFA_API SurfaceComparison compareSurfaces(const RaySurface& a, const RaySurface& b,
                                                          double tolerance,
                                                          const PictureOptions& options = {});

@@ -102,7 +102,7 @@ SurfaceComparison compareSurfaces(const RaySurface& a, const RaySurface& b, doub
   base::Job job(options.threads, options.progress);
   std::array<std::atomic<std::size_t>, 4> counts{};
   job.run([&] {
-    const rays::Camera camera(a, options);
+    const rays::Camera camera(a.bounds().isEmpty() ? b : a, options);
     job.beginStage("rays", 1);
     const auto rows = static_cast<std::size_t>(options.height);
     job.forRanges(rows, 1, [&](std::size_t begin, std::size_t end) {

@@ -314,6 +314,17 @@ TEST_F(ChunkFiles, HaveNoChunkBeyondTheLast) {
 TEST_F(ChunkFiles, IndexThatCannotBeReadIsNotWritten) {
   test::expectError(ErrorCode::InvalidArgument, "has no levels",
                     [&] { writeChunkIndex(ChunkIndex(), name); });
+  const auto expectRefused = [&](const char* part, auto&& change) {
+    ChunkIndex bad = index;
+    change(bad);
+    test::expectError(ErrorCode::InvalidArgument, part, [&] { writeChunkIndex(bad, name); });
+  };
+  expectRefused("a number is missing", [](ChunkIndex& bad) { bad.voxelSize = std::nan(""); });
+  expectRefused("a number is missing", [](ChunkIndex& bad) { bad.origin.y = std::nan(""); });
+  expectRefused("metres are not above 0", [](ChunkIndex& bad) { bad.scale = 0; });
+  expectRefused("not sorted", [](ChunkIndex& bad) { std::swap(bad.chunks[0], bad.chunks[1]); });
+  expectRefused("its name alone", [](ChunkIndex& bad) { bad.chunks[0].levels[0].file = "../a"; });
+  EXPECT_FALSE(std::filesystem::exists(folder / "chunks.json"));
 }
 
 TEST_F(ChunkFiles, IndexTellsTheNeighbours) {
@@ -477,6 +488,14 @@ TEST_F(ChunkFolders, AreReplacedWholeOrNotAtAll) {
   EXPECT_EQ(names().size(), 8U);
   for (const std::string& file : names()) EXPECT_FALSE(file.ends_with(".glb")) << file;
   EXPECT_TRUE(names().contains("notes.txt"));
+}
+
+TEST_F(ChunkFolders, HoldNoFilesOfChunksThatTheIndexLeavesOut) {
+  ChunkFolder to(place);
+  add(to, 0), add(to, 1);
+  ChunkIndex one = indexOfOne(1);
+  to.commit(one);
+  EXPECT_EQ(names().size(), 1 + one.chunks[0].levels.size());
 }
 
 TEST_F(ChunkFolders, KeepTheOtherChunksWhereThatIsAskedFor) {

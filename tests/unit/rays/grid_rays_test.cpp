@@ -106,6 +106,9 @@ TEST(GridRays, FogInSlantedVoxelsIsWhereItsMeshIs) {
   EXPECT_LT(same.share(), 0.0005);
   picture.view.fieldOfView = 50;
   EXPECT_LT(compareSurfaces(*fog, *mesh, 0.03, picture).share(), 0.0005);
+  const auto none = makeRaySurface(Mesh{});
+  EXPECT_EQ(compareSurfaces(*fog, *none, 0.03, picture).share(), 1);
+  EXPECT_EQ(compareSurfaces(*none, *fog, 0.03, picture).share(), 1);
 }
 
 // OpenVDB's intersector was off by most of a voxel, and missed.

@@ -138,6 +138,7 @@ class ChunkFolder::Writer {
     nameFiles(index);
     ChunkIndex written = index;
     if (keepsOthers) keepOthers(written, folder_);
+    removeUnnamed(index);
     writeChunkIndex(written, staged().path());
     const std::vector<std::filesystem::path> old = filesLeftOver(folder_, written);
     staged().commit(kIndexName);
@@ -179,6 +180,19 @@ class ChunkFolder::Writer {
       for (std::size_t i = 0; i < chunk.levels.size(); ++i) {
         chunk.levels[i].file = made->second[i].name;
         chunk.levels[i].checksum = made->second[i].checksum;
+      }
+    }
+  }
+
+  // Files of chunks that were taken out of the index again.
+  void removeUnnamed(const ChunkIndex& index) {
+    const std::vector<std::string> named = filesOf(index);
+    for (const auto& [place, made] : files_) {
+      for (const ChunkFile& file : made) {
+        if (file.name.empty() || std::binary_search(named.begin(), named.end(), file.name))
+          continue;
+        std::error_code ignored;
+        std::filesystem::remove(std::filesystem::path(staged().path()) / file.name, ignored);
       }
     }
   }

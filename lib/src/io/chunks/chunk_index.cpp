@@ -3,6 +3,7 @@
 #include <tufa/chunk_files.h>
 #include <tufa/chunks.h>
 #include <tufa/error.h>
+#include <tufa/memory.h>
 
 #include <algorithm>
 #include <array>
@@ -230,12 +231,18 @@ class IndexReader {
   const io::InputBytes& input_;
 };
 
+// What a file says.
+ChunkIndex indexIn(const io::InputBytes& input) {
+  try {
+    return IndexReader(input).read();
+  } catch (const Json::exception& error) {
+    input.fail(std::string("its JSON is damaged: ") + error.what());
+  }
+}
+
 }  // namespace
 
 void writeChunkIndex(const ChunkIndex& index, const std::string& folder) {
-  if (index.tolerances.empty()) {
-    throw Error(ErrorCode::InvalidArgument, "the index of chunks has no levels");
-  }
   std::string text = textOf(headOf(index));
   text.back() = ',';
   text += "\"chunks\":[";
@@ -243,18 +250,19 @@ void writeChunkIndex(const ChunkIndex& index, const std::string& folder) {
     text += (i == 0 ? "\n" : ",\n") + textOf(toJson(index, i));
   }
   text += "]}\n";
+  try {
+    (void)indexIn(io::InputBytes(FileBytes{text, "the index of chunks"}));
+  } catch (const Error& error) {
+    throw Error(ErrorCode::InvalidArgument,
+                std::string("no file is written that could not be read again: ") + error.what());
+  }
   io::OutputFile file(io::chunkIndexFile(folder));
   file.write(text.data(), text.size());
   file.commit();
 }
 
 ChunkIndex readChunkIndex(const std::string& folder) {
-  const io::InputBytes input(io::chunkIndexFile(folder));
-  try {
-    return IndexReader(input).read();
-  } catch (const Json::exception& error) {
-    input.fail(std::string("its JSON is damaged: ") + error.what());
-  }
+  return indexIn(io::InputBytes(io::chunkIndexFile(folder)));
 }
 
 }  // namespace tufa

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/known_enum.h"
+#include "base/number_text.h"
 #include "io/grid/raw_slices.h"
 
 namespace tufa {
@@ -29,6 +30,11 @@ std::optional<RawType> rawTypeByName(std::string_view name) {
 std::shared_ptr<openvdb::GridBase> importRaw(const std::vector<std::filesystem::path>& files,
                                              const RawImport& options) {
   base::requireKnown(options.type, RawType::F32, "the type of values");
+  for (const double length : options.spacing) {
+    if (length > 0) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                "the spacing must be above 0, not " + base::numberText(length));
+  }
   ImageSlices image;
   image.size = options.size;
   image.steps = {Position(options.spacing[0], 0, 0), Position(0, options.spacing[1], 0),
