@@ -130,6 +130,14 @@ void noteFloats(const std::string& what) {
   printNote("note: " + what + " is stored in floats: 16 bits do not tell all its vertices apart");
 }
 
+void noteRounding(double rounding, double voxelSize) {
+  constexpr double kSeen = 0.01;
+  if (!(rounding > kSeen * voxelSize)) return;
+  printNote("note: the file has single precision, which moves vertices by up to " +
+            shortNumber(rounding / voxelSize) +
+            " voxels beyond the certified error; .ply, .obj and .off have double precision");
+}
+
 void addContourOptions(CLI::App& app, ContourOptions& options, std::optional<std::string>& isovalue,
                        bool methods) {
   addIsovalueOption(app, isovalue);

@@ -34,6 +34,8 @@ void requestStop(int signal) {
 void installSignalHandlers() {
   std::signal(SIGINT, requestStop);
   std::signal(SIGTERM, requestStop);
+  // A terminal that is closed; nohup has it ignored.
+  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }

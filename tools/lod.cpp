@@ -34,6 +34,7 @@ int judge(const LodRun& run) {
   for (const std::size_t level : run.written.floatLevels) {
     noteFloats("level " + std::to_string(level));
   }
+  noteRounding(run.written.rounding, run.chain.voxelSize);
   int exitCode = kDone;
   for (std::size_t level = 0; level < run.checks.size(); ++level) {
     if (run.checks[level].watertight()) continue;

@@ -3,6 +3,7 @@
 #include <tufa/error.h>
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -26,6 +27,9 @@ using Json = nlohmann::ordered_json;
 int judge(const MeshRun& run) {
   int exitCode = kDone;
   for (const std::string& name : run.written.floatMeshes) noteFloats("mesh \"" + name + "\"");
+  double voxelSize = std::numeric_limits<double>::infinity();
+  for (const GridRun& grid : run.grids) voxelSize = std::min(voxelSize, grid.voxelSize);
+  noteRounding(run.written.rounding, voxelSize);
   for (const GridRun& grid : run.grids) {
     noteData(grid.contour, grid.filters.reports.empty() ? nullptr : &grid.mesh);
     if (!grid.check || grid.check->watertight()) continue;

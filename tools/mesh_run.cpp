@@ -46,6 +46,7 @@ void meshVolume(const MeshArguments& arguments, std::shared_ptr<openvdb::GridBas
       arguments.labels ? kOfLabels : readIsovalue(arguments.isovalue, *grid, arguments.input);
   grid = filterVolume(grid, arguments.input, arguments.filters, options, bar, run.filters);
   if (!arguments.allowEmpty) requireLeft(*grid, arguments.input, run.filters);
+  run.voxelSize = voxelSizeOf(*grid);
   options.tolerance = readTolerance("--tolerance", arguments.tolerance, *grid);
   if (arguments.toleranceGrid) {
     options.toleranceGrid = readToleranceGrid(arguments.input, *arguments.toleranceGrid);
@@ -166,6 +167,7 @@ void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
       for (std::string& name : written.floatMeshes) {
         run.written.floatMeshes.push_back(std::move(name));
       }
+      run.written.rounding = std::max(run.written.rounding, written.rounding);
     }
     return;
   }

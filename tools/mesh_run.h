@@ -63,6 +63,7 @@ struct GridRun {
   std::string grid;
   std::vector<std::string> united;  ///< the grids that it is the union of, if it is one
   std::string output;               ///< the file it went into
+  double voxelSize = 1;             ///< world units
   FilterRun filters;
   Mesh mesh;
   ContourReport contour;

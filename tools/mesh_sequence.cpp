@@ -49,11 +49,16 @@ bool isOneFile(const MeshArguments& arguments) {
          meshFormat(arguments.output, arguments.format) == MeshFormat::Usda;
 }
 
+/// What a link stands for, as for other files that are written.
+std::filesystem::path behindLinks(std::filesystem::path path) {
+  return std::filesystem::is_symlink(path) ? std::filesystem::weakly_canonical(path) : path;
+}
+
 /// The one file of all frames, while it is made: the frames' own files are in a folder beside it.
 class OneFile {
  public:
   explicit OneFile(std::filesystem::path output)
-      : output_(std::move(output)),
+      : output_(behindLinks(std::move(output))),
         staged_(output_.has_parent_path() ? output_.parent_path() : std::filesystem::path(".")) {
     std::filesystem::create_directory(folder());
   }

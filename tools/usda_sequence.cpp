@@ -93,6 +93,15 @@ class Frames {
   void addValue(SampledMesh& mesh, std::string_view line, std::uint64_t begin, std::size_t frame) {
     const std::size_t equals = line.find(" = ");
     const std::string_view declaration = line.substr(0, equals), value = line.substr(equals + 3);
+    const auto nameOf = [](std::string_view text) { return text.substr(text.rfind(' ') + 1); };
+    for (const SampledAttribute& other : mesh.attributes) {
+      if (other.declaration == declaration || nameOf(other.declaration) != nameOf(declaration)) {
+        continue;
+      }
+      throw Error(ErrorCode::InvalidArgument,
+                  "one .usda cannot hold " + other.declaration + " and, in frame " +
+                      std::to_string(frames_[frame].number) + ", " + std::string(declaration));
+    }
     auto attribute = std::find_if(
         mesh.attributes.begin(), mesh.attributes.end(),
         [&](const SampledAttribute& other) { return other.declaration == declaration; });

@@ -35,6 +35,10 @@ void addCompressionOptions(CLI::App& app, GlbCompression& compression);
 /// Says on standard error that something could not be quantized.
 void noteFloats(const std::string& what);
 
+/// Says on standard error that single precision has moved vertices, world units, by more than a
+/// hundredth of a voxel.
+void noteRounding(double rounding, double voxelSize);
+
 /// Declares `--nan` alone.
 void addNonFiniteOption(CLI::App& app, NonFinite& nonFinite);
 

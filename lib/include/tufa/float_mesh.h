@@ -34,7 +34,7 @@ struct FloatMesh {
 /// Copies a mesh into arrays for hosts. Its attributes are such arrays already: Attribute::values.
 /// Throws Error: InvalidArgument for a position that is not finite, a face that names no vertex,
 /// and normals that are not one for each position; LimitExceeded if an int cannot count the
-/// positions or the corners.
+/// positions or the corners, and for positions that no float is near.
 [[nodiscard]] TUFA_API FloatMesh toFloat(const Mesh& mesh, const FloatMeshOptions& options = {});
 
 }  // namespace tufa

@@ -4,6 +4,7 @@
 #include <tufa/openvdb_fwd.h>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,7 +26,8 @@ struct GridInfo {
   std::size_t memoryBytes = 0;      ///< of the grid's tree
   int boundsMin[3] = {0, 0, 0};     ///< first index of the active voxels' bounding box
   int boundsMax[3] = {0, 0, 0};     ///< last index of it
-  double background = 0;            ///< value where the tree holds none
+  /// Value where the tree holds none; NaN in grids that are neither of float nor of double.
+  double background = std::numeric_limits<double>::quiet_NaN();
   std::optional<double> minValue;   ///< of the active values that are finite
   std::optional<double> maxValue;   ///< of the active values that are finite
   std::size_t nonFiniteValues = 0;  ///< NaN or infinite active values

@@ -73,6 +73,9 @@ struct WriteOptions {
 /// What write() and writeMeshes() wrote.
 struct WriteReport {
   std::vector<std::string> floatMeshes;  ///< names of those that could not be quantized
+  /// How far a position was moved at most where a format stores floats (.stl, .glb without
+  /// compression or where floatMeshes are, .usda), world units: what errors may be larger by.
+  double rounding = 0;
 };
 
 /// A mesh and its name in a file.
@@ -94,7 +97,8 @@ struct NamedMesh {
 ///
 /// Throws Error: UnwritableFile, InvalidArgument (unknown ending, an option out of its range),
 /// LimitExceeded (more than the format can hold; positions that no float is near, but for .ply,
-/// .obj and .off; an .stl whose single precision turns triangles over), Cancelled.
+/// .obj and .off; an .stl, .glb or .usda whose single precision turns triangles over, or moves
+/// positions by more than a twentieth of an edge in the mean), Cancelled.
 TUFA_API void write(const Mesh& mesh, const std::filesystem::path& path,
                     const WriteOptions& options = {}, WriteReport* report = nullptr);
 
@@ -123,7 +127,8 @@ TUFA_API void requireWritable(const std::filesystem::path& path);
 TUFA_API void writeFile(std::string_view bytes, const std::filesystem::path& path);
 
 /// The same, of what `writeTo` puts into a stream. What it throws passes through, and leaves no
-/// file; the stream throws Error itself, so that its state need not be asked.
+/// file; the stream throws Error where writing fails, and a stream that has failed otherwise when
+/// `writeTo` returns makes no file either, so that its state need not be asked.
 TUFA_API void writeFile(const std::function<void(std::ostream&)>& writeTo,
                         const std::filesystem::path& path);
 

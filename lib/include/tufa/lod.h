@@ -115,6 +115,7 @@ struct LodWriteReport {
   /// Vertices of each LOD; in a .glb, with those that creases add.
   std::vector<std::size_t> vertices;
   std::vector<std::size_t> floatLevels;  ///< LODs that could not be quantized
+  double rounding = 0;                   ///< see WriteReport::rounding
 };
 
 /// The file of an LOD: `path` with braces {} in its file name replaced by the LOD's number, or
@@ -135,7 +136,7 @@ struct LodWriteReport {
 ///
 /// Each file appears whole or not at all. Throws Error: UnwritableFile, InvalidArgument (an option
 /// out of its range, one file of a format without LODs), LimitExceeded (more than the format can
-/// hold, or vertices too near to each other for single precision), Cancelled.
+/// hold, or than single precision does, as in write()), Cancelled.
 TUFA_API void writeLods(const LodChain& chain, const std::filesystem::path& path,
                         const LodWriteOptions& options = {}, LodWriteReport* report = nullptr);
 

@@ -28,7 +28,18 @@ inline std::string roughNumberText(double value) {
   return error == std::errc() ? std::string(text.data(), end) : numberText(value);
 }
 
-/// The same of an estimate that is above a limit, or its whole number where three digits are not.
+/// Three significant digits, with an exponent where that is shorter: for what may be tiny.
+inline std::string shortNumberText(double value) {
+  std::array<char, 32> text;
+  constexpr int kDigits = 3;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::general, kDigits)
+                       .ptr;
+  return {text.data(), end};
+}
+
+/// The same as roughNumberText(), of an estimate that is above a limit, or its whole number where
+/// three digits are not.
 inline std::string roughNumberAbove(double value, double limit) {
   const double step = std::pow(10, std::floor(std::log10(std::abs(value))) - 2);
   return std::round(value / step) * step > limit ? roughNumberText(value)

@@ -88,6 +88,18 @@ void InputBytes::failAtLine(std::size_t line, const std::string& cause) const {
   fail("line " + std::to_string(line) + ": " + cause);
 }
 
+std::string_view withoutMark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+TextCursor::TextCursor(const InputBytes& input, std::size_t offset, std::size_t firstLine)
+    : input_(input),
+      rest_(offset == 0 ? withoutMark(input.view()) : input.view().substr(offset)),
+      lineEnd_(rest_.find('\n') == std::string_view::npos ? '\r' : '\n'),
+      nextLine_(firstLine),
+      line_(firstLine) {}
+
 bool TextCursor::nextLine(bool continued) {
   if (rest_.empty()) {
     words_ = {};
@@ -95,8 +107,10 @@ bool TextCursor::nextLine(bool continued) {
   }
   line_ = nextLine_;
   joined_.clear();
+  const std::size_t start = rest_.find_first_not_of(kBlanks);
+  if (start != std::string_view::npos && rest_[start] == '#') continued = false;
   while (true) {
-    const std::size_t length = std::min(rest_.find('\n'), rest_.size());
+    const std::size_t length = std::min(rest_.find(lineEnd_), rest_.size());
     std::string_view line = rest_.substr(0, length);
     rest_.remove_prefix(std::min(length + 1, rest_.size()));
     ++nextLine_;

@@ -40,14 +40,17 @@ class InputBytes {
   std::string_view view_;
 };
 
+/// A text without the mark that says that it is UTF-8.
+[[nodiscard]] std::string_view withoutMark(std::string_view text);
+
 /// Reads text line by line and word by word, and knows the number of the line.
 class TextCursor {
  public:
-  TextCursor(const InputBytes& input, std::size_t offset, std::size_t firstLine)
-      : input_(input), rest_(input.view().substr(offset)), nextLine_(firstLine), line_(firstLine) {}
+  /// Lines end in \n or \r\n, or in \r where the text has no \n.
+  TextCursor(const InputBytes& input, std::size_t offset, std::size_t firstLine);
 
   /// Moves to the next line; false at the end of the file. `continued` joins lines that end in a
-  /// backslash with the ones below.
+  /// backslash with the ones below, but comments.
   bool nextLine(bool continued = false);
 
   /// Moves to the next line that has words before any '#'.
@@ -72,7 +75,8 @@ class TextCursor {
 
  private:
   const InputBytes& input_;
-  std::string_view rest_;   ///< below the current line
+  std::string_view rest_;  ///< below the current line
+  char lineEnd_;
   std::string_view words_;  ///< of the current line, not read yet
   std::string joined_;      ///< holds a line that was continued
   std::size_t nextLine_;

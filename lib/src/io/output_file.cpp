@@ -229,6 +229,11 @@ void writeFile(const std::function<void(std::ostream&)>& writeTo,
   std::ostream stream(&buffer);
   stream.exceptions(std::ios::badbit);
   writeTo(stream);
+  // As after a seek that the file does not know: what came then was not written.
+  if (!stream) {
+    throw Error(ErrorCode::UnwritableFile,
+                "cannot write " + path.string() + ": something failed on the stream");
+  }
   file.commit();
 }
 

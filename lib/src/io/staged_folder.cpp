@@ -31,7 +31,10 @@ StagedFolder::StagedFolder(std::filesystem::path folder)
   constexpr int kAttempts = 1000;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const auto candidate = folder_ / (stem + std::to_string(attempt) + ".tmp");
-    if (!makeFolder(candidate)) continue;  // never into a folder that someone else made
+    // Never into what someone else made, or a process of the same number left behind.
+    std::error_code ignored;
+    const auto status = std::filesystem::symlink_status(candidate, ignored);
+    if (std::filesystem::exists(status) || !makeFolder(candidate)) continue;
     staging_ = candidate;
     return;
   }

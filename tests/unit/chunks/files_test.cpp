@@ -498,6 +498,19 @@ TEST_F(ChunkFolders, HoldNoFilesOfChunksThatTheIndexLeavesOut) {
   EXPECT_EQ(names().size(), 1 + one.chunks[0].levels.size());
 }
 
+// Whatever an index says that comes from elsewhere.
+TEST_F(ChunkFolders, RemoveFilesOfChunksOnly) {
+  writeAll();
+  writeBytes(place + "/notes.txt", "mine");
+  ChunkIndex other = readChunkIndex(place);
+  other.chunks[0].levels[0].file = "notes.txt";
+  other.chunks[1].levels[0].file = "chunks.json";
+  writeChunkIndex(other, place);
+  writeAll();
+  EXPECT_TRUE(names().contains("notes.txt"));
+  EXPECT_EQ(readChunkIndex(place).chunks.size(), 2U);
+}
+
 TEST_F(ChunkFolders, KeepTheOtherChunksWhereThatIsAskedFor) {
   writeAll();
   {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/expect_error.h"
+
 namespace tufa {
 namespace {
 
@@ -49,6 +51,13 @@ TEST(FloatMesh, PositionsFarAwayAreCountedFromTheMiddle) {
   options.relative = false;
   EXPECT_EQ(toFloat(makeTent(far), options).origin, Position(0, 0, 0));
   EXPECT_EQ(toFloat(makeTent(far), options).positions[0][0], 1e9F);
+}
+
+TEST(FloatMesh, RefusesWhatNoFloatIsNear) {
+  Mesh mesh;
+  mesh.positions = {{1e300, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.triangles.emplace_back(0, 1, 2);
+  test::expectError(ErrorCode::LimitExceeded, "single precision", [&] { (void)toFloat(mesh); });
 }
 
 TEST(FloatMesh, OfNothingIsEmpty) {

@@ -60,6 +60,18 @@ TEST(WriteFile, TakesWhatIsPutIntoAStream) {
   EXPECT_EQ(readBytes(folder / "t.txt"), text + "7");
 }
 
+TEST(WriteFile, MakesNoFileOfAStreamThatHasFailed) {
+  const ScratchFolder folder;
+  const auto putAfterASeek = [](std::ostream& stream) {
+    stream << "head";
+    stream.seekp(0, std::ios::end);
+    stream << "tail";
+  };
+  expectError(ErrorCode::UnwritableFile, "something failed on the stream",
+              [&] { writeFile(putAfterASeek, folder / "t.txt"); });
+  EXPECT_EQ(folder.fileCount(), 0);
+}
+
 TEST(WriteFile, LeavesTheFileThatWasThereWhereTheWriterThrows) {
   const ScratchFolder folder;
   writeFile("before", folder / "t.txt");
@@ -189,6 +201,49 @@ TEST(MeshFiles, PlyKeepsNormals) {
   EXPECT_EQ(readMesh(folder / "m.ply").normals, makePyramid().normals);
 }
 
+// A line that ends in a backslash goes on in the next one.
+TEST(MeshFiles, ObjNamesMayEndInABackslash) {
+  const ScratchFolder folder;
+  WriteOptions options;
+  options.name = "part\\";
+  write(makePyramid(), folder / "m.obj", options);
+  EXPECT_EQ(readMesh(folder / "m.obj").positions.size(), 5U);
+}
+
+TEST(MeshFiles, AttributesHaveNamesOfTheirOwn) {
+  const ScratchFolder folder;
+  Mesh mesh = makePyramid();
+  const auto add = [&](const char* name, int width, AttributeRole role) {
+    Attribute attribute;
+    attribute.name = name, attribute.width = width, attribute.role = role;
+    attribute.values.assign(5 * static_cast<std::size_t>(width), 0.5F);
+    mesh.attributes.push_back(attribute);
+  };
+  add("a", 1, AttributeRole::Value), add("A", 1, AttributeRole::Value);
+  add("a_2", 1, AttributeRole::Value), add("a.2", 1, AttributeRole::Value);
+  add("v", 3, AttributeRole::Value), add("v_x", 1, AttributeRole::Value);
+  add("Cd", 3, AttributeRole::Colour), add("Ci", 3, AttributeRole::Colour);
+  write(mesh, folder / "m.ply");
+  const std::string ply = readBytes(folder / "m.ply");
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  for (const char* name : {"a", "A", "a_2", "a_2_2", "v_x", "v_x_2", "v_y", "red", "Ci_r"}) {
+    EXPECT_EQ(count(ply, std::string(" ") + name + "\n"), 1U) << name;
+  }
+  write(mesh, folder / "m.glb");
+  const std::string glb = readBytes(folder / "m.glb");
+  for (const char* name : {"_A", "_A_2", "_A_2_2", "_A_2_3", "_V", "_V_X", "COLOR_0", "COLOR_1"}) {
+    EXPECT_EQ(count(glb, "\"" + std::string(name) + "\":"), 1U) << name;
+  }
+  mesh.attributes[0].values[2] = std::nanf("");
+  expectError(ErrorCode::InvalidArgument, "not finite", [&] { write(mesh, folder / "m.ply"); });
+  mesh.attributes[0].name.clear();
+  expectError(ErrorCode::InvalidArgument, "no name", [&] { write(mesh, folder / "m.ply"); });
+}
+
 TEST(MeshFiles, KeepDoublePrecisionFarFromTheOrigin) {
   const ScratchFolder folder;
   const Mesh mesh = makePyramid(1e6);
@@ -209,6 +264,30 @@ TEST(MeshFiles, StlIsRefusedWhereSinglePrecisionMovesFaces) {
   expectError(ErrorCode::LimitExceeded, "single precision",
               [&] { write(makePyramid(1e8), folder / "far.stl"); });
   EXPECT_EQ(folder.fileCount(), 1);
+}
+
+// Two pyramids far apart: floats hold neither, from wherever they are counted.
+TEST(MeshFiles, FormatsOfFloatsAreRefusedWhereTheyMoveVerticesFar) {
+  const ScratchFolder folder;
+  const auto apart = [](double way) {
+    Mesh mesh = makePyramid();
+    const Mesh other = makePyramid(way);
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    mesh.normals.clear();
+    for (VertexIndex v = 1; v < 5; ++v) mesh.triangles.emplace_back(5 + v, 5, 5 + v % 4 + 1);
+    return mesh;
+  };
+  for (const char* name : {"m.glb", "m.usda", "m.stl"}) {
+    WriteReport report;
+    write(apart(1e4), folder / name, {}, &report);
+    EXPECT_GT(report.rounding, 1e-6) << name;
+    EXPECT_LT(report.rounding, 1e-3) << name;
+    expectError(ErrorCode::LimitExceeded, "single precision",
+                [&] { write(apart(3e7), folder / name); });
+  }
+  WriteReport report;
+  write(apart(3e7), folder / "m.ply", {}, &report);
+  EXPECT_EQ(report.rounding, 0);
 }
 
 // .glb had null for the bounds of its positions, .usda inf.

@@ -57,6 +57,21 @@ TEST(ObjReader, NamesTheLineOfAnError) {
   expectUnreadable("m.obj", "solid of something else\n", "no vertices");
 }
 
+// Each of these lost the first vertex, the face behind the comment, or all.
+TEST(ObjReader, TakesMarksAndLineEndsOfOtherSystems) {
+  EXPECT_EQ(readText("m.obj", "\xEF\xBB\xBF" + kObjCorners + "f 1 2 3\n").positions.size(), 5U);
+  EXPECT_EQ(readText("m.obj", kObjCorners + "# in C:\\dir\\\nf 1 2 3\n").triangles.size(), 1U);
+  std::string text = kObjCorners + "f 1 2 3\n";
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  EXPECT_EQ(readText("m.obj", text).triangles.size(), 1U);
+  EXPECT_EQ(readText("m.stl",
+                     "\xEF\xBB\xBFsolid s\nfacet normal 0 0 1\nouter loop\n"
+                     "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+                     "endsolid s\n")
+                .triangles.size(),
+            1U);
+}
+
 TEST(OffReader, TakesColorsAndComments) {
   const Mesh mesh = readText("m.off",
                              "# c\nCOFF 4 2 0 # counts\n\n0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n"
@@ -74,6 +89,7 @@ TEST(OffReader, RefusesWhatItCannotBe) {
   expectUnreadable("m.off", "OFF\n2 1 0\n0 0 0\n", "ends after 1 vertices");
   expectUnreadable("m.off", "OFF\n1 1 0\n0 0 0\n3 0 0 7\n", "line 4: a face names vertex 7 of 1");
   expectUnreadable("m.off", "OFF\n-1 1 0\n", "-1");
+  expectUnreadable("m.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", "has -3 vertices");
 }
 
 std::string plyHeader(const std::string& format) {
@@ -158,6 +174,30 @@ TEST(StlReader, TakesBinaryFilesThatBeginWithSolid) {
   const Mesh mesh = readText("m.STL", binaryStl("solid of a program that knows no better", 2, 2));
   EXPECT_EQ(mesh.triangles.size(), 2u);
   EXPECT_EQ(mesh.positions.size(), 3u);
+}
+
+TEST(PlyReader, RefusesFacesWithoutCorners) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n";
+  const std::string body = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+  expectUnreadable("m.ply", head + "property list uchar int indices\n" + body + "3 0 1 2\n",
+                   "no list vertex_indices");
+  expectUnreadable("m.ply",
+                   head + "property list uchar float vertex_indices\n" + body + "3 0 1 1.5\n",
+                   "no whole number");
+}
+
+// As of a program that was stopped before it knew the count.
+TEST(StlReader, RefusesMoreTrianglesThanItClaims) {
+  std::string bytes(80, ' ');
+  append(bytes, std::uint32_t{0});
+  bytes.append(100, '\0');
+  expectUnreadable("m.stl", bytes, "claims 0 triangles and has bytes for 2");
+  bytes.resize(84 + 49);
+  EXPECT_TRUE(readText("m.stl", bytes).triangles.empty());
+  bytes.replace(0, 5, "solid");
+  EXPECT_TRUE(readText("m.stl", bytes).triangles.empty());
 }
 
 TEST(StlReader, TakesTextInEitherCase) {

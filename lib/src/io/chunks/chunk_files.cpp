@@ -173,7 +173,7 @@ std::string plyHeader(const ChunkLevel& level, bool precise) {
   for (const char* axis : {"x", "y", "z"}) header += "property " + scalar + " " + axis + "\n";
   for (const char* axis : {"nx", "ny", "nz"})
     header += std::string("property float ") + axis + "\n";
-  for (const Attribute& attribute : level.attributes) header += io::plyProperties(attribute);
+  header += io::plyProperties(level.attributes);
   header += "element face " + std::to_string(triangleCount(level)) + "\n";
   return header + "property list uchar int vertex_indices\nproperty uchar part\nend_header\n";
 }

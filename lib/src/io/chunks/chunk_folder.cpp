@@ -100,6 +100,13 @@ std::vector<std::string> filesOf(const ChunkIndex& index) {
   return files;
 }
 
+/// Whether a name is one that writeChunk() gives: a list from elsewhere may name anything.
+bool isChunkFile(const std::filesystem::path& path) {
+  const std::filesystem::path ending = path.extension();
+  return path.filename() == path && path.string().starts_with("chunk_") &&
+         (ending == ".glb" || ending == ".ply");
+}
+
 /// The files of an earlier run in a folder that are not those of this one.
 std::vector<std::filesystem::path> filesLeftOver(const std::string& folder,
                                                  const ChunkIndex& index) {
@@ -114,7 +121,7 @@ std::vector<std::filesystem::path> filesLeftOver(const std::string& folder,
   const std::vector<std::string> files = filesOf(index);
   for (const std::string& name : filesOf(before)) {
     const std::filesystem::path path = name;
-    if (path.empty() || path.filename() != path) continue;
+    if (!isChunkFile(path)) continue;
     if (!std::binary_search(files.begin(), files.end(), name)) left.push_back(folder / path);
   }
   return left;

@@ -50,12 +50,13 @@ Json GlbDocument::addVertices(GlbStreams& streams, const std::vector<Attribute>&
   Json names = {{"POSITION", addVertices(streams.positions)}};
   if (streams.normals.count > 0) names["NORMAL"] = addVertices(streams.normals);
   Json targets = Json::array();
+  const std::vector<std::string> attributeNames = gltfNames(attributes);
   for (std::size_t i = 0; i < attributes.size(); ++i) {
     const std::size_t accessor = addVertices(streams.attributes[i]);
     if (attributes[i].role == AttributeRole::Motion) {
       targets.push_back({{"POSITION", accessor}});
     } else {
-      names[gltfName(attributes, i)] = accessor;
+      names[attributeNames[i]] = accessor;
     }
   }
   Json vertices = {{"attributes", std::move(names)}};

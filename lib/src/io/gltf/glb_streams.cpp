@@ -12,6 +12,7 @@
 #include "base/parallel_sort.h"
 #include "io/gltf/glb.h"
 #include "io/mesh/file_attributes.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -310,6 +311,11 @@ Point turned(const Point& p, UpAxis up) { return up == UpAxis::Y ? p : Point{p[0
 
 Point turnedBack(const Point& p, UpAxis up) {
   return up == UpAxis::Y ? p : Point{p[0], -p[2], p[1]};
+}
+
+Position originOf(const GlbFrame& frame, UpAxis up) {
+  const Point p = turnedBack(frame.origin, up);
+  return {p[0], p[1], p[2]};
 }
 
 GlbFrame floatFrame(const Point& origin, double factor, const GlbPacking& packing) {

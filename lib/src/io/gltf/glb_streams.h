@@ -59,6 +59,9 @@ inline constexpr double kMostShort = 65535;
 /// The other way.
 [[nodiscard]] std::array<double, 3> turnedBack(const std::array<double, 3>& p, UpAxis up);
 
+/// Where the positions of a frame are counted from, as the volume has it.
+[[nodiscard]] Position originOf(const GlbFrame& frame, UpAxis up);
+
 /// A frame in which floats, `factor` to a world unit, are counted from `origin`, y up.
 [[nodiscard]] GlbFrame floatFrame(const std::array<double, 3>& origin, double factor,
                                   const GlbPacking& packing);

@@ -114,27 +114,42 @@ class GlbReader {
     }
   }
 
+  // The positions of a mesh while its primitives are added. Equal ones become one vertex where
+  // there is more to a vertex than its position, such as a normal at a crease, or more than one
+  // primitive, as of several materials.
+  struct Positions {
+    std::vector<Position> all;
+    base::VertexWelder welder{all};
+    bool weld;
+  };
+
   void addMesh(const nlohmann::json& mesh, const glb::NodeTransform& transform) {
-    for (const nlohmann::json& primitive : mesh.at("primitives")) {
+    const nlohmann::json& primitives = mesh.at("primitives");
+    Positions positions;
+    positions.weld = primitives.size() > 1;
+    for (const nlohmann::json& primitive : primitives) {
+      positions.weld |= primitive.at("attributes").size() > 1;
+    }
+    for (const nlohmann::json& primitive : primitives) {
       const std::size_t mode = countAt(primitive, "mode", kTriangles, input_);
       if (mode < kTriangles || mode > kTriangleFan) continue;  // points and lines
       if (primitive.contains("extensions") &&
           primitive["extensions"].contains("KHR_draco_mesh_compression")) {
         input_.fail("its meshes are compressed by Draco, not supported");
       }
-      addPrimitive(primitive, mode, transform);
+      addPrimitive(primitive, mode, transform, positions);
     }
+    mesh_.positions.insert(mesh_.positions.end(), positions.all.begin(), positions.all.end());
   }
 
   void addPrimitive(const nlohmann::json& primitive, std::size_t mode,
-                    const glb::NodeTransform& transform) {
-    const glb::View positions = file_.viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
+                    const glb::NodeTransform& transform, Positions& positions) {
+    const glb::View view = file_.viewOf(primitive.at("attributes").at("POSITION"), "VEC3", 3);
     const std::size_t first = mesh_.positions.size();
-    const std::vector<VertexIndex> vertices =
-        addPositions(positions, transform, primitive["attributes"].size() > 1);
-    if (mesh_.positions.size() >= 0xFFFFFFFFu) input_.fail("it has too many vertices");
+    const std::vector<VertexIndex> vertices = addPositions(view, transform, positions);
+    if (first + positions.all.size() >= 0xFFFFFFFFu) input_.fail("it has too many vertices");
 
-    const std::vector<std::uint32_t> indices = indicesOf(primitive, positions.count);
+    const std::vector<std::uint32_t> indices = indicesOf(primitive, view.count);
     file_.takeMemory(mode == kTriangles ? indices.size() / 3 : indices.size(), sizeof(Triangle));
     const bool mirrored = transform.isMirrored();
     const std::size_t step = mode == kTriangles ? 3 : 1;
@@ -151,23 +166,18 @@ class GlbReader {
     }
   }
 
-  /// Adds the positions of a primitive and gives each one's place among them. Other attributes,
-  /// such as normals at a crease, make vertices that differ at one position: `weld` makes them one
-  /// again.
+  /// Adds the positions of a primitive and gives each one's place among those of its mesh.
   std::vector<VertexIndex> addPositions(const glb::View& view, const glb::NodeTransform& transform,
-                                        bool weld) {
+                                        Positions& to) {
     file_.takeMemory(view.count, sizeof(Position) + sizeof(VertexIndex));
-    std::vector<Position> own;
     std::vector<VertexIndex> places(view.count);
-    base::VertexWelder welder(own);
     for (std::size_t n = 0; n < view.count; ++n) {
       const Vec3 moved = transform.ofPoint(file_.pointAt(view, n));
       if (!moved.isFinite()) input_.fail("position " + std::to_string(n) + " is not finite");
       const Position position = moved;
-      places[n] = weld ? welder.indexOf(position) : static_cast<VertexIndex>(n);
-      if (!weld) own.push_back(position);
+      places[n] = to.weld ? to.welder.indexOf(position) : static_cast<VertexIndex>(to.all.size());
+      if (!to.weld) to.all.push_back(position);
     }
-    mesh_.positions.insert(mesh_.positions.end(), own.begin(), own.end());
     return places;
   }
 

@@ -1,10 +1,12 @@
 // .glb: meshes of triangles in 16 bits, packed or not, under a node each.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "io/gltf/glb_document.h"
 #include "io/gltf/glb_streams.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -23,7 +25,11 @@ void writeCompactGlb(std::span<const MeshPart> parts, const FileFrame& frame,
     const std::array<std::size_t, 1> whole{shaded.indices.size()};
     shading::orderForGraphics(shaded, whole);
     GlbStreams streams = encode(mesh, shaded, frames, packing);
-    if (!streams.frame.quantized) report.floatMeshes.push_back(part.name);
+    if (!streams.frame.quantized) {
+      report.floatMeshes.push_back(part.name);
+      report.rounding = std::max(
+          report.rounding, requireFloatsEnough(mesh, originOf(streams.frame, frame.up), ".glb"));
+    }
     const glb::Json vertices = document.addVertices(streams, mesh.attributes);
     const std::size_t node = document.addMesh(
         {part.name, document.addParts(vertices, streams.indices, whole), mesh.attributes},

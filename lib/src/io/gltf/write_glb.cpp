@@ -5,6 +5,7 @@
 
 #include "io/gltf/glb.h"
 #include "io/mesh/file_attributes.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -45,21 +46,14 @@ struct Layout {
   }
 };
 
-/// The middle of the mesh in single precision: what the node's translation gives back exactly. Not
-/// inline: GCC 12 at -O3 optimizes a vectorized rounding to float and back to double away, and
-/// positions would be relative to another middle than the one written.
-[[gnu::noinline]] Floats middleOf(const Bounds& bounds) {
-  return {static_cast<float>(0.5 * (bounds.least.x + bounds.greatest.x)),
-          static_cast<float>(0.5 * (bounds.least.y + bounds.greatest.y)),
-          static_cast<float>(0.5 * (bounds.least.z + bounds.greatest.z))};
-}
-
 Layout layOut(const MeshPart& part, std::uint64_t begin) {
   const Mesh& mesh = *part.mesh;
   Layout layout;
   layout.mesh = &mesh;
   layout.shaded = part.shaded ? &*part.shaded : nullptr;
-  layout.middle = needsDoublePrecision(mesh) ? middleOf(boundsOf(mesh)) : Floats{};
+  const Position middle = floatOrigin(mesh);  // the node's translation gives it back exactly
+  layout.middle = {static_cast<float>(middle.x), static_cast<float>(middle.y),
+                   static_cast<float>(middle.z)};
   layout.begin = begin;
   layout.vertexCount = part.shaded ? part.shaded->sources.size() : mesh.positions.size();
   layout.normalCount = part.shaded ? part.shaded->normals.size() : mesh.normals.size();
@@ -115,6 +109,7 @@ std::array<Floats, 2> rangeOf(const Layout& layout, const Attribute& motion) {
 /// them in a primitive.
 void describeAttributes(Json& json, const Layout& layout, std::uint64_t begin, Json& primitive) {
   const std::vector<Attribute>& all = layout.mesh->attributes;
+  const std::vector<std::string> names = gltfNames(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::size_t view = addView(json, begin, layout.bytesOf(all[i]), glb::kArrayBuffer);
     begin += layout.bytesOf(all[i]);
@@ -123,7 +118,7 @@ void describeAttributes(Json& json, const Layout& layout, std::uint64_t begin, J
                      {"count", layout.vertexCount},
                      {"type", gltfType(all[i])}};
     if (all[i].role != AttributeRole::Motion) {
-      primitive["attributes"][gltfName(all, i)] = glb::add(json, "accessors", std::move(accessor));
+      primitive["attributes"][names[i]] = glb::add(json, "accessors", std::move(accessor));
       continue;
     }
     const auto [least, greatest] = rangeOf(layout, all[i]);

@@ -12,6 +12,7 @@
 #include "io/gltf/glb.h"
 #include "io/gltf/glb_document.h"
 #include "io/mesh/file_attributes.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
@@ -190,6 +191,7 @@ class LodWriter {
       for (std::size_t level = 0; level < chain_.levels.size(); ++level) {
         const Mesh& mesh = chain_.levels[level].mesh;
         requireFloatRange(mesh);
+        seeRounding(requireFloatsEnough(mesh, floatOrigin(mesh), ".usda"));
         requireSoundAttributes(mesh.attributes, mesh.positions.size(), false);
         job_.beginStage("encoding", 0.5 * shareUpTo(level + 1));
         parts.push_back({&mesh, options_.name, {}});
@@ -234,8 +236,9 @@ class LodWriter {
     shading::orderForGraphics(shaded, whole);
     GlbStreams streams = encode(mesh, shaded, frames_, packing_);
     report_.vertices.push_back(shaded.sources.size());
-    if (options_.compression != GlbCompression::None && !streams.frame.quantized) {
-      report_.floatLevels.push_back(level);
+    if (!streams.frame.quantized) {
+      if (options_.compression != GlbCompression::None) report_.floatLevels.push_back(level);
+      seeRounding(requireFloatsEnough(mesh, originOf(streams.frame, options_.up), ".glb"));
     }
     document.addLevel(level, std::move(streams));
   }
@@ -265,10 +268,14 @@ class LodWriter {
     options.scale = options_.scale;
     options.threads = options_.threads;
     options.progress = writingProgress();
-    tufa::write(mesh, path, options);
+    WriteReport written;
+    tufa::write(mesh, path, options, &written);
+    seeRounding(written.rounding);
     report_.vertices.push_back(mesh.positions.size());
     report_.files.push_back(path);
   }
+
+  void seeRounding(double rounding) { report_.rounding = std::max(report_.rounding, rounding); }
 
   const LodChain& chain_;
   const LodWriteOptions& options_;

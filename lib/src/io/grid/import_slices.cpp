@@ -54,12 +54,12 @@ void requireUsable(const ImageSlices& image, const SliceOptions& options) {
     refuse("the origin must lie within " + base::numberText(kLongest) + ", not at " +
            base::numberText(x));
   }
-  if (options.threshold && !std::isfinite(*options.threshold)) {
-    refuse("the threshold must be finite");
+  if (options.threshold && !std::isfinite(static_cast<float>(*options.threshold))) {
+    refuse("the threshold must be finite in single precision");
   }
   if (options.threshold && options.labels) refuse("labels have no threshold: 0 is background");
   if (options.distances && options.labels) refuse("values are labels or distances, not both");
-  if (options.distances && options.threshold && !(*options.threshold > 0)) {
+  if (options.distances && options.threshold && !(static_cast<float>(*options.threshold) > 0)) {
     refuse("the threshold of distances must be above 0, not " +
            base::numberText(*options.threshold));
   }
@@ -139,8 +139,8 @@ struct Labels {
     return static_cast<std::int32_t>(value);
   }
   static void require(const std::vector<float>& values) {
-    // Floats hold whole numbers up to there.
-    constexpr float kMost = 16777216;
+    // Floats hold whole numbers up to there; the next one may stand for another.
+    constexpr float kMost = 16777215;
     for (const float value : values) {
       if (value == std::floor(value) && std::abs(value) <= kMost) continue;
       throw Error(ErrorCode::UnreadableFile, "labels must be whole numbers of at most " +

@@ -3,7 +3,11 @@
 #include <tufa/error.h>
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string_view>
+#include <utility>
+
+#include "base/known_enum.h"
 
 namespace tufa::io {
 namespace {
@@ -26,6 +30,24 @@ bool hasMeaningInPly(std::string_view name) {
   return std::find(kTaken.begin(), kTaken.end(), name) != kTaken.end();
 }
 
+/// The properties of an attribute of that name, one for each of its values.
+std::vector<std::string> plyNames(const Attribute& attribute, std::string name) {
+  if (hasMeaningInPly(name)) name = std::string("attribute_").append(name);
+  if (attribute.width == 1) return {name};
+  std::vector<std::string> names;
+  for (int i = 0; i < attribute.width; ++i) {
+    names.push_back(name);
+    const char* const letters = attribute.role == AttributeRole::Colour ? "rgb" : "xyzw";
+    names.back().append(1, '_').append(1, letters[i]);
+  }
+  return names;
+}
+
+bool areFree(const std::vector<std::string>& names, const std::set<std::string>& taken) {
+  return std::none_of(names.begin(), names.end(),
+                      [&](const std::string& name) { return taken.contains(name); });
+}
+
 }  // namespace
 
 std::string plainName(const std::string& name) {
@@ -46,6 +68,8 @@ void requireSoundAttributes(const std::vector<Attribute>& attributes, std::size_
     if (attribute.width < 1 || attribute.width > kMostValues) {
       refuse("has a width of " + std::to_string(attribute.width) + "; it must be 1 to 4");
     }
+    base::requireKnown(attribute.role, AttributeRole::Motion, "the role of an attribute");
+    if (attribute.name.empty()) refuse("has no name");
     const bool motion = attribute.role == AttributeRole::Motion;
     if (attribute.role != AttributeRole::Value && attribute.width != 3) {
       refuse(std::string("is a ") + (motion ? "motion" : "colour") + " of " +
@@ -57,47 +81,62 @@ void requireSoundAttributes(const std::vector<Attribute>& attributes, std::size_
       refuse("has " + std::to_string(attribute.values.size()) + " values; " +
              std::to_string(positions) + " positions need " + std::to_string(due));
     }
+    if (!std::all_of(attribute.values.begin(), attribute.values.end(),
+                     [](float value) { return std::isfinite(value); })) {
+      refuse("has values that are not finite");
+    }
   }
 }
 
-std::vector<std::string> plyNames(const Attribute& attribute) {
-  if (attribute.role == AttributeRole::Colour) return {"red", "green", "blue"};
-  std::string name = plainName(attribute.name);
-  if (hasMeaningInPly(name)) name = std::string("attribute_").append(name);
-  if (attribute.width == 1) return {name};
-  std::vector<std::string> names;
-  for (int i = 0; i < attribute.width; ++i) {
-    names.push_back(name);
-    names.back().append(1, '_').append(1, "xyzw"[static_cast<std::size_t>(i)]);
+std::vector<std::vector<std::string>> plyNames(const std::vector<Attribute>& attributes) {
+  std::set<std::string> taken;
+  std::vector<std::vector<std::string>> all;
+  for (const Attribute& attribute : attributes) {
+    std::vector<std::string> names;
+    const bool isColour = attribute.role == AttributeRole::Colour;
+    if (isColour) names = {"red", "green", "blue"};
+    // Programs show the first colour.
+    for (int n = 1; names.empty() || !areFree(names, taken); ++n) {
+      const std::string number = n == 1 ? "" : std::string(1, '_').append(std::to_string(n));
+      names = plyNames(attribute, plainName(attribute.name) + number);
+    }
+    taken.insert(names.begin(), names.end());
+    all.push_back(std::move(names));
   }
-  return names;
+  return all;
 }
 
-std::string plyProperties(const Attribute& attribute) {
-  const bool bytes = attribute.role == AttributeRole::Colour;
+std::string plyProperties(const std::vector<Attribute>& attributes) {
   std::string lines;
-  for (const std::string& name : plyNames(attribute)) {
-    lines += std::string("property ") + (bytes ? "uchar " : "float ") + name + "\n";
+  const std::vector<std::vector<std::string>> names = plyNames(attributes);
+  for (std::size_t i = 0; i < attributes.size(); ++i) {
+    const bool bytes = attributes[i].role == AttributeRole::Colour;
+    for (const std::string& name : names[i]) {
+      lines += std::string("property ") + (bytes ? "uchar " : "float ") + name + "\n";
+    }
   }
   return lines;
 }
 
-std::string gltfName(const std::vector<Attribute>& attributes, std::size_t index) {
-  std::size_t before = 0;
-  if (attributes[index].role == AttributeRole::Colour) {
-    for (std::size_t i = 0; i < index; ++i) {
-      if (attributes[i].role == AttributeRole::Colour) ++before;
+std::vector<std::string> gltfNames(const std::vector<Attribute>& attributes) {
+  std::set<std::string> taken;
+  std::vector<std::string> names;
+  std::size_t colours = 0;
+  for (const Attribute& attribute : attributes) {
+    if (attribute.role == AttributeRole::Motion) {
+      names.emplace_back();
+      continue;
     }
-    return "COLOR_" + std::to_string(before);
+    std::string name = upperName(attribute.name);
+    if (attribute.role == AttributeRole::Colour) name = "COLOR_" + std::to_string(colours++);
+    std::string unique = name;
+    for (int n = 2; !taken.insert(unique).second; ++n) {
+      unique = name;
+      unique.append(1, '_').append(std::to_string(n));
+    }
+    names.push_back(std::move(unique));
   }
-  const std::string name = upperName(attributes[index].name);
-  for (std::size_t i = 0; i < index; ++i) {
-    const bool same =
-        attributes[i].role == AttributeRole::Value && upperName(attributes[i].name) == name;
-    if (same) ++before;
-  }
-  if (before == 0) return name;
-  return std::string(name).append(1, '_').append(std::to_string(before + 1));
+  return names;
 }
 
 const char* gltfType(const Attribute& attribute) {

@@ -14,19 +14,21 @@ namespace tufa::io {
 /// A name with an underscore for all that is neither a letter nor a digit.
 [[nodiscard]] std::string plainName(const std::string& name);
 
-/// Throws Error(InvalidArgument) unless every attribute has as many values as its width and the
-/// number of positions ask for, and a colour or a motion has three; and where the format holds no
-/// motions, unless there are none.
+/// Throws Error(InvalidArgument) unless every attribute has a name and as many values, all finite,
+/// as its width and the number of positions ask for, and a colour or a motion has three; and where
+/// the format holds no motions, unless there are none.
 void requireSoundAttributes(const std::vector<Attribute>& attributes, std::size_t positions,
                             bool holdsMotions);
 
-/// The names of an attribute's properties in .ply, one for each of its values. Nothing that a
-/// property may not be called, and none that .ply gives a meaning.
-[[nodiscard]] std::vector<std::string> plyNames(const Attribute& attribute);
+/// The names of the properties of a mesh's attributes in .ply, for each one for each of its values:
+/// red, green and blue for the first colour. Nothing that a property may not be called, else none
+/// that .ply gives a meaning, and no name twice.
+[[nodiscard]] std::vector<std::vector<std::string>> plyNames(
+    const std::vector<Attribute>& attributes);
 
-/// The name of an attribute in glTF: COLOR_0 for the first colour, else _NAME. `attributes` are all
-/// of the mesh, of which it is the one at `index`; no two get one name.
-[[nodiscard]] std::string gltfName(const std::vector<Attribute>& attributes, std::size_t index);
+/// The names of a mesh's attributes in glTF: COLOR_0 for the first colour, else _NAME; empty for
+/// motions. No name twice.
+[[nodiscard]] std::vector<std::string> gltfNames(const std::vector<Attribute>& attributes);
 
 /// The type of an attribute's accessor in glTF.
 [[nodiscard]] const char* gltfType(const Attribute& attribute);
@@ -37,8 +39,8 @@ void requireSoundAttributes(const std::vector<Attribute>& attributes, std::size_
 /// A linear colour as a byte of sRGB.
 [[nodiscard]] std::uint8_t colourByte(float linear);
 
-/// The lines of an attribute's properties in the header of a .ply.
-[[nodiscard]] std::string plyProperties(const Attribute& attribute);
+/// The lines of the attributes' properties in the header of a .ply.
+[[nodiscard]] std::string plyProperties(const std::vector<Attribute>& attributes);
 
 /// Calls add() with the values of an attribute at a position as a .ply holds them: bytes of a
 /// colour, else floats.

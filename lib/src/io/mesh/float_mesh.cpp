@@ -7,6 +7,7 @@
 #include "base/known_enum.h"
 #include "base/require_at_most.h"
 #include "base/require_mesh.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
@@ -39,6 +40,7 @@ FloatMesh toFloat(const Mesh& mesh, const FloatMeshOptions& options) {
   base::requireKnown(options.winding, Winding::Clockwise, "the winding");
   base::requireFaces(mesh);
   base::requireFinite(mesh);
+  io::requireFloatRange(mesh);
   base::requireNormals(mesh);
   constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
   const std::uint64_t corners =

@@ -24,13 +24,6 @@ struct Bounds {
 };
 [[nodiscard]] Bounds boundsOf(const Mesh& mesh);
 
-/// Whether single precision would move some position.
-[[nodiscard]] bool needsDoublePrecision(const Mesh& mesh);
-
-/// Throws Error(LimitExceeded) for positions that no float is near: what a format of single
-/// precision holds, counted from their middle too.
-void requireFloatRange(const Mesh& mesh);
-
 /// Writes bytes to a file and reports progress of the whole.
 class MeshSink {
  public:

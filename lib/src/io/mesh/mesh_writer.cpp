@@ -13,9 +13,9 @@
 #include "base/parallel.h"
 #include "base/part_of_progress.h"
 #include "base/require_mesh.h"
-#include "base/single_precision.h"
 #include "io/input_bytes.h"
 #include "io/mesh/file_attributes.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa {
@@ -43,25 +43,6 @@ Bounds boundsOf(const Mesh& mesh) {
                        std::max(bounds.greatest.z, p.z)};
   }
   return bounds;
-}
-
-bool needsDoublePrecision(const Mesh& mesh) {
-  return !std::all_of(mesh.positions.begin(), mesh.positions.end(),
-                      [](const Position& p) { return p == base::toSingle(p); });
-}
-
-void requireFloatRange(const Mesh& mesh) {
-  // Of half the range, so that differences are in it.
-  constexpr double kFarthest = std::numeric_limits<float>::max() / 2;
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Position& p = mesh.positions[v];
-    const double farthest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    if (farthest <= kFarthest) continue;
-    throw Error(ErrorCode::LimitExceeded,
-                "vertex " + std::to_string(v) + " lies " + base::numberText(farthest) +
-                    " from the origin, farther than single precision reaches; write .ply, .obj or "
-                    ".off, which have double precision");
-  }
 }
 
 void requireSoundFrame(const FileFrame& frame) {
@@ -101,13 +82,18 @@ bool hasFloatsOnly(MeshFormat format) {
   return format == MeshFormat::Stl || format == MeshFormat::Glb || format == MeshFormat::Usda;
 }
 
-void requireSound(const MeshPart& part, MeshFormat format) {
+/// Returns how far writing moves a position at most, world units.
+double requireSound(const MeshPart& part, MeshFormat format, const WriteOptions& options) {
   const Mesh& mesh = *part.mesh;
   base::requireFaces(mesh);
   base::requireFinite(mesh);
   if (hasFloatsOnly(format)) requireFloatRange(mesh);
   requireSoundAttributes(mesh.attributes, mesh.positions.size(), format == MeshFormat::Glb);
   base::requireNormals(mesh);
+  if (format == MeshFormat::Stl) return requireFloatsEnough(mesh, {0, 0, 0}, ".stl");
+  const bool isGlb = format == MeshFormat::Glb && options.compression == GlbCompression::None;
+  if (!isGlb && format != MeshFormat::Usda) return 0;
+  return requireFloatsEnough(mesh, floatOrigin(mesh), isGlb ? ".glb" : ".usda");
 }
 
 bool splits(const MeshPart& part, const WriteOptions& options) {
@@ -208,12 +194,16 @@ void writeParts(std::span<MeshPart> parts, MeshFormat format, const WriteOptions
   requireFormat(format);
   requireSoundFrame({options.name, options.up, options.scale});
   base::requireKnown(options.compression, GlbCompression::Meshopt, "the compression");
-  for (const MeshPart& part : parts) requireSound(part, format);
+  double rounding = 0;
+  for (const MeshPart& part : parts) {
+    rounding = std::max(rounding, requireSound(part, format, options));
+  }
   WriteReport found;
   base::Job(options.threads, {}).run([&] {
     OutputFile file(open());
     found = writeTo(file, parts, format, options);
   });
+  found.rounding = std::max(found.rounding, rounding);
   if (report != nullptr) *report = std::move(found);
 }
 

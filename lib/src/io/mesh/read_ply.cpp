@@ -289,14 +289,20 @@ class BodyReader {
     }
   }
 
+  static bool isCorners(const Property& property) {
+    return property.countType &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
+  }
+
   void readFaces(const Element& element) {
     std::vector<std::uint64_t> corners;
     const MeshBuilder::Fail fail = [this](const std::string& cause) { body_.fail(cause); };
+    const auto hasCorners = std::any_of(element.properties.begin(), element.properties.end(),
+                                        [](const Property& p) { return isCorners(p); });
+    if (element.count > 0 && !hasCorners) fail("its faces have no list vertex_indices");
     for (std::uint64_t n = 0; n < element.count; ++n) {
       for (const Property& property : element.properties) {
-        const bool isCorners = property.countType && (property.name == "vertex_indices" ||
-                                                      property.name == "vertex_index");
-        if (!isCorners) {
+        if (!isCorners(property)) {
           const bool isPart = parts_ && !property.countType && property.name == "part" &&
                               property.type == Type::Uint8;
           if (isPart) {
@@ -311,6 +317,7 @@ class BodyReader {
         for (std::uint64_t& corner : corners) {
           const double index = body_.next(property.type);
           if (!(index >= 0)) fail("a face names a vertex below zero");
+          if (index != std::floor(index)) fail("a face names a vertex by no whole number");
           corner = static_cast<std::uint64_t>(std::min(index, 0x1p60));
         }
         builder_.addFace(corners, vertexCount_, fail);

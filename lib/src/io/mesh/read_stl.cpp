@@ -27,10 +27,13 @@ std::size_t claimedBytes(const InputBytes& input) {
 }
 
 /// Text or binary? The first word does not tell, as many programs begin binary files with "solid".
-/// The size does: that of a binary file follows from its count of triangles.
+/// The size does: that of a binary file follows from its count of triangles. So do zeros, which no
+/// text has.
 bool isText(const InputBytes& input) {
   if (input.size() >= kPrefixBytes && claimedBytes(input) == input.size()) return false;
-  const std::string_view text = input.view();
+  constexpr std::size_t kHead = 1000;
+  const std::string_view text = withoutMark(input.view());
+  if (text.substr(0, kHead).find('\0') != std::string_view::npos) return false;
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   return start != std::string_view::npos && sameWord(text.substr(start, 5), "solid");
 }
@@ -41,6 +44,12 @@ Mesh readBinary(const InputBytes& input) {
     input.fail(std::to_string(claimedTriangles(input)) + " triangles need " +
                std::to_string(claimedBytes(input)) + " bytes, the file has " +
                std::to_string(input.size()) + ": truncated, or not an .stl file");
+  }
+  // Programs that are stopped while they write leave the count behind. A few bytes more are common.
+  if (input.size() - claimedBytes(input) >= kTriangleBytes) {
+    input.fail("it claims " + std::to_string(claimedTriangles(input)) +
+               " triangles and has bytes for " +
+               std::to_string((input.size() - kPrefixBytes) / kTriangleBytes));
   }
   Mesh mesh;
   base::VertexWelder welder(mesh.positions);

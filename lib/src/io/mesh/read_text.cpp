@@ -107,7 +107,9 @@ Mesh readOff(const InputBytes& input) {
   for (std::uint64_t n = 0; n < counts.faces; ++n) {
     if (!text.nextContentLine()) text.fail("the file ends after " + std::to_string(n) + " faces");
     corners.clear();
-    for (std::int64_t left = text.nextInteger(); left > 0; --left) {
+    std::int64_t left = text.nextInteger();
+    if (left < 0) text.fail("a face has " + std::to_string(left) + " vertices");
+    for (; left > 0; --left) {
       const std::int64_t index = text.nextInteger();
       if (index < 0) text.fail("a face names vertex " + std::to_string(index));
       corners.push_back(static_cast<std::uint64_t>(index));

@@ -1,6 +1,5 @@
 // .ply and .stl: little-endian binary.
 
-#include <tufa/error.h>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,11 +8,9 @@
 #include <limits>
 #include <string>
 
-#include "base/number_text.h"
 #include "base/require_at_most.h"
-#include "base/single_precision.h"
-#include "base/vec3.h"
 #include "io/mesh/file_attributes.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 
 namespace tufa::io {
@@ -52,7 +49,7 @@ std::string plyHeader(const Mesh& mesh, bool precise) {
       header += std::string("property float ") + axis + "\n";
     }
   }
-  for (const Attribute& attribute : mesh.attributes) header += plyProperties(attribute);
+  header += plyProperties(mesh.attributes);
   header += "element face " + std::to_string(mesh.quads.size() + mesh.triangles.size()) + "\n";
   // int rather than uint wherever it will do: some readers know no other type.
   const bool small = mesh.positions.size() <= std::size_t{std::numeric_limits<std::int32_t>::max()};
@@ -121,47 +118,7 @@ void writePly(const Mesh& mesh, MeshSink& sink) {
   forEachItem(sink, mesh.triangles, writeFace);
 }
 
-namespace {
-
-/// Whether a triangle turns over, or loses its area, where its corners are rounded.
-bool turnsOver(const Position& a, const Position& b, const Position& c) {
-  const auto normalOf = [](const Vec3& p, const Vec3& q, const Vec3& r) {
-    return (q - p).cross(r - p);
-  };
-  const Vec3 before = normalOf(a, b, c);
-  const Vec3 after = normalOf(base::toSingle(a), base::toSingle(b), base::toSingle(c));
-  return before.squaredLength() > 0 && !(before.dot(after) > 0);
-}
-
-/// Throws where single precision would turn triangles over, but for needles thinner than a
-/// thousandth of the edges in the mean.
-void requireSinglePrecisionEnough(const Mesh& mesh) {
-  constexpr double kThin = 1e-3;
-  if (!needsDoublePrecision(mesh)) return;
-  double largest = 0, edges = 0;
-  for (const Position& p : mesh.positions) {
-    largest = std::max(largest, (Vec3(p) - Vec3(base::toSingle(p))).length());
-  }
-  std::size_t turned = 0, count = 0;
-  for (const Triangle& t : triangulate(mesh)) {
-    const auto& [a, b, c] = t.vertices;
-    edges += (Vec3(mesh.positions.at(a)) - Vec3(mesh.positions.at(b))).length();
-    ++count;
-    turned += turnsOver(mesh.positions.at(a), mesh.positions.at(b), mesh.positions.at(c)) ? 1 : 0;
-  }
-  const double mean = count == 0 ? 0 : edges / static_cast<double>(count);
-  if (turned == 0 || largest <= kThin * mean) return;
-  throw Error(ErrorCode::LimitExceeded,
-              ".stl has single precision, which so far from the origin moves vertices by up to " +
-                  base::roughNumberText(largest) + " and turns " + std::to_string(turned) +
-                  (turned == 1 ? " triangle" : " triangles") +
-                  " over: write .ply, .obj, .off or .glb, or move the volume");
-}
-
-}  // namespace
-
 void writeStl(const Mesh& mesh, MeshSink& sink) {
-  requireSinglePrecisionEnough(mesh);
   base::requireAtMost(std::numeric_limits<std::uint32_t>::max(), mesh.triangleCount(), "triangles",
                       ".stl");
   // Not "solid": readers take files that begin so for text.

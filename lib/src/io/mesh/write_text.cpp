@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 #include "io/mesh/text_line.h"
 
@@ -28,11 +29,13 @@ void writePositions(const Mesh& mesh, MeshSink& sink, std::string_view keyword) 
   });
 }
 
-/// Object names end with the line, so no line break may be part of one.
+/// Object names end with the line, so no line break may be part of one, and no backslash at the
+/// end, which would join the next line to it.
 std::string withoutBreaks(std::string name) {
   for (char& c : name) {
     if (c == '\n' || c == '\r') c = ' ';
   }
+  if (name.ends_with('\\')) name.back() = '_';
   return name;
 }
 

@@ -7,9 +7,9 @@
 #include <set>
 #include <string>
 
-#include "base/single_precision.h"
 #include "io/gltf/glb.h"
 #include "io/mesh/file_attributes.h"
+#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 #include "io/mesh/text_line.h"
 
@@ -106,15 +106,6 @@ std::string textOf(double number) {
   return {digits.data(), end};
 }
 
-/// What a mesh's positions are counted from: nothing, if single precision holds them.
-Position originOf(const Mesh& mesh) {
-  if (!needsDoublePrecision(mesh)) return {0, 0, 0};
-  const Bounds bounds = boundsOf(mesh);
-  return base::toSingle({0.5 * (bounds.least.x + bounds.greatest.x),
-                         0.5 * (bounds.least.y + bounds.greatest.y),
-                         0.5 * (bounds.least.z + bounds.greatest.z)});
-}
-
 Floats relativeTo(const Position& origin, const Position& p) {
   return {static_cast<float>(p.x - origin.x), static_cast<float>(p.y - origin.y),
           static_cast<float>(p.z - origin.z)};
@@ -198,7 +189,7 @@ std::string headOf(const char* type, const std::string& name) {
 /// One prim of type Mesh.
 void writePrim(Writer& writer, const MeshPart& part, const std::string& name) {
   const Mesh& mesh = *part.mesh;
-  const Position origin = originOf(mesh);
+  const Position origin = floatOrigin(mesh);
   const Bounds bounds = boundsOf(mesh);
   writer.block(headOf("Mesh", name), [&] {
     writer.array("float3", "extent", 2, "", [&](std::size_t i, Line& line) {
