@@ -41,9 +41,9 @@ struct VoxelizeReport {
 /// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. Distances are exact
 /// within a voxel of the mesh; farther out, beyond its edges, they may be too large by about a
 /// tenth of a voxel. The mesh should be closed; an open one gives an unsigned shell that OpenVDB
-/// decides the inside of. Throws Error: InvalidArgument (voxel size, half width, empty mesh),
-/// LimitExceeded
-/// (bandVoxels), Cancelled.
+/// decides the inside of. Closed parts are filled, whichever way they face, but those that face
+/// inward in others are cavities. Throws Error: InvalidArgument (voxel size, half width, empty
+/// mesh), LimitExceeded (bandVoxels), Cancelled.
 [[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh,
                                                         const VoxelizeOptions& options);
 

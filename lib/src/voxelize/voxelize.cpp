@@ -1,4 +1,5 @@
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/Composite.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <tufa/voxelize.h>
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "base/job.h"
 #include "base/lattice_range.h"
@@ -16,6 +18,7 @@
 #include "base/vec3.h"
 #include "grid/progress_interrupter.h"
 #include "voxelize/fog.h"
+#include "voxelize/shell_layers.h"
 
 namespace tufa {
 namespace {
@@ -100,6 +103,34 @@ void requireUsableBand(const Mesh& mesh, const VoxelizeOptions& options) {
                   "; take larger voxels, or raise the limit (VoxelizeOptions::bandVoxels)");
 }
 
+/// Takes all that closed parts enclose for inside, cavities too.
+openvdb::FloatGrid::Ptr filled(const Mesh& mesh, const VoxelizeOptions& options,
+                               grid::ProgressInterrupter& interrupter) {
+  const auto transform = openvdb::math::Transform::createLinearTransform(options.voxelSize);
+  const float halfWidth = static_cast<float>(options.halfWidth);
+  return openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+      interrupter, IndexSpaceMesh(mesh, options.voxelSize), *transform, halfWidth, halfWidth);
+}
+
+/// Layers of shells, each added to those before or taken from them.
+openvdb::FloatGrid::Ptr combined(const std::vector<voxelize_mesh::ShellLayer>& layers,
+                                 const VoxelizeOptions& options,
+                                 grid::ProgressInterrupter& interrupter) {
+  openvdb::FloatGrid::Ptr all;
+  for (const voxelize_mesh::ShellLayer& layer : layers) {
+    const openvdb::FloatGrid::Ptr part = filled(layer.mesh, options, interrupter);
+    if (interrupter.cancelled()) return part;
+    if (!all) {
+      all = part;
+    } else if (layer.isCavity) {
+      openvdb::tools::csgDifference(*all, *part);
+    } else {
+      openvdb::tools::csgUnion(*all, *part);
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
@@ -115,12 +146,12 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   openvdb::initialize();
 
   grid::ProgressInterrupter interrupter(options.progress, "voxelizing");
-  const auto transform = openvdb::math::Transform::createLinearTransform(options.voxelSize);
-  const float halfWidth = static_cast<float>(options.halfWidth);
   openvdb::FloatGrid::Ptr result;
-  base::Job(options.threads, {}).run([&] {
-    result = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        interrupter, IndexSpaceMesh(mesh, options.voxelSize), *transform, halfWidth, halfWidth);
+  base::Job job(options.threads, {});
+  job.run([&] {
+    const std::vector<voxelize_mesh::ShellLayer> layers = voxelize_mesh::shellLayers(mesh, job);
+    result = layers.empty() ? filled(mesh, options, interrupter)
+                            : combined(layers, options, interrupter);
   });
   if (interrupter.cancelled() || interrupter.wasInterrupted(100))
     throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");

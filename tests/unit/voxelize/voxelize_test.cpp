@@ -48,6 +48,59 @@ TEST(Voxelize, GivesTheSignedDistance) {
   }
 }
 
+// Adds a cube of another half side, inside out or not.
+void addCube(Mesh& mesh, double size, bool facesInward) {
+  const auto first = static_cast<VertexIndex>(mesh.positions.size());
+  const Mesh cube = makeCube();
+  for (const Position& p : cube.positions) {
+    mesh.positions.emplace_back(size * p.x, size * p.y, size * p.z);
+  }
+  for (const Quad& quad : cube.quads) {
+    auto [a, b, c, d] = quad.vertices;
+    if (facesInward) std::swap(b, d);
+    mesh.quads.emplace_back(first + a, first + b, first + c, first + d);
+  }
+}
+
+// OpenVDB fills what closed parts enclose.
+TEST(Voxelize, PartsThatFaceInwardAreCavities) {
+  VoxelizeOptions options;
+  options.voxelSize = 0.05;
+  Mesh mesh = makeCube();
+  addCube(mesh, 0.6, true);
+  addCube(mesh, 0.3, false);
+  const auto grid = voxelize(mesh, options);
+  for (auto value = grid->cbeginValueOn(); value; ++value) {
+    const openvdb::Vec3d p = grid->indexToWorld(value.getCoord());
+    const double outer = cubeDistance(p), cavity = cubeDistance(p / 0.6) * 0.6,
+                 inner = cubeDistance(p / 0.3) * 0.3;
+    const double truth = std::min(std::max(outer, -cavity), inner);
+    if (std::abs(truth) > 0.1) continue;
+    ASSERT_NEAR(*value, truth, 0.15 * options.voxelSize) << value.getCoord();
+  }
+  const auto isInside = [&](int z) { return grid->tree().getValue(openvdb::Coord(0, 0, z)) < 0; };
+  EXPECT_TRUE(isInside(0));
+  EXPECT_FALSE(isInside(9));
+  EXPECT_TRUE(isInside(16));
+  EXPECT_FALSE(isInside(25));
+}
+
+// Whichever way they face: a part alone, and one that faces outward in another.
+TEST(Voxelize, OtherPartsAreFilled) {
+  VoxelizeOptions options;
+  options.voxelSize = 0.1;
+  Mesh inward;
+  addCube(inward, 1, true);
+  Mesh nested = makeCube();
+  addCube(nested, 0.5, false);
+  for (const Mesh& mesh : {inward, nested}) {
+    const auto grid = voxelize(mesh, options);
+    for (int z = 0; z < 10; ++z) {
+      EXPECT_LT(grid->tree().getValue(openvdb::Coord(0, 0, z)), 0) << z;
+    }
+  }
+}
+
 TEST(Voxelize, MakesFogVolumes) {
   VoxelizeOptions options;
   options.voxelSize = 0.1;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <tufa/mesh.h>
+#include <vector>
+
+#include "base/job.h"
+
+namespace tufa::voxelize_mesh {
+
+/// Connected parts of a mesh that bound solids, or cavities in the layers before.
+struct ShellLayer {
+  Mesh mesh;  ///< positions and faces alone
+  bool isCavity = false;
+};
+
+/// The parts of a mesh by how deep they lie in each other, the outermost first: what a voxelizer
+/// that fills closed parts adds or takes away by turns. A part is a cavity if it is closed, faces
+/// inward and lies in an odd number of other closed parts. Empty if no part is, as of most meshes:
+/// then the mesh is one layer as it is.
+///
+/// Equal positions count as one vertex. Whether a part lies in another is asked by rays from some
+/// of its faces, of which the majority decides. Cost: a hash table of the positions and one of the
+/// edges of parts that face inward; a tree over the faces if there are any such parts.
+[[nodiscard]] std::vector<ShellLayer> shellLayers(const Mesh& mesh, base::Job& job);
+
+}  // namespace tufa::voxelize_mesh
