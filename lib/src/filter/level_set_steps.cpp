@@ -1,15 +1,20 @@
 // Smoothing, offsets and resampling, by OpenVDB's own tools.
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Filter.h>
 #include <openvdb/tools/GridTransformer.h>
 #include <openvdb/tools/LevelSetFilter.h>
-#include <openvdb/tools/LevelSetRebuild.h>
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tools/VolumeToMesh.h>
 
 #include <tufa/error.h>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "base/lattice_range.h"
 #include "base/number_text.h"
@@ -117,20 +122,78 @@ void offset(GridT& grid, const std::vector<double>& distances, ProgressInterrupt
   }
 }
 
+/// Gives distances without signs those of the level set that they are from, which has them
+/// everywhere. Beside the end of an open surface, where the source has no data, the result has none
+/// either.
 template <class GridT>
-void sampleOnto(const GridT& source, GridT& result, ProgressInterrupter& interrupter) {
-  // OpenVDB rebuilds level sets through a mesh in single precision: near the origin.
+void takeSigns(const GridT& source, GridT& result) {
+  using Value = typename GridT::ValueType;
+  using Tree = typename GridT::TreeType;
+  const Value background = result.background();
+  const Value band = source.background() - static_cast<Value>(2 * source.voxelSize()[0]);
+  const auto signOf = [&](const auto& accessor, const openvdb::Vec3d& place) {
+    return openvdb::tools::BoxSampler::sample(accessor, place);
+  };
+  const auto placeOf = [&](const openvdb::Vec3d& index) {
+    return source.transform().worldToIndex(result.transform().indexToWorld(index));
+  };
+  std::atomic<bool> isOpen{false};
+  openvdb::tree::LeafManager<Tree> leaves(result.tree());
+  leaves.foreach ([&](auto& leaf, std::size_t) {
+    const auto accessor = source.getConstUnsafeAccessor();
+    for (auto value = leaf.beginValueAll(); value; ++value) {
+      const openvdb::Vec3d place = placeOf(value.getCoord().asVec3d());
+      const bool isPast = *value < band && !accessor.isValueOn(openvdb::Coord::round(place));
+      if (isPast && value.isValueOn()) isOpen = true, value.setValueOff();
+      const Value distance = value.isValueOn() ? *value : background;
+      value.setValue(std::copysign(distance, signOf(accessor, place)));
+    }
+  });
+  const auto accessor = source.getConstUnsafeAccessor();
+  auto tile = result.tree().beginValueOff();
+  tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    const openvdb::Vec3d place = placeOf(tile.getBoundingBox().getCenter());
+    tile.setValue(std::copysign(background, signOf(accessor, place)));
+  }
+  // Insides of thousands of voxels, where the root has no tile.
+  if (!isOpen) openvdb::tools::signedFloodFill(result.tree());
+}
+
+/// By way of a mesh, from which distances are taken without signs: OpenVDB's own, from a flood
+/// from outside, pass neither into cavities nor, where the surface is open, to an inside.
+template <class GridT>
+void sampleDistances(const GridT& source, GridT& result, ProgressInterrupter& interrupter) {
+  // The mesh is of single precision: near the origin.
   const openvdb::Vec3d centre =
       source.transform().indexToWorld(source.evalActiveVoxelBoundingBox().getCenter());
-  const auto transform = result.transform().copy();
-  auto nearby = source.transform().copy();
+  auto nearby = source.transform().copy(), transform = result.transform().copy();
   nearby->postTranslate(-centre);
+  transform->postTranslate(-centre);
   const auto moved = source.copyReplacingMetadataAndTransform(source, nearby);  // of the same tree
-  result.setTransform(transform->copy());
-  result.transform().postTranslate(-centre);
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec4I> quads;
+  openvdb::tools::volumeToMesh(*moved, points, quads);
+  for (openvdb::Vec3s& point : points) point = transform->worldToIndex(point);
+  const auto halfWidth = static_cast<float>(static_cast<double>(result.background()) /
+                                            result.transform().voxelSize()[0]);
+  const auto distances = openvdb::tools::meshToVolume<GridT>(
+      interrupter,
+      openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec4I>(points, quads),
+      *transform, halfWidth, halfWidth, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+  openvdb::tools::changeBackground(distances->tree(), result.background());
+  result.setTree(distances->treePtr());
+  takeSigns(source, result);
+}
+
+template <class GridT>
+void sampleOnto(const GridT& source, GridT& result, ProgressInterrupter& interrupter) {
+  if (isLevelSet(source)) {
+    sampleDistances(source, result, interrupter);
+    return;
+  }
   openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(
-      *moved, result, static_cast<openvdb::util::NullInterrupter&>(interrupter));
-  result.setTransform(transform);
+      source, result, static_cast<openvdb::util::NullInterrupter&>(interrupter));
 }
 
 template <class GridT>

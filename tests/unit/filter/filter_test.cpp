@@ -126,6 +126,34 @@ TEST(Filters, FogIsSmoothedAndSampledAnew) {
               [&] { static_cast<void>(after(*fog, Offset{0.1})); });
 }
 
+// OpenVDB's own signs come from a flood from outside: cavities were filled.
+TEST(Filters, ResamplingKeepsCavities) {
+  auto hollow = makeSphere(1);
+  openvdb::tools::csgDifference(*hollow, *makeSphere(0.5));
+  for (const double voxel : {0.06, 0.15}) {
+    EXPECT_NEAR(volumeOf(*after(*hollow, Resample{voxel})), ball(1) - ball(0.5), 0.03 * ball(1));
+  }
+  auto block = makeSphere(2.6F);  // whose cavity is larger than a leaf
+  openvdb::tools::csgDifference(*block, *makeSphere(2));
+  const auto finer = openvdb::gridPtrCast<FloatGrid>(after(*block, Resample{0.05}));
+  EXPECT_GT(finer->tree().getValue({0, 0, 0}), 0);
+  EXPECT_LT(finer->tree().getValue({46, 0, 0}), 0);
+  EXPECT_GT(finer->tree().getValue({60, 0, 0}), 0);
+}
+
+// And there was no inside left of what a box had cut off.
+TEST(Filters, ResamplingKeepsOpenSurfaces) {
+  const auto grid = makeSphere(1);
+  const auto half = after(*grid, ClipBox{{-2, -2, -2}, {2, 2, 0.01}});
+  ContourOptions options;
+  options.cap = true;
+  for (const double voxel : {0.06, 0.15}) {
+    const auto sampled = after(*half, Resample{voxel});
+    EXPECT_GT(contour(*sampled).triangleCount(), 100U);
+    EXPECT_NEAR(volumeOf(*sampled, options), ball(1) / 2, 0.06 * ball(1)) << voxel;
+  }
+}
+
 TEST(Filters, ResamplingKeepsThePlaceFarFromTheOrigin) {
   const openvdb::Vec3d far(3e5, -2e5, 1e5);
   const auto grid = makeSphere(1);
