@@ -45,7 +45,7 @@ struct Close {
   double distance = 0;  ///< world units, above 0 and at most 1000 voxels
 };
 
-/// Samples the grid anew with voxels of another size: a level set by tools::levelSetRebuild(),
+/// Samples the grid anew with voxels of another size: a level set by distances to its mesh,
 /// other grids trilinearly. Where voxels are no cubes the ratio of their edges stays.
 struct Resample {
   double voxelSize = 0;  ///< world units: the cube root of a voxel's volume

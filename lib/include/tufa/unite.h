@@ -22,8 +22,8 @@ struct UniteOptions {
 ///
 /// The result has the transform and the metadata of the grid with the smallest voxels, the first
 /// among equals, the narrowest of the bands, and doubles if a grid has. Level sets with another
-/// transform are rebuilt on that lattice by tools::levelSetRebuild(), which rounds their edges by a
-/// part of a voxel. Where surfaces cross, the distances beside them are those to either surface.
+/// transform are sampled on that lattice as by Resample, which rounds their edges by a part of a
+/// voxel. Where surfaces cross, the distances beside them are those to either surface.
 ///
 /// Throws Error: UnsupportedGrid (a grid that is no level set of floats or doubles; where the
 /// transforms differ, one whose voxels are no cubes, a band narrower than a voxel of the result, or
