@@ -222,7 +222,7 @@ void measureEach(std::size_t count, std::size_t grain, std::vector<Measured>& pa
 void measureGaps(const WayForth& forth, const Surface& s, const ReferenceMesh& reference,
                  const Limits& limits, RegionMaxima& regions, std::vector<Gap>& gaps,
                  std::vector<Measured>& parts, base::Job& job) {
-  const WayBack back(s, reference, forth.corners(), forth.owner(), limits, regions);
+  const WayBack back(s, reference, forth.corners(), forth.owner(), gaps, limits, regions);
   // Those of a triangle together.
   std::stable_sort(gaps.begin(), gaps.end(),
                    [](const Gap& x, const Gap& y) { return x.triangle < y.triangle; });

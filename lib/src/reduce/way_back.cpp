@@ -28,15 +28,23 @@ float boundTo(const ReferenceMesh& reference, const std::vector<Index>& faces, c
 }  // namespace
 
 WayBack::WayBack(const Surface& s, const ReferenceMesh& reference, const CornersOfVertices& corners,
-                 std::span<const Index> owner, const Limits& limits, RegionMaxima& regions)
+                 std::span<const Index> owner, std::span<const Gap> gaps, const Limits& limits,
+                 RegionMaxima& regions)
     : s_(s),
       reference_(reference),
       corners_(corners),
       limits_(limits),
       regions_(regions),
-      owned_(s.triangles.size()) {
+      place_(s.triangles.size(), kNone) {
+  Index count = 0;
+  for (const Gap& gap : gaps) {
+    for (const Index t : trianglesAround(s.triangles, corners, {&gap.triangle, 1})) {
+      if (place_[t] == kNone) place_[t] = count++;
+    }
+  }
+  owned_.resize(count);
   for (Index r = 0; r < owner.size(); ++r) {
-    if (owner[r] != kNone) owned_[owner[r]].push_back(r);
+    if (owner[r] != kNone && place_[owner[r]] != kNone) owned_[place_[owner[r]]].push_back(r);
   }
 }
 
@@ -78,7 +86,7 @@ template <class F>
 void WayBack::forVerticesNear(const Gap& gap, const Sphere& about, F&& f) const {
   const float reach = about.radius + kBeyond + 2 * limits_.ofFace(gap.face) + 1;
   for (const Index t : trianglesAround(s_.triangles, corners_, {&gap.triangle, 1})) {
-    for (const Index r : owned_[t]) {
+    for (const Index r : owned_[place_[t]]) {
       if (squaredLength(reference_.positions()[r] - about.middle) <= reach * reach) f(r);
     }
   }

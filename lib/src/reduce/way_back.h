@@ -14,9 +14,11 @@ namespace tufa::reduce {
 /// not reach them.
 class WayBack {
  public:
-  /// `owner`: for each reference vertex the triangle that answers for it, or kNone.
+  /// `owner`: for each reference vertex the triangle that answers for it, or kNone. `gaps`: all
+  /// that are to be measured.
   WayBack(const Surface& s, const ReferenceMesh& reference, const CornersOfVertices& corners,
-          std::span<const Index> owner, const Limits& limits, RegionMaxima& regions);
+          std::span<const Index> owner, std::span<const Gap> gaps, const Limits& limits,
+          RegionMaxima& regions);
 
   /// From what of a triangle lies in a sphere about some faces, to all faces nearby at reference
   /// vertices of the triangles around. From the whole triangle, if that is less. All gaps are of
@@ -36,7 +38,8 @@ class WayBack {
   const CornersOfVertices& corners_;
   const Limits& limits_;
   RegionMaxima& regions_;
-  std::vector<std::vector<Index>> owned_;  // the reference vertices of each triangle
+  std::vector<Index> place_;               // in owned_, of triangles around gaps; else kNone
+  std::vector<std::vector<Index>> owned_;  // the reference vertices of each
 };
 
 /// From a whole triangle to faces among which the nearest ones are.
