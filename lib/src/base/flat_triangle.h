@@ -15,7 +15,11 @@ class FlatTriangle {
  public:
   FlatTriangle(const Vec3& a, const Vec3& b, const Vec3& c)
       : corners_{a, b, c}, normal_((b - a).cross(c - a)) {
-    if (!normal_.normalize()) normal_ = Vec3(0);
+    const double longest2 =
+        std::max({(b - a).squaredLength(), (c - b).squaredLength(), (a - c).squaredLength()});
+    // Of corners as good as on a line rounding alone would give a normal.
+    constexpr double kFlattest = 1e-12;
+    if (!normal_.normalize(kFlattest * longest2)) normal_ = Vec3(0);
     for (int i = 0; i < 3; ++i) {
       inward_[i] = normal_.cross(corners_[(i + 1) % 3] - corners_[i]);
     }

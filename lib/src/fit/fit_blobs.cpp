@@ -158,9 +158,9 @@ class Fitter {
     for (std::size_t i = 0; i < trials_.size(); ++i) {
       if (!trials_[i].isFresh) stale.push_back(i);
     }
-    job_.forParts(stale.size(), [&](base::Job& /*part*/, std::size_t i) {
+    job_.forParts(stale.size(), [&](base::Job& part, std::size_t i) {
       Trial& trial = trials_[stale[i]];
-      trial.parts = fit::solveBlobs(field_, stale[i], halvesOf(stale[i]), kTrialSteps);
+      trial.parts = fit::solveBlobs(field_, stale[i], halvesOf(stale[i]), kTrialSteps, part);
       trial.energy = field_.energyWith(stale[i], trial.parts) - field_.energy();
       trial.isFresh = true;
     });
@@ -212,7 +212,7 @@ class Fitter {
 
   // Puts the parts in the place of a blob, and fits them and those around.
   void split(std::size_t index, std::array<UnitBlob, 2> parts) {
-    const std::array<UnitBlob, 2> better = fit::solveBlobs(field_, index, parts, kSplitSteps);
+    const std::array<UnitBlob, 2> better = fit::solveBlobs(field_, index, parts, kSplitSteps, job_);
     if (field_.energyWith(index, better) < field_.energyWith(index, parts)) parts = better;
     field_.replace(index, parts);
     trials_.emplace_back();
@@ -240,7 +240,7 @@ class Fitter {
 
   void optimize(std::size_t index) {
     const double energy = field_.energy();
-    const std::array<UnitBlob, 1> better{fit::solveBlob(field_, index, kTurnSteps)};
+    const std::array<UnitBlob, 1> better{fit::solveBlob(field_, index, kTurnSteps, job_)};
     if (!(field_.energyWith(index, better) < energy * (1 - kLeastGain))) return;
     field_.replace(index, better);
     trials_[index].isFresh = false;

@@ -8,10 +8,13 @@
 #include <string>
 
 #include "base/box.h"
+#include "base/number_text.h"
 
 namespace tufa::fit {
 
+// Scenes have numbers up to 1e12, and radii from 1e-12 on. A blob's radius is 0.004 to 3 diagonals.
 Frame frameOf(const Mesh& mesh, const std::vector<Triangle>& triangles) {
+  constexpr double kFarthest = 1e10, kShortest = 1e-9;
   base::Box box = base::Box::empty();
   for (const Triangle& triangle : triangles) {
     for (const VertexIndex v : triangle.vertices) {
@@ -27,6 +30,18 @@ Frame frameOf(const Mesh& mesh, const std::vector<Triangle>& triangles) {
   if (triangles.empty()) return frame;
   frame.middle = box.centre();
   frame.diagonal = box.size().length();
+  double farthest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    farthest = std::max({farthest, -box.lower[axis], box.upper[axis]});
+  }
+  if (farthest > kFarthest || frame.diagonal < kShortest) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the mesh's diagonal is " + base::numberText(frame.diagonal) +
+                    " and its farthest coordinate " + base::numberText(farthest) +
+                    ": scenes can describe it from a diagonal of " + base::numberText(kShortest) +
+                    " on and up to coordinates of " + base::numberText(kFarthest) +
+                    "; scale it first");
+  }
   return frame;
 }
 

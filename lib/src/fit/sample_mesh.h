@@ -18,7 +18,8 @@ struct Frame {
   [[nodiscard]] Vec3 toUnit(const Vec3& p) const { return (p - middle) / diagonal; }
 };
 
-/// Of the triangles' box. Throws Error(InvalidArgument) for a corner that is not finite.
+/// Of the triangles' box. Throws Error(InvalidArgument) for a corner that is not finite, and where
+/// blobs would have numbers that scenes may not.
 [[nodiscard]] Frame frameOf(const Mesh& mesh, const std::vector<Triangle>& triangles);
 
 /// In cubes of the diagonal; that of a sheet for a mesh that encloses next to nothing. Throws

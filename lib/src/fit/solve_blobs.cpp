@@ -65,7 +65,9 @@ class NearEnergy {
   using Scalar = double;
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kPerBlob * Blobs };
 
-  NearEnergy(const BlobField& field, std::size_t index, std::span<const UnitBlob> start) {
+  NearEnergy(const BlobField& field, std::size_t index, std::span<const UnitBlob> start,
+             base::Job& job)
+      : job_(job) {
     // The blobs may go and grow about so far while they are optimized.
     constexpr double kRoom = 1.3;
     const UnitBlob& own = field.blobs()[index];
@@ -89,6 +91,7 @@ class NearEnergy {
   [[nodiscard]] int NumResiduals() const { return static_cast<int>(4 * near_.size()) + 1; }
 
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
+    job_.checkCancelled(0, 1);
     Eigen::Map<Eigen::VectorXd> r(residuals, NumResiduals());
     Eigen::Map<Eigen::MatrixXd> j(jacobian, jacobian != nullptr ? NumResiduals() : 0,
                                   NUM_PARAMETERS);
@@ -164,15 +167,17 @@ class NearEnergy {
     }
   }
 
+  base::Job& job_;
   double value_, normal_, shrink_, volume_;
   std::vector<Near> near_;
 };
 
 template <int Blobs>
 std::array<UnitBlob, Blobs> solve(const BlobField& field, std::size_t index,
-                                  const std::array<UnitBlob, Blobs>& start, int iterations) {
+                                  const std::array<UnitBlob, Blobs>& start, int iterations,
+                                  base::Job& job) {
   using Energy = NearEnergy<Blobs>;
-  const Energy energy(field, index, start);
+  const Energy energy(field, index, start, job);
   typename ceres::TinySolver<Energy>::Parameters u;
   for (int b = 0; b < Blobs; ++b) Bounded::parametersOf(start[b], u.data() + kPerBlob * b);
   ceres::TinySolver<Energy> solver;
@@ -186,13 +191,14 @@ std::array<UnitBlob, Blobs> solve(const BlobField& field, std::size_t index,
 
 }  // namespace
 
-UnitBlob solveBlob(const BlobField& field, std::size_t index, int iterations) {
-  return solve<1>(field, index, {field.blobs()[index]}, iterations)[0];
+UnitBlob solveBlob(const BlobField& field, std::size_t index, int iterations, base::Job& job) {
+  return solve<1>(field, index, {field.blobs()[index]}, iterations, job)[0];
 }
 
 std::array<UnitBlob, 2> solveBlobs(const BlobField& field, std::size_t index,
-                                   const std::array<UnitBlob, 2>& start, int iterations) {
-  return solve<2>(field, index, start, iterations);
+                                   const std::array<UnitBlob, 2>& start, int iterations,
+                                   base::Job& job) {
+  return solve<2>(field, index, start, iterations, job);
 }
 
 }  // namespace tufa::fit

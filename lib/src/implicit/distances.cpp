@@ -120,7 +120,16 @@ struct Circle {
   template <class T>
   T operator()(const T& x, const T& y, const T& z) const {
     const Triple<T> p{x - centre[0], y - centre[1], z - centre[2]};
-    return length(length(dot(u, p), dot(v, p)) - circle, dot(normal, p)) - radius;
+    const T out = length(dot(u, p), dot(v, p)) - circle;
+    const T up = dot(normal, p);
+    const T middle = length(out, up);
+    const T distance = middle - radius;
+    if (radius <= circle) return distance;
+    // The sides of a thick tube meet on the axis: where the nearest place of the tube would lie
+    // behind it, the one where they meet is nearest.
+    const double pole = std::sqrt((radius - circle) * (radius + circle));
+    const T behind = circle * middle + radius * out;
+    return choose(behind, -length(out + circle, abs(up) - pole), distance);
   }
   [[nodiscard]] Box extent() const {
     Vec3 half(0.0);

@@ -22,10 +22,17 @@ Dual<T> constant(const T& value) {
   return {value, {T{}, T{}, T{}}};
 }
 
+// Derivatives of 0 stay 0, as with intervals: what does not change by a coordinate does not begin
+// to where it meets an infinite slope.
+inline double times(double slope, double by) { return slope == 0 ? 0 : slope * by; }
+inline double over(double slope, double by) { return slope == 0 ? 0 : slope / by; }
+inline Interval times(const Interval& slope, const Interval& by) { return slope * by; }
+inline Interval over(const Interval& slope, const Interval& by) { return slope / by; }
+
 /// f(x), where `slope` is f'(x).
 template <class T>
 Dual<T> chain(const T& value, const T& slope, const Dual<T>& x) {
-  return {value, {slope * x.slopes[0], slope * x.slopes[1], slope * x.slopes[2]}};
+  return {value, {times(x.slopes[0], slope), times(x.slopes[1], slope), times(x.slopes[2], slope)}};
 }
 
 template <class T>
@@ -45,13 +52,17 @@ Dual<T> operator-(const Dual<T>& a, const Dual<T>& b) {
 template <class T>
 Dual<T> operator*(const Dual<T>& a, const Dual<T>& b) {
   Dual<T> c{a.value * b.value, {}};
-  for (std::size_t i = 0; i < 3; ++i) c.slopes[i] = a.slopes[i] * b.value + b.slopes[i] * a.value;
+  for (std::size_t i = 0; i < 3; ++i) {
+    c.slopes[i] = times(a.slopes[i], b.value) + times(b.slopes[i], a.value);
+  }
   return c;
 }
 template <class T>
 Dual<T> operator/(const Dual<T>& a, const Dual<T>& b) {
   Dual<T> c{a.value / b.value, {}};
-  for (std::size_t i = 0; i < 3; ++i) c.slopes[i] = (a.slopes[i] - c.value * b.slopes[i]) / b.value;
+  for (std::size_t i = 0; i < 3; ++i) {
+    c.slopes[i] = over(a.slopes[i] - times(b.slopes[i], c.value), b.value);
+  }
   return c;
 }
 template <class T>
@@ -100,6 +111,14 @@ inline Dual<double> sqrt(const Dual<double>& x) {
 inline Dual<Interval> sqrt(const Dual<Interval>& x) {
   const Interval root = sqrt(x.value);
   return chain(root, 0.5 / root, x);
+}
+/// Of what is not negative. 0 stands for the derivative at the power's end, as at that of a root.
+inline Dual<double> pow(const Dual<double>& x, double power) {
+  const double slope = x.value > 0 ? power * std::pow(x.value, power - 1) : 0.0;
+  return chain(std::pow(x.value, power), slope, x);
+}
+inline Dual<Interval> pow(const Dual<Interval>& x, double power) {
+  return chain(pow(x.value, power), power * pow(x.value, power - 1), x);
 }
 /// The length of a vector.
 template <class T>
@@ -153,6 +172,22 @@ inline Dual<Interval> min(const Dual<Interval>& a, const Dual<Interval>& b) {
   for (std::size_t i = 0; i < 3; ++i) c.slopes[i] = hull(a.slopes[i], b.slopes[i]);
   return c;
 }
+
+/// One where x is below 0, the other elsewhere.
+inline double choose(double x, double below, double other) { return x < 0 ? below : other; }
+inline Interval choose(const Interval& x, const Interval& below, const Interval& other) {
+  if (x.greatest < 0) return below;
+  return x.least >= 0 ? other : hull(below, other);
+}
+template <class T>
+Dual<T> choose(const Dual<T>& x, const Dual<T>& below, const Dual<T>& other) {
+  Dual<T> c{choose(x.value, below.value, other.value), {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    c.slopes[i] = choose(x.value, below.slopes[i], other.slopes[i]);
+  }
+  return c;
+}
+
 template <class T>
 Dual<T> max(const Dual<T>& a, const Dual<T>& b) {
   return -min(-a, -b);

@@ -73,8 +73,18 @@ class Parser {
     return place;
   }
   std::uint32_t number(double value) { return append({Step::Constant, 0, 0, value}); }
-  std::uint32_t apply(Step step, std::uint32_t a, std::uint32_t b = 0) {
-    return append({step, a, b, 0});
+  /// What has a value, and is of numbers alone, is a number.
+  std::uint32_t apply(const Line& line, bool ofNumbers) {
+    if (!ofNumbers) return append(line);
+    const double value =
+        Expression::apply(line, lines_[line.first].number, lines_[line.second].number);
+    return std::isfinite(value) ? number(value) : append(line);
+  }
+  std::uint32_t apply(Step step, std::uint32_t a, double number = 0) {
+    return apply({step, a, a, number}, isNumber(a));
+  }
+  std::uint32_t apply(Step step, std::uint32_t a, std::uint32_t b) {
+    return apply({step, a, b, 0}, isNumber(a) && isNumber(b));
   }
   [[nodiscard]] bool isNumber(std::uint32_t line) const {
     return lines_[line].step == Step::Constant;
@@ -119,7 +129,7 @@ class Parser {
     }
     const std::uint32_t power = parsePower();
     if (!negative) return power;
-    return isNumber(power) ? number(-lines_[power].number) : apply(Step::Negate, power);
+    return apply(Step::Negate, power);
   }
 
   std::uint32_t parsePower() {
@@ -159,9 +169,9 @@ class Parser {
       ++place_;
     }
     const std::string name(text_.substr(begin, place_ - begin));
-    if (name == "x") return apply(Step::X, 0);
-    if (name == "y") return apply(Step::Y, 0);
-    if (name == "z") return apply(Step::Z, 0);
+    if (name == "x") return append({Step::X});
+    if (name == "y") return append({Step::Y});
+    if (name == "z") return append({Step::Z});
     if (name == "pi") return number(std::numbers::pi);
     if (name == "e") return number(std::numbers::e);
     return parseCall(name, begin);
@@ -202,16 +212,16 @@ class Parser {
   }
 
   std::uint32_t raise(std::uint32_t base, std::uint32_t exponent) {
-    constexpr double kMostWhole = 64;
+    constexpr double kMostWhole = 1e6;
     if (isNumber(exponent)) {
       const double power = lines_[exponent].number;
       if (power == std::floor(power) && std::abs(power) <= kMostWhole) {
         const std::uint32_t whole = raiseWhole(base, static_cast<unsigned>(std::abs(power)));
         return power < 0 ? apply(Step::Divide, number(1), whole) : whole;
       }
-      if (power == 0.5) return apply(Step::Root, base);
+      // Of bases that are not negative, as with sqrt and ln.
+      return power == 0.5 ? apply(Step::Root, base) : apply(Step::Power, base, power);
     }
-    // Of bases above 0, as with sqrt and ln.
     return apply(Step::Exponential, multiply(exponent, apply(Step::Logarithm, base)));
   }
 

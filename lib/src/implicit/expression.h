@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
@@ -28,6 +29,7 @@ enum class Step : std::uint8_t {
   Absolute,
   Square,
   Root,
+  Power,  ///< by a number of its own
   Exponential,
   Logarithm,
   Sine,
@@ -36,7 +38,7 @@ enum class Step : std::uint8_t {
 };
 
 /// An expression in x, y and z as a list of steps, each of which comes after those that it uses.
-/// Equal steps are one.
+/// Equal steps are one, and those of numbers alone are numbers.
 class Expression {
  public:
   static constexpr bool kUnitGradient = false;
@@ -64,6 +66,52 @@ class Expression {
     friend bool operator==(const Line&, const Line&) = default;
   };
 
+  /// What a step makes of the values of earlier ones.
+  template <class T>
+  static T apply(const Line& line, const T& a, const T& b) {
+    switch (line.step) {
+      case Step::Add:
+        return a + b;
+      case Step::Subtract:
+        return a - b;
+      case Step::Multiply:
+        return a * b;
+      case Step::Divide:
+        return a / b;
+      case Step::Least:
+        return least(a, b);
+      case Step::Greatest:
+        return -least<T>(-a, -b);
+      case Step::Negate:
+        return -a;
+      case Step::Absolute:
+        return abs(a);
+      case Step::Square:
+        return square(a);
+      // Of what is not negative, so that every point has a value.
+      case Step::Root:
+        return sqrt(max(a, 0.0));
+      case Step::Power:
+        return pow(max(a, 0.0), line.number);
+      case Step::Exponential:
+        return exp(a);
+      case Step::Logarithm:
+        return log(max(a, 0.0));
+      case Step::Sine:
+        return sin(a);
+      case Step::Cosine:
+        return cos(a);
+      case Step::Arctangent:
+        return atan(a);
+      case Step::Constant:
+      case Step::X:
+      case Step::Y:
+      case Step::Z:
+        break;
+    }
+    return literal<T>(line.number);
+  }
+
  private:
   /// Most expressions do with so many: no memory is asked for at each point.
   static constexpr std::size_t kFew = 64;
@@ -90,12 +138,22 @@ class Expression {
     }
   }
 
+  /// The lesser of two numbers, NaN if either is. Bounds are of values that are there.
+  template <class T>
+  static T least(const T& a, const T& b) {
+    if constexpr (std::is_same_v<T, double>) {
+      return std::isnan(b) ? b : min(a, b);
+    } else if constexpr (std::is_same_v<T, Dual<double>>) {
+      return std::isnan(b.value) ? b : min(a, b);
+    } else {
+      return min(a, b);
+    }
+  }
+
   template <class T>
   T run(T* values, const T& x, const T& y, const T& z) const {
     for (std::size_t n = 0; n < lines_.size(); ++n) {
       const Line& line = lines_[n];
-      const T& a = values[line.first];
-      const T& b = values[line.second];
       switch (line.step) {
         case Step::Constant:
           values[n] = literal<T>(line.number);
@@ -109,52 +167,8 @@ class Expression {
         case Step::Z:
           values[n] = z;
           break;
-        case Step::Add:
-          values[n] = a + b;
-          break;
-        case Step::Subtract:
-          values[n] = a - b;
-          break;
-        case Step::Multiply:
-          values[n] = a * b;
-          break;
-        case Step::Divide:
-          values[n] = a / b;
-          break;
-        case Step::Least:
-          values[n] = min(a, b);
-          break;
-        case Step::Greatest:
-          values[n] = max(a, b);
-          break;
-        case Step::Negate:
-          values[n] = -a;
-          break;
-        case Step::Absolute:
-          values[n] = abs(a);
-          break;
-        case Step::Square:
-          values[n] = square(a);
-          break;
-        // Of what is not negative, so that every point has a value.
-        case Step::Root:
-          values[n] = sqrt(max(a, 0.0));
-          break;
-        case Step::Exponential:
-          values[n] = exp(a);
-          break;
-        case Step::Logarithm:
-          values[n] = log(max(a, 0.0));
-          break;
-        case Step::Sine:
-          values[n] = sin(a);
-          break;
-        case Step::Cosine:
-          values[n] = cos(a);
-          break;
-        case Step::Arctangent:
-          values[n] = atan(a);
-          break;
+        default:
+          values[n] = apply(line, values[line.first], values[line.second]);
       }
     }
     return values[lines_.size() - 1];

@@ -21,6 +21,7 @@ using std::exp;
 using std::log;
 using std::max;
 using std::min;
+using std::pow;
 using std::sin;
 using std::sqrt;
 
@@ -110,6 +111,14 @@ inline Interval operator/(double a, const Interval& b) { return Interval{a, a} /
 [[nodiscard]] inline Interval sqrt(const Interval& a) {
   const double greatest = std::sqrt(std::max(a.greatest, 0.0));
   const Interval c = outward(std::sqrt(std::max(a.least, 0.0)), greatest);
+  return {std::max(c.least, 0.0), c.greatest};
+}
+
+/// Of what is not negative.
+[[nodiscard]] inline Interval pow(const Interval& a, double power) {
+  const double p = std::pow(std::max(a.least, 0.0), power);
+  const double q = std::pow(std::max(a.greatest, 0.0), power);
+  const Interval c = outward(std::min(p, q), std::max(p, q));
   return {std::max(c.least, 0.0), c.greatest};
 }
 

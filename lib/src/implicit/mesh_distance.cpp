@@ -87,8 +87,7 @@ class Triangles {
   /// Of closed meshes: all gradients where a triangle is nearest, and perhaps some more.
   [[nodiscard]] const Box& cone(std::uint32_t triangle) const { return cones_[triangle]; }
   [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const {
-    const auto& v = set_.triangles[triangle];
-    return {set_.positions[v[0]], set_.positions[v[1]], set_.positions[v[2]]};
+    return set_.cornersOf(set_.triangles[triangle]);
   }
   [[nodiscard]] double squaredDistance(const Vec3& p, std::uint32_t triangle) const {
     return flat_[triangle].squaredDistance(p);

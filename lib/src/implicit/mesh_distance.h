@@ -8,8 +8,8 @@ namespace tufa::implicit {
 
 /// The exact signed distance to a closed mesh that does not intersect itself. Throws
 /// Error(InvalidArgument) for meshes without faces, with vertices that are no numbers, open ones,
-/// such as have edges of more than two faces or of faces that turn both ways, and those that face
-/// inward.
+/// such as have edges of more than two faces or of faces that turn both ways, those that face
+/// inward, and those with parts that have no area.
 [[nodiscard]] FieldPtr makeMeshSolid(const Mesh& mesh);
 
 /// What is nearer to a mesh, which may be open, than half the thickness. Throws

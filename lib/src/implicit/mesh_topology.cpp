@@ -82,6 +82,16 @@ void requireDistinctCorners(std::vector<Corners>& triangles) {
   triangles.erase(std::remove_if(triangles.begin(), triangles.end(), isNone), triangles.end());
 }
 
+void requireClosed(const Faults& faults) {
+  const auto say = [](std::size_t count, const std::string& what) {
+    refuse("the mesh has " + std::to_string(count) + (count == 1 ? " edge" : " edges") + what +
+           "; tufa repair makes a closed one of it, and with \"thickness\" any will do");
+  };
+  if (faults.open > 0) say(faults.open, " of one face: it is open");
+  if (faults.crowded > 0) say(faults.crowded, " of more than two faces");
+  if (faults.turned > 0) say(faults.turned, " whose two faces turn both ways");
+}
+
 /// Makes vertices at equal positions one.
 void weld(TriangleSet& set) {
   std::vector<Position> positions;
@@ -102,6 +112,115 @@ void requireOutward(const TriangleSet& set) {
   }
   if (volume < 0) refuse("the mesh faces inward: its volume is negative; tufa repair turns it");
 }
+
+/// Lengths that are none, as shares of a triangle's longest edge.
+constexpr double kVanishing = 1e-12;
+
+double longestEdge(const std::array<Vec3, 3>& p) {
+  return std::max({(p[1] - p[0]).length(), (p[2] - p[1]).length(), (p[0] - p[2]).length()});
+}
+
+bool hasNoArea(const TriangleSet& set, const Corners& t) {
+  const std::array<Vec3, 3> p = set.cornersOf(t);
+  const double longest = longestEdge(p);
+  return !((p[1] - p[0]).cross(p[2] - p[0]).length() > kVanishing * longest * longest);
+}
+
+/// Moves corners to others that they are next to, those of lesser numbers. Whether there were any
+/// such corners.
+bool joinNearCorners(TriangleSet& set) {
+  bool any = false;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Corners& t : set.triangles) {
+      const double least = kVanishing * longestEdge(set.cornersOf(t));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [lesser, greater] = std::minmax(t[k], t[(k + 1) % 3]);
+        if ((set.positions[greater] - set.positions[lesser]).length() > least) continue;
+        any = true;
+        moved = moved || set.positions[greater] != set.positions[lesser];
+        set.positions[greater] = set.positions[lesser];
+      }
+    }
+  }
+  return any;
+}
+
+void requireArea(const TriangleSet& set) {
+  const auto without = std::count_if(set.triangles.begin(), set.triangles.end(),
+                                     [&](const Corners& t) { return hasNoArea(set, t); });
+  if (without == 0 && !set.triangles.empty()) return;
+  refuse(
+      "the mesh has faces that enclose a line or a point; tufa repair drops them, and with "
+      "\"thickness\" any will do");
+}
+
+/// Gives triangles whose corners lie on a line an area. The middle corner lies on the longest edge:
+/// that is turned to end there, and the triangle beyond is cut in two. The surface stays as it is.
+class FlatTriangles {
+ public:
+  FlatTriangles(TriangleSet& set, std::vector<Corners>& neighbours)
+      : set_(set), neighbours_(neighbours) {
+    for (std::uint32_t n = 0; n < set.triangles.size(); ++n) keepIfFlat(n);
+  }
+
+  /// Each turn makes fewer triangles flat, or edges shorter.
+  void turnEdges() {
+    while (!flat_.empty()) {
+      const std::uint32_t n = flat_.back();
+      flat_.pop_back();
+      if (isFlat(set_.triangles[n])) turnLongestEdge(n);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool isFlat(const Corners& t) const { return hasNoArea(set_, t); }
+  void keepIfFlat(std::uint32_t n) {
+    if (isFlat(set_.triangles[n])) flat_.push_back(n);
+  }
+  [[nodiscard]] double lengthOf(std::uint32_t from, std::uint32_t to) const {
+    return (set_.positions[to] - set_.positions[from]).length();
+  }
+  /// The edge of a triangle that begins at a vertex.
+  [[nodiscard]] std::size_t edgeFrom(std::uint32_t n, std::uint32_t vertex) const {
+    const Corners& t = set_.triangles[n];
+    return std::find(t.begin(), t.end(), vertex) - t.begin();
+  }
+
+  void turnLongestEdge(std::uint32_t n) {
+    const Corners t = set_.triangles[n];
+    std::size_t k = 0;
+    for (std::size_t edge = 1; edge < 3; ++edge) {
+      if (lengthOf(t[edge], t[(edge + 1) % 3]) > lengthOf(t[k], t[(k + 1) % 3])) k = edge;
+    }
+    const std::uint32_t a = t[k], b = t[(k + 1) % 3], top = t[(k + 2) % 3];
+    const std::uint32_t m = neighbours_[n][k];
+    const std::size_t e = edgeFrom(m, b);
+    const std::uint32_t bottom = set_.triangles[m][(e + 2) % 3];
+    if (top == bottom) return;
+    const Corners left{a, bottom, top}, right{bottom, b, top};
+    const int before = 1 + (isFlat(set_.triangles[m]) ? 1 : 0);
+    const int after = (isFlat(left) ? 1 : 0) + (isFlat(right) ? 1 : 0);
+    if (after > before || (after == before && !(lengthOf(top, bottom) < lengthOf(a, b)))) return;
+    const std::uint32_t topLeft = neighbours_[n][(k + 2) % 3];
+    const std::uint32_t topRight = neighbours_[n][(k + 1) % 3];
+    const std::uint32_t bottomLeft = neighbours_[m][(e + 1) % 3];
+    const std::uint32_t bottomRight = neighbours_[m][(e + 2) % 3];
+    neighbours_[topRight][edgeFrom(topRight, top)] = m;
+    neighbours_[bottomLeft][edgeFrom(bottomLeft, bottom)] = n;
+    set_.triangles[n] = left;
+    set_.triangles[m] = right;
+    neighbours_[n] = {bottomLeft, m, topLeft};
+    neighbours_[m] = {bottomRight, topRight, n};
+    for (const std::uint32_t near : {n, m, topLeft, topRight, bottomLeft, bottomRight}) {
+      keepIfFlat(near);
+    }
+  }
+
+  TriangleSet& set_;
+  std::vector<Corners>& neighbours_;
+  std::vector<std::uint32_t> flat_;
+};
 
 }  // namespace
 
@@ -128,18 +247,19 @@ TriangleSet trianglesOf(const Mesh& mesh) {
 std::vector<Corners> neighboursIn(TriangleSet& set) {
   Faults faults;
   std::vector<Corners> neighbours = pairSides(sidesOf(set.triangles), set.triangles.size(), faults);
-  if (faults.any()) {
-    weld(set);
-    faults = {};
-    neighbours = pairSides(sidesOf(set.triangles), set.triangles.size(), faults);
-  }
-  const auto say = [](std::size_t count, const std::string& what) {
-    refuse("the mesh has " + std::to_string(count) + (count == 1 ? " edge" : " edges") + what +
-           "; tufa repair makes a closed one of it, and with \"thickness\" any will do");
-  };
-  if (faults.open > 0) say(faults.open, " of one face: it is open");
-  if (faults.crowded > 0) say(faults.crowded, " of more than two faces");
-  if (faults.turned > 0) say(faults.turned, " whose two faces turn both ways");
+  bool apart = joinNearCorners(set) || faults.any();
+  do {
+    if (apart) {
+      weld(set);
+      faults = {};
+      neighbours = pairSides(sidesOf(set.triangles), set.triangles.size(), faults);
+    }
+    requireClosed(faults);
+    FlatTriangles(set, neighbours).turnEdges();
+    // Corners of two faces may have come to lie beside each other.
+    apart = joinNearCorners(set);
+  } while (apart);
+  requireArea(set);
   requireOutward(set);
   return neighbours;
 }

@@ -4,6 +4,7 @@
 #include <tufa/implicit.h>
 #include <tufa/memory.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -26,7 +27,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostNodes = 1000000;
-constexpr std::size_t kDeepestScene = 500;  ///< objects in each other: functions call themselves
+/// Objects and their transforms in each other: functions call themselves.
+constexpr std::size_t kDeepestScene = 500;
 
 /// Rows of the rotation about a unit axis (Rodrigues).
 Affine rotation(const Vec3& axis, double degrees) {
@@ -62,6 +64,11 @@ Affine readScale(const SceneValue& value) {
 /// One step of "transform": an object of one key.
 Affine readStep(const SceneValue& value) {
   SceneObject object(value);
+  if (value.json().size() != 1) {
+    value.fail(
+        "must have one of translate, rotate, scale and mirror, each step being an object of its "
+        "own");
+  }
   Affine map;
   if (const auto shift = object.find("translate")) {
     map.shift = shift->point();
@@ -76,9 +83,6 @@ Affine readStep(const SceneValue& value) {
     map = mirror(normal->direction().unitOrX());
   }
   object.requireNoOther();
-  if (value.json().size() != 1) {
-    value.fail("must have one of translate, rotate, scale and mirror");
-  }
   return map;
 }
 
@@ -161,6 +165,7 @@ class SceneReader {
     for (const SceneValue& value : list.list()) {
       ReadField part = readObject(value, depth + 1);
       all.nodes += part.nodes;
+      all.depth = std::max(all.depth, part.depth + 1);
       count(value, all.nodes);
       parts.push_back(std::move(part.field));
     }
@@ -170,9 +175,7 @@ class SceneReader {
   }
 
   ReadField readObject(const SceneValue& value, std::size_t depth) {
-    if (depth > kDeepestScene) {
-      value.fail("lies in more than " + std::to_string(kDeepestScene) + " other objects");
-    }
+    requireDepth(value, depth);
     SceneObject object(value);
     ReadField read = readType(object, depth);
     if (const auto steps = object.find("transform")) {
@@ -181,9 +184,18 @@ class SceneReader {
       const double size = std::cbrt(std::abs(map.determinant()));
       if (!(size >= 1e-9 && size <= 1e9)) steps->fail("scales out of all proportion");
       read.field = transformed(std::move(read.field), map);
+      ++read.depth;
     }
     object.requireNoOther();
+    // Definitions read before are as deep as they are, wherever they are used.
+    requireDepth(value, depth + read.depth);
     return read;
+  }
+
+  static void requireDepth(const SceneValue& value, std::size_t depth) {
+    if (depth <= kDeepestScene) return;
+    value.fail("is one of more than " + std::to_string(kDeepestScene) +
+               " objects and transforms in each other");
   }
 
   ReadField readType(SceneObject& object, std::size_t depth) {
@@ -194,7 +206,9 @@ class SceneReader {
       const auto found = definitions_.find(target.text());
       if (found == definitions_.end()) target.failWith("the name of one of the definitions");
       if (open_.contains(found->first)) target.fail("the definition uses itself");
-      return resolve(found->first, found->second, depth);
+      ReadField read = resolve(found->first, found->second, depth);
+      ++read.depth;
+      return read;
     }
     if (name == "union" || name == "intersection" || name == "difference") {
       return readCombination(name, object, depth);
@@ -209,7 +223,7 @@ class SceneReader {
           "use, " +
           primitiveNames());
     }
-    return {std::move(field), 1};
+    return {std::move(field)};
   }
 
   /// A definition: read once, used any number of times.
@@ -229,15 +243,17 @@ class SceneReader {
     if (name == "union") return readList(objects, Operation::Union, radius, depth);
     if (name == "intersection") return readList(objects, Operation::Intersection, radius, depth);
     std::vector<FieldPtr> parts;
-    std::size_t nodes = 1;
+    ReadField all;
     for (const SceneValue& value : objects.list()) {
       ReadField part = readObject(value, depth + 1);
-      nodes += part.nodes;
-      count(value, nodes);
+      all.nodes += part.nodes;
+      all.depth = std::max(all.depth, part.depth + 1);
+      count(value, all.nodes);
       parts.push_back(parts.empty() ? std::move(part.field) : makeComplement(part.field));
     }
     if (parts.empty()) objects.fail("must have one object or more");
-    return {combine(Operation::Intersection, std::move(parts), radius), nodes};
+    all.field = combine(Operation::Intersection, std::move(parts), radius);
+    return all;
   }
 
   ReadField readChange(const std::string& name, SceneObject& object, std::size_t depth) {
@@ -254,6 +270,7 @@ class SceneReader {
       read.field = readRepeat(object, read.field);
     }
     ++read.nodes;
+    ++read.depth;
     count(part, read.nodes);
     return read;
   }

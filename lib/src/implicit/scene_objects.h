@@ -8,10 +8,11 @@
 
 namespace tufa::implicit {
 
-/// A field read from a scene, and how many fields it is made of.
+/// A field read from a scene, how many fields it is made of, and how deep they lie in it.
 struct ReadField {
   FieldPtr field;
   std::size_t nodes = 1;
+  std::size_t depth = 0;
 };
 
 /// Reads the objects of a scene that have no objects in them, by the name of their type. Null if

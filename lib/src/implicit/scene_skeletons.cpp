@@ -145,7 +145,6 @@ SkeletonArc readArc(const SceneValue& value) {
 void readPart(const SceneValue& value, ConvolutionKernel kernel, std::vector<SkeletonPart>& parts) {
   SceneObject object(value);
   const double weight = object.numberOr("weight", 1);
-  const std::size_t before = parts.size();
   if (const auto points = object.find("polyline")) {
     const std::vector<SceneValue> all = points->list();
     for (std::size_t n = 1; n < all.size(); ++n) {
@@ -163,7 +162,8 @@ void readPart(const SceneValue& value, ConvolutionKernel kernel, std::vector<Ske
   if (triangle) parts.push_back({readTriangle(*triangle), weight});
   if (arc) parts.push_back({readArc(*arc), weight});
   object.requireNoOther();
-  if (parts.size() == before) value.fail("must have one of polyline, triangle and arc");
+  const std::size_t due = object.has("weight") ? 2 : 1;
+  if (value.json().size() != due) value.fail("must have one of polyline, triangle and arc");
 }
 
 }  // namespace

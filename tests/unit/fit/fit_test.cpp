@@ -146,6 +146,39 @@ TEST_F(Fit, CanBeCancelled) {
   test::expectError(ErrorCode::Cancelled, "", [&] { (void)fitBlobs(mesh, options); });
 }
 
+// Not only when a blob is done: with many samples one takes many seconds.
+TEST_F(Fit, CanBeCancelledWithinABlob) {
+  FitOptions options;
+  options.blobs = 1;
+  options.threads = 1;
+  int calls = 0;
+  options.progress = [&](std::string_view stage, double) { return stage != "fit" || ++calls < 5; };
+  const Mesh mesh = meshOf(Shape::Torus, 0.1);
+  test::expectError(ErrorCode::Cancelled, "", [&] { (void)fitBlobs(mesh, options); });
+  EXPECT_EQ(calls, 5);
+}
+
+// Their scenes would have numbers that cannot be read.
+TEST_F(Fit, RefusesWhatScenesCannotHave) {
+  const Mesh torus = meshOf(Shape::Torus, 0.2);
+  FitOptions options;
+  options.blobs = 4;
+  options.samples = 500;
+  const auto scaled = [&](double by) {
+    Mesh mesh = torus;
+    for (Position& p : mesh.positions) p = {by * p.x, by * p.y, by * p.z};
+    return mesh;
+  };
+  for (const double scale : {1e11, 1e300, 1e-10, 1e-13}) {
+    test::expectError(ErrorCode::InvalidArgument, "scale it first",
+                      [&] { (void)fitBlobs(scaled(scale), options); });
+  }
+  for (const double scale : {1e9, 1e-8}) {
+    const std::string text = sceneOf(fitBlobs(scaled(scale), options));
+    EXPECT_NO_THROW((void)implicit::readScene(FileBytes{text, "fit"})) << scale;
+  }
+}
+
 TEST_F(Fit, RefusesWhatIsNoMesh) {
   const auto refuses = [](const Mesh& mesh, const FitOptions& options, const std::string& why) {
     test::expectError(ErrorCode::InvalidArgument, why, [&] { (void)fitBlobs(mesh, options); });

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "implicit/boxes.h"
 #include "support/expect_error.h"
 
 #ifdef TUFA_HAS_MUPARSER
@@ -101,6 +102,70 @@ TEST(Expression, BoundsCoverWhatIsUndefined) {
   EXPECT_GT(bound.greatest, 0);
   // Roots and logarithms of what is negative are those of 0.
   EXPECT_EQ(makeExpression("sqrt(x) - 1")->value({-4, 0, 0}), -1);
+}
+
+/// Powers that are whole have a value everywhere, however they are written.
+TEST(Expression, WholePowersAreOfNumbersBelow0Too) {
+  const auto at = [](const std::string& text, double x) {
+    return makeExpression(text)->value({x, 0, 0});
+  };
+  EXPECT_EQ(at("x^66", -1), 1);
+  EXPECT_EQ(at("x^999999", -1), -1);
+  EXPECT_EQ(at("x^-(66)", -1), 1);
+  EXPECT_EQ(at("x^2^2", -2), 16);
+  EXPECT_EQ(at("x^(4/2)", -3), 9);
+  EXPECT_EQ(at("x^(1 + min(2, sqrt(9)))", -2), -8);
+  EXPECT_EQ(at("(2 - 1) * x^(2 - 1)", -2), -2);
+  EXPECT_EQ(at("x^1.5", -2), 0);
+  EXPECT_EQ(at("x^(1/0) - 1", 0.5), -1);
+}
+
+/// Where a power, or a logarithm, of a number below 0 ends, what is beside it in a sum does not.
+TEST(Expression, HasAGradientBesidePowersOfNumbersBelow0) {
+  const auto expectGradient = [](const std::string& text, const Position& p, const Position& due) {
+    const auto field = makeExpression(text);
+    const Position gradient = field->gradient(p);
+    const auto bound = field->gradientBound({{p.x - 0.1, p.y - 0.1, p.z - 0.1}, p});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double slope = Vec3(gradient)[axis];
+      EXPECT_NEAR(slope, Vec3(due)[axis], 1e-12) << text << " by " << axis;
+      EXPECT_GE(slope, Vec3(bound.least)[axis]) << text << " by " << axis;
+      EXPECT_LE(slope, Vec3(bound.greatest)[axis]) << text << " by " << axis;
+    }
+  };
+  expectGradient("x^2+y^2+z^1.5-1", {0.6, 0.7, -0.3}, {1.2, 1.4, 0});
+  expectGradient("x^2+y^2+z^1.5-1", {0.6, 0.7, 0}, {1.2, 1.4, 0});
+  expectGradient("abs(x)^2.5+abs(y)^2.5+abs(z)^2.5-1", {0, 0.5, 0.9},
+                 {0, 2.5 * std::pow(0.5, 1.5), 2.5 * std::pow(0.9, 1.5)});
+  expectGradient("x^2+y^2+exp(1.5*ln(z))-1", {0.6, 0.7, -0.3}, {1.2, 1.4, 0});
+  expectGradient("x^2+y^2+z^(1.5+0*x)-1", {0.6, 0.7, -0.3}, {1.2, 1.4, 0});
+  expectGradient("x^2+y^2+atan(5/max(z,0))-1", {0.6, 0.7, -0.3}, {1.2, 1.4, 0});
+  // Bounds of the slope are no wider where a power ends.
+  EXPECT_NEAR(makeExpression("z^1.5")->lipschitz({{-1, -1, -1}, {1, 1, 1}}), 1.5, 1e-12);
+}
+
+/// Steps of half a voxel stood for distances there.
+TEST(Expression, IsAsSmoothBesidePowersOfNumbersBelow0) {
+  const auto field = makeExpression("x^2+y^2+z^1.5-1");
+  EXPECT_NEAR(field->distance({0.6, 0.7, -0.3}, 0.3), std::hypot(0.6, 0.7) - 1, 1e-3);
+}
+
+/// In whichever order they come.
+TEST(Expression, LeastAndGreatestOfNoValueHaveNone) {
+  for (const std::string text : {"min(%, x)", "min(x, %)", "max(%, x)", "max(x, %)",
+                                 "atan(min(max(-1, %), 2))", "max(%, %)"}) {
+    std::string full = text;
+    for (auto at = full.find('%'); at != std::string::npos; at = full.find('%')) {
+      full.replace(at, 1, "(y/y - 2)");
+    }
+    const auto field = makeExpression(full);
+    EXPECT_EQ(field->value({-5, 0, 0}), implicit::kInfinity) << full;
+    EXPECT_LT(field->value({-5, 1, 0}), 0) << full;
+    EXPECT_EQ(field->bound({{-6, -1, -1}, {-4, 1, 1}}).greatest, implicit::kInfinity) << full;
+    EXPECT_GE(field->lipschitz({{-6, -1, -1}, {-4, 1, 1}}),
+              Vec3(field->gradient({-5, 0, 0})).length())
+        << full;
+  }
 }
 
 TEST(Expression, EqualPartsAreOne) {

@@ -54,6 +54,7 @@ std::vector<NamedField> allFields() {
       {"segment", makeSegment({-0.5, 0, 0.2}, {0.7, 0.4, -0.3}, 0.3)},
       {"polyline", makePolyline({{-1, 0, 0}, {0, 0.5, 0}, {0.2, -0.8, 0.4}, {1, 1, 0.1}}, 0.2)},
       {"circle", makeCircle({0, 0.1, 0.2}, {1, 2, 2}, 0.8, 0.3)},
+      {"circle of a thick tube", makeCircle({0, 0.1, 0.2}, {1, 2, 2}, 0.4, 0.9)},
       {"box", box},
       {"round box", makeBox({0.2, 0, 0.1}, {0.8, 0.6, 0.5}, 0.25)},
       {"plane", makePlane({0.1, 0.2, 0.3}, {1, -2, 0.5})},
@@ -83,7 +84,8 @@ std::vector<NamedField> allFields() {
        {"(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
         "sin(3*x)*cos(2*y) + tan(0.2*z) - 0.3", "exp(-x^2 - y^2) * abs(z) - 0.2 + 0.1*x",
         "sqrt(x^2 + y^2) - atan(2*z) + ln(2 + x)", "min(x, y*z) + max(x - y, 0.5*z)^3 - 0.1",
-        "(x^2 + y^2 + 0.5)^0.7 - 2^z/2", "1/(x^2 + y^2 + z^2 + 0.1) - 2"}) {
+        "(x^2 + y^2 + 0.5)^0.7 - 2^z/2", "abs(x)^2.5 + y^1.5 + z^66 - 0.3",
+        "1/(x^2 + y^2 + z^2 + 0.1) - 2"}) {
     all.push_back({text, makeExpression(text)});
   }
   for (const BallKernel kernel : {BallKernel::Blinn, BallKernel::Nishimura, BallKernel::Wyvill}) {

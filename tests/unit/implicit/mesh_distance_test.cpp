@@ -104,6 +104,91 @@ TEST(MeshDistance, IsThatByBruteForce) {
   }
 }
 
+/// The same surface, with corners on the first edge of each face, which triangles without area join
+/// to the face beyond. That may have them in the same places, or `shift` farther on.
+Mesh withCornersOnEdges(Mesh mesh, double shift) {
+  const std::vector<Triangle> before = mesh.triangles;
+  mesh.triangles.clear();
+  for (std::size_t n = 0; n < before.size(); ++n) {
+    const auto [a, b, c] = before[n].vertices;
+    VertexIndex last = a;
+    const std::size_t corners = n % 4;
+    for (std::size_t k = 1; k <= corners; ++k) {
+      const double share = (static_cast<double>(k) - shift) / static_cast<double>(corners + 1);
+      const auto next = static_cast<VertexIndex>(mesh.positions.size());
+      mesh.positions.push_back(Vec3(mesh.positions[a]) * (1 - share) +
+                               Vec3(mesh.positions[b]) * share);
+      mesh.triangles.emplace_back(last, next, c);
+      if (last != a) mesh.triangles.emplace_back(a, next, last);
+      last = next;
+    }
+    mesh.triangles.emplace_back(last, b, c);
+    if (last != a) mesh.triangles.emplace_back(a, b, last);
+  }
+  return mesh;
+}
+
+/// It had the wrong sign beside edges of faces without area: these have no normal.
+TEST(MeshDistance, FacesWithoutAreaChangeNothing) {
+  const Mesh mesh = spikes();
+  const FieldPtr one = makeMeshSolid(mesh);
+  for (const double shift : {0.0, 0.4}) {
+    const Mesh cut = withCornersOnEdges(mesh, shift);
+    EXPECT_GT(cut.triangles.size(), 2 * mesh.triangles.size());
+    const FieldPtr other = makeMeshSolid(cut);
+    Points points;
+    for (int n = 0; n < 4000; ++n) {
+      const Vec3 p = points.next(1.2);
+      ASSERT_NEAR(one->value(p), other->value(p), 1e-12);
+    }
+    // Beside the edges themselves.
+    for (const Triangle& t : cut.triangles) {
+      const auto [a, b, c] = cornersOf(cut, t);
+      for (const Vec3& at : {a, (a + b) * 0.5, (b + c) * 0.5}) {
+        for (int n = 0; n < 20; ++n) {
+          const Vec3 p = at + points.next(0.2);
+          ASSERT_NEAR(one->value(p), other->value(p), 1e-12);
+        }
+      }
+    }
+  }
+}
+
+/// A double pyramid, the tip of which is one corner for each face, in a polygon of that radius.
+Mesh pyramids(double tipRadius) {
+  constexpr int kSides = 7;
+  Mesh mesh;
+  mesh.positions.emplace_back(0, 0, -0.3);
+  const auto ring = [](int k) { return static_cast<VertexIndex>(1 + k % kSides); };
+  const auto tip = [](int k) { return static_cast<VertexIndex>(1 + kSides + k % kSides); };
+  for (const double radius : {1.0, tipRadius}) {
+    for (int k = 0; k < kSides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kSides;
+      mesh.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle),
+                                  radius < 1 ? 3 : 0);
+    }
+  }
+  for (int k = 0; k < kSides; ++k) {
+    mesh.triangles.emplace_back(ring(k + 1), ring(k), 0);
+    mesh.triangles.emplace_back(ring(k), ring(k + 1), tip(k));
+    mesh.triangles.emplace_back(tip(k), ring(k + 1), tip(k + 1));
+    if (k > 1) mesh.triangles.emplace_back(tip(0), tip(k - 1), tip(k));
+  }
+  return mesh;
+}
+
+TEST(MeshDistance, CornersBesideEachOtherAreOne) {
+  const FieldPtr small = makeMeshSolid(pyramids(1e-9));
+  for (const double radius : {0.0, 1e-16, 1e-14}) {
+    const FieldPtr none = makeMeshSolid(pyramids(radius));
+    Points points;
+    for (int n = 0; n < 2000; ++n) {
+      const Vec3 p = points.next(n % 2 == 0 ? 1.2 : 0.3) + Vec3(0, 0, n % 2 == 0 ? 0 : 3);
+      ASSERT_NEAR(small->value(p), none->value(p), 3e-9) << radius;
+    }
+  }
+}
+
 TEST(MeshDistance, OfABoxIsThatOfTheBox) {
   const Vec3 half(0.5, 0.7, 0.3);
   const FieldPtr box = implicit::makeBox({0, 0, 0}, half, 0);
@@ -114,6 +199,19 @@ TEST(MeshDistance, OfABoxIsThatOfTheBox) {
     ASSERT_NEAR(mesh->value(p), box->value(p), 1e-14);
   }
   EXPECT_EQ(mesh->extent().greatest, Position(half));
+}
+
+// A normal shorter than 1e-7 was taken for none.
+TEST(MeshDistance, OfATinyBoxIsThatOfTheBox) {
+  const double size = 1e-6;
+  const Vec3 half = Vec3(0.5, 0.7, 0.3) * size;
+  const FieldPtr box = implicit::makeBox({0, 0, 0}, half, 0);
+  const FieldPtr mesh = makeMeshSolid(boxMesh(half));
+  Points points;
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 p = points.next(1) * size;
+    ASSERT_NEAR(mesh->value(p), box->value(p), 1e-14 * size);
+  }
 }
 
 /// As an .stl has them: each face with corners of its own.
@@ -205,6 +303,12 @@ TEST(MeshDistance, RefusesMeshesWithoutASide) {
   mesh = spikes();
   for (Triangle& t : mesh.triangles) std::swap(t.vertices[0], t.vertices[1]);
   refused(mesh, "faces inward");
+  mesh = {};
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
+  mesh.triangles = {{0, 1, 2}, {2, 1, 0}};
+  refused(mesh, "enclose a line or a point");
+  mesh.positions = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  refused(mesh, "enclose a line or a point");
   mesh = spikes();
   mesh.positions[2].y = std::nan("");
   refused(mesh, "vertex 2 of the mesh is not finite");

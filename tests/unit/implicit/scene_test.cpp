@@ -150,6 +150,8 @@ TEST(Scene, ErrorsNameThePath) {
   object("{'type': 'sphere', 'radius': 1, 'transform': [{'turn': 0}]}",
          "/transform/0/turn: is not known here");
   object("{'type': 'sphere', 'radius': 1, 'transform': [{}]}", "/transform/0: must have one of");
+  object("{'type': 'sphere', 'radius': 1, 'transform': [{'translate': [0, 0, 0], 'scale': 2}]}",
+         "/transform/0: must have one of translate, rotate, scale and mirror, each step");
   object("{'type': 'repeat', 'object': {'type': 'plane'}, 'step': [1, 1, 1], 'count': [2, 1, 1]}",
          "/object: may go on for ever");
   object(
@@ -170,6 +172,12 @@ TEST(Scene, ErrorsNameThePath) {
   object("{'type': 'convolution', 'width': 0}", "/width: must be a number above 0");
   object("{'type': 'convolution', 'width': 1, 'skeleton': []}", "/skeleton: must have one part");
   object("{'type': 'convolution', 'width': 1, 'skeleton': [{}]}", "/skeleton/0: must have one of");
+  object("{'type': 'convolution', 'width': 1, 'skeleton': [{'weight': 2}]}",
+         "/skeleton/0: must have one of");
+  object(
+      "{'type': 'convolution', 'width': 1, 'skeleton': [{'polyline': [[0,0,0], [1,0,0]],"
+      " 'weight': 2, 'triangle': [[0,0,0], [1,0,0], [0,1,0]]}]}",
+      "/skeleton/0: must have one of polyline, triangle and arc");
   object("{'type': 'convolution', 'width': 1, 'skeleton': [{'polyline': [[0,0,0], [0,0,0]]}]}",
          "/skeleton/0/polyline/1: is the same point");
   object(
@@ -232,7 +240,36 @@ TEST(Scene, ReferencesThatGoWrongAreNamed) {
              "': {'type': 'complement', 'object': " + "{'type': 'use', 'name': 'd" +
              std::to_string(n - 1) + "'}}";
   }
-  refused(chain, ErrorCode::UnreadableFile, "lies in more than 500 other objects");
+  refused(chain, ErrorCode::UnreadableFile,
+          "is one of more than 500 objects and transforms in each other");
+}
+
+/// Whether a definition was read before, or not, it is as deep as it is.
+TEST(Scene, DefinitionsAreAsDeepInWhateverOrderTheyAreRead) {
+  const auto chain = [](int length, const std::string& more, bool upward) {
+    std::string objects;
+    std::string definitions = "'d10000': {'type': 'sphere', 'radius': 1}";
+    for (int n = 1; n <= length; ++n) {
+      const std::string name = "'d" + std::to_string(10000 + n) + "'";
+      definitions += ", " + name + ": {'type': 'use', 'name': 'd" + std::to_string(9999 + n) + "'" +
+                     more + "}";
+      if (upward && n < length) objects += "{'type': 'use', 'name': " + name + "}, ";
+    }
+    objects += "{'type': 'use', 'name': 'd" + std::to_string(10000 + length) + "'}";
+    return sceneText(objects, ", 'definitions': {" + definitions + "}");
+  };
+  const std::string moved = ", 'transform': [{'translate': [1e-3, 0, 0]}]";
+  for (const bool upward : {false, true}) {
+    const auto refused = [&](int length, const std::string& more) {
+      expectError(ErrorCode::UnreadableFile, "more than 500 objects and transforms",
+                  [&] { static_cast<void>(sceneOf(chain(length, more, upward))); });
+    };
+    EXPECT_LT(sceneOf(chain(498, "", upward)).field->value({0, 0, 0}), 0);
+    EXPECT_LT(sceneOf(chain(249, moved, upward)).field->value({0, 0, 0}), 0);
+    refused(499, "");
+    refused(250, moved);
+    refused(10000, moved);
+  }
 }
 
 TEST(Scene, DeepTreesAreReadOrRefused) {
