@@ -12,7 +12,8 @@ struct RepairOptions {
   /// Vertices nearer to each other than this, in world units, become one; 0: those at bit-equal
   /// positions.
   double mergeDistance = 0;
-  /// Holes of up to that many edges are filled; 0: none.
+  /// Holes of up to that many edges are filled; 0: none. The outline of a sheet without vertices
+  /// inside, such as a lone triangle, is no hole.
   int fillEdges = 0;
   /// Drop connected parts that still have a boundary once holes are filled, if others have none:
   /// dangling sheets.
@@ -38,8 +39,9 @@ struct RepairReport {
 
 /// Repairs a soup of triangles, as meshes of other programs may be: merges vertices, drops
 /// degenerate and duplicate faces, splits edges and vertices that are not manifold, orients the
-/// faces, fills small holes. By CGAL's Polygon Mesh Processing, and checked by check(): the result
-/// never has more faults than the input (edges and vertices that are open, not manifold or
+/// faces, fills small holes. Closed parts that do not intersect are turned to bound a volume,
+/// others as most of their area was. By CGAL's Polygon Mesh Processing, and checked by check(): the
+/// result never has more faults than the input (edges and vertices that are open, not manifold or
 /// misoriented; invalid, collapsed and duplicate faces). Self-intersections are left; see the
 /// report. Normals are dropped, quads become triangles.
 ///

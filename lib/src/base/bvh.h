@@ -71,19 +71,6 @@ class Bvh {
          });
   }
 
-  /// Calls visit(item) for each item whose box the ray from `point` towards +z passes.
-  template <class Visit>
-  void itemsAbove(const Vec3& point, const Visit& visit) const {
-    const auto met = [&](const Box& box) {
-      return box.lower[0] <= point[0] && point[0] <= box.upper[0] && box.lower[1] <= point[1] &&
-             point[1] <= box.upper[1] && box.upper[2] >= point[2];
-    };
-    walk([&](const Node& node) { return met(boxOf(node)); },
-         [&](std::size_t i) {
-           if (met(boxes_[i])) visit(items_[i]);
-         });
-  }
-
   /// Calls visit(item) for items whose boxes a ray may pass before `to`, nearer parts of the tree
   /// first. visit() may lower `to`: what begins behind it is left out.
   template <class Visit>

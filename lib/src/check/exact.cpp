@@ -79,6 +79,14 @@ bool intersectElsewhere(const std::vector<Position>& positions, const Triangle& 
                             Kernel::Triangle_3(pb[0], pb[1], pb[2]));
 }
 
+bool liesOn(const std::vector<Position>& positions, const Triangle& triangle,
+            const Position& point) {
+  const auto& v = triangle.vertices;
+  return Kernel::Triangle_3(toPoint(positions[v[0]]), toPoint(positions[v[1]]),
+                            toPoint(positions[v[2]]))
+      .has_on(toPoint(point));
+}
+
 bool liesAbove(const std::vector<Position>& positions, const Triangle& triangle,
                const Position& from) {
   const Position& a = positions[triangle.vertices[0]];

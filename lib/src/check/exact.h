@@ -16,6 +16,10 @@ namespace tufa::checks {
 [[nodiscard]] bool intersectElsewhere(const std::vector<Position>& positions, const Triangle& a,
                                       const Triangle& b);
 
+/// True if the point lies on the triangle, which must not be collinear.
+[[nodiscard]] bool liesOn(const std::vector<Position>& positions, const Triangle& triangle,
+                          const Position& point);
+
 /// True if the vertical ray that starts at `from` and goes up passes through the triangle.
 ///
 /// The ray is moved aside by an infinitesimal (simulation of simplicity, Edelsbrunner and Mücke

@@ -24,16 +24,19 @@ Bvh buildFaceTree(const Faces& faces, base::Job& job) {
 }
 
 std::size_t countIntersectingPairs(const Faces& faces, const Bvh& tree, base::Job& job) {
+  // Where a mesh overlaps itself a single leaf is in many pairs.
+  constexpr std::size_t kGrain = 4;
   const std::vector<Triangle>& solid = faces.solid();
-  return sumRanges<std::size_t>(job, tree.leafCount(), 64, [&](std::size_t begin, std::size_t end) {
-    std::size_t pairs = 0;
-    for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      tree.pairsOfLeaf(leaf, [&](std::uint32_t a, std::uint32_t b) {
-        pairs += intersectElsewhere(faces.positions, solid[a], solid[b]) ? 1 : 0;
+  return sumRanges<std::size_t>(
+      job, tree.leafCount(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::size_t pairs = 0;
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+          tree.pairsOfLeaf(leaf, [&](std::uint32_t a, std::uint32_t b) {
+            pairs += intersectElsewhere(faces.positions, solid[a], solid[b]) ? 1 : 0;
+          });
+        }
+        return pairs;
       });
-    }
-    return pairs;
-  });
 }
 
 }  // namespace tufa::checks

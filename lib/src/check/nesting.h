@@ -20,7 +20,8 @@ struct Nesting {
 
 /// Finds for each component whether it lies inside an odd number of others, by exact vertical rays
 /// from some of its vertices, and its direction by the sign of its volume. Where components
-/// intersect, the majority of those vertices decides.
+/// intersect, the majority of those vertices decides; those that lie on other components do not
+/// count.
 [[nodiscard]] Nesting studyNesting(const Faces& faces, const Pieces& pieces, const Bvh& tree,
                                    base::Job& job);
 

@@ -16,6 +16,7 @@
 #include <CGAL/Search_traits_3.h>
 #include <CGAL/Search_traits_adapter.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/copy_face_graph.h>
 #include <CGAL/property_map.h>
 
 #include <array>
@@ -97,6 +98,66 @@ void dropDegenerate(Soup& soup, RepairReport& report) {
   soup.polygons.erase(end, soup.polygons.end());
 }
 
+/// The parts of a surface whose faces are joined by edges.
+struct Parts {
+  SurfaceMesh::Property_map<SurfaceMesh::Face_index, std::size_t> ofFace;
+  std::size_t count = 0;
+};
+
+Parts partsOf(SurfaceMesh& surface) {
+  Parts parts{surface.add_property_map<SurfaceMesh::Face_index, std::size_t>("f:part").first};
+  parts.count = pmp::connected_components(surface, parts.ofFace);
+  return parts;
+}
+
+/// Drops the parts that have a border, or those that have none; returns how many.
+std::size_t dropParts(SurfaceMesh& surface, bool areOpen) {
+  const Parts parts = partsOf(surface);
+  std::vector<bool> open(parts.count, false);
+  for (const auto halfedge : surface.halfedges()) {
+    if (!surface.is_border(halfedge)) continue;
+    open[parts.ofFace[surface.face(surface.opposite(halfedge))]] = true;
+  }
+  std::vector<std::size_t> dropped;
+  for (std::size_t part = 0; part < parts.count; ++part) {
+    if (open[part] == areOpen) dropped.push_back(part);
+  }
+  pmp::remove_connected_components(surface, dropped, parts.ofFace);
+  surface.collect_garbage();
+  return dropped.size();
+}
+
+/// The faces' normals, as long as their areas twice.
+std::vector<Kernel::Vector_3> areasOf(const Soup& soup) {
+  std::vector<Kernel::Vector_3> areas;
+  for (const Polygon& face : soup.polygons) {
+    const Point& a = soup.points[face[0]];
+    areas.push_back(CGAL::cross_product(soup.points[face[1]] - a, soup.points[face[2]] - a));
+  }
+  return areas;
+}
+
+/// The surface of a soup of faces, all of each part on the side that most of its area is on.
+SurfaceMesh orientedSurface(Soup& soup) {
+  const auto before = areasOf(soup);
+  pmp::orient_polygon_soup(soup.points, soup.polygons);
+  const auto after = areasOf(soup);
+  SurfaceMesh surface;
+  pmp::polygon_soup_to_polygon_mesh(soup.points, soup.polygons, surface);
+  const Parts parts = partsOf(surface);
+  std::vector<double> kept(parts.count, 0);  // area that was not turned less area that was
+  for (const auto face : surface.faces()) {
+    const double length = std::sqrt(after[face].squared_length());
+    kept[parts.ofFace[face]] += std::copysign(length, before[face] * after[face]);
+  }
+  std::vector<SurfaceMesh::Face_index> turned;
+  for (const auto face : surface.faces()) {
+    if (kept[parts.ofFace[face]] < 0) turned.push_back(face);
+  }
+  pmp::reverse_face_orientations(turned, surface);
+  return surface;
+}
+
 std::size_t borderEdges(const SurfaceMesh& surface, SurfaceMesh::Halfedge_index start) {
   std::size_t count = 0;
   auto halfedge = start;
@@ -108,10 +169,16 @@ std::size_t borderEdges(const SurfaceMesh& surface, SurfaceMesh::Halfedge_index 
 }
 
 void fillHoles(SurfaceMesh& surface, int mostEdges, RepairReport& report) {
+  const Parts parts = partsOf(surface);
+  std::vector<std::size_t> faces(parts.count, 0);
+  for (const auto face : surface.faces()) ++faces[parts.ofFace[face]];
   std::vector<SurfaceMesh::Halfedge_index> holes;
   pmp::extract_boundary_cycles(surface, std::back_inserter(holes));
   for (const auto hole : holes) {
-    if (borderEdges(surface, hole) > static_cast<std::size_t>(mostEdges)) continue;
+    const std::size_t edges = borderEdges(surface, hole);
+    if (edges > static_cast<std::size_t>(mostEdges)) continue;
+    // The outline of a sheet without vertices inside is no hole: it is filled already.
+    if (faces[parts.ofFace[surface.face(surface.opposite(hole))]] + 2 <= edges) continue;
     std::vector<SurfaceMesh::Face_index> patch;
 #if CGAL_VERSION_NR >= CGAL_VERSION_NUMBER(5, 6, 0)
     pmp::triangulate_hole(surface, hole,
@@ -124,20 +191,26 @@ void fillHoles(SurfaceMesh& surface, int mostEdges, RepairReport& report) {
 }
 
 void dropOpenParts(SurfaceMesh& surface, RepairReport& report) {
-  const auto parts =
-      surface.add_property_map<SurfaceMesh::Face_index, std::size_t>("f:part", 0).first;
-  const std::size_t count = pmp::connected_components(surface, parts);
-  std::vector<bool> open(count, false);
-  for (const auto halfedge : surface.halfedges()) {
-    if (surface.is_border(halfedge)) open[parts[surface.face(surface.opposite(halfedge))]] = true;
+  SurfaceMesh closed = surface;
+  const std::size_t dropped = dropParts(closed, true);
+  if (closed.is_empty()) return;
+  surface = std::move(closed);
+  report.droppedParts = dropped;
+}
+
+/// Turns closed parts so that they bound a volume. Which side is out is known of closed surfaces
+/// that do not pass through themselves.
+void orientClosedParts(SurfaceMesh& surface) {
+  SurfaceMesh closed = surface;
+  const std::size_t open = dropParts(closed, true);
+  if (closed.is_empty() || pmp::does_self_intersect(closed)) return;
+  pmp::orient_to_bound_a_volume(closed);
+  if (open == 0) {
+    surface = std::move(closed);
+    return;
   }
-  std::vector<std::size_t> dropped;
-  for (std::size_t part = 0; part < count; ++part) {
-    if (open[part]) dropped.push_back(part);
-  }
-  if (dropped.size() == count) return;
-  pmp::remove_connected_components(surface, dropped, parts);
-  report.droppedParts = dropped.size();
+  dropParts(surface, false);
+  CGAL::copy_face_graph(closed, surface);
 }
 
 Mesh meshOf(const SurfaceMesh& surface) {
@@ -178,9 +251,7 @@ Mesh runRepairSteps(const Mesh& mesh, const RepairOptions& options, RepairReport
   if (soup.polygons.empty()) return {};  // CGAL's functions want one
   step(0.4);
   const std::size_t whole = soup.points.size();
-  pmp::orient_polygon_soup(soup.points, soup.polygons);
-  SurfaceMesh surface;
-  pmp::polygon_soup_to_polygon_mesh(soup.points, soup.polygons, surface);
+  SurfaceMesh surface = orientedSurface(soup);
   pmp::stitch_borders(surface);
   pmp::duplicate_non_manifold_vertices(surface);
   surface.collect_garbage();
@@ -192,10 +263,7 @@ Mesh runRepairSteps(const Mesh& mesh, const RepairOptions& options, RepairReport
   if (options.dropOpen) dropOpenParts(surface, report);
   surface.collect_garbage();
   step(0.8);
-  // Which side is out is known of closed surfaces that do not pass through themselves.
-  if (CGAL::is_closed(surface) && !pmp::does_self_intersect(surface)) {
-    pmp::orient_to_bound_a_volume(surface);
-  }
+  orientClosedParts(surface);
   return meshOf(surface);
 }
 

@@ -33,6 +33,10 @@ struct FieldScale {
   }
 };
 
+/// The farthest that a distance can change in a step of length 1, in voxels, with a margin for
+/// rounding.
+inline constexpr double kLongestStep = 1.02;
+
 /// Decides from a sample of the grid's leaves whether the field is a distance. The grid's transform
 /// must be linear.
 [[nodiscard]] FieldScale readFieldScale(const openvdb::GridBase& grid, const IsoChoice& iso);

@@ -10,6 +10,8 @@
 #include <limits>
 #include <string>
 
+#include "grid/data_end.h"
+#include "grid/non_finite.h"
 #include "grid/openvdb_templates.h"
 #include "grid/vdb_coord.h"
 
@@ -21,34 +23,32 @@ struct CellSamples {
   Coord cell;
   std::array<double, 8> values{};  ///< less the isovalue
   unsigned insideMask = 0;         ///< bit n: corner n is inside
-  /// The corners hold a surface: all finite and, in a level set, all active. Outside its band a
-  /// level set holds no distances, and contour() leaves the surface open there.
-  bool isData = false;
+  bool isData = false;             ///< all are finite, and the data of a level set do not end here
 };
 
 template <class GridT>
 class VdbField final : public TrilinearField {
  public:
-  VdbField(const GridT& grid, const VoxelFrame& frame, const IsoChoice& iso)
-      : frame_(frame),
-        iso_(iso),
-        narrowBand_(grid.getGridClass() == openvdb::GRID_LEVEL_SET),
-        accessor_(grid.getConstAccessor()) {}
+  VdbField(const GridT& grid, const VoxelFrame& frame, const IsoChoice& iso, const DataEnd& dataEnd)
+      : frame_(frame), iso_(iso), dataEnd_(dataEnd), accessor_(grid.getConstAccessor()) {}
 
   [[nodiscard]] const CellSamples& load(const Coord& cell) {
     if (isLoaded_ && cell == samples_.cell) return samples_;
     isLoaded_ = true;
     samples_.cell = cell;
     samples_.insideMask = 0;
-    samples_.isData = true;
+    unsigned active = 0;
+    bool finite = true;
     for (int n = 0; n < 8; ++n) {
       typename GridT::ValueType value;
-      const bool active =
-          accessor_.probeValue(toVdb(cell.offsetBy(n & 1, (n >> 1) & 1, n >> 2)), value);
-      if ((narrowBand_ && !active) || !std::isfinite(value)) samples_.isData = false;
+      if (accessor_.probeValue(toVdb(cell.offsetBy(n & 1, (n >> 1) & 1, n >> 2)), value)) {
+        active |= 1U << n;
+      }
+      finite &= std::isfinite(value);
       samples_.values[n] = static_cast<double>(value) - iso_.isovalue;
       if (isInside(static_cast<double>(value), iso_)) samples_.insideMask |= 1U << n;
     }
+    samples_.isData = finite && !dataEnd_.isIn(samples_.values, samples_.insideMask, active);
     return samples_;
   }
 
@@ -85,11 +85,9 @@ class VdbField final : public TrilinearField {
     for (int step = 0; step < kMostSteps; ++step) {
       if (!samples_.isData) return std::nullopt;
       const double slope = sample.slope();
-      if (std::abs(sample.value) <= tolerance * slope) {
-        // On a plateau at the isovalue every point is a zero and none is the surface.
-        if (slope == 0) return std::nullopt;
-        return point;
-      }
+      // On a plateau at the isovalue every point is a zero and none is the surface.
+      if (!(slope > 0)) return std::nullopt;
+      if (std::abs(sample.value) <= tolerance * slope) return point;
       const double length = std::min(std::abs(sample.value) / slope, 1.0);
       if (!(length > 0)) return std::nullopt;
       const Vec3 next = point - sample.gradient * (std::copysign(length, sample.value) / slope);
@@ -153,7 +151,7 @@ class VdbField final : public TrilinearField {
 
   const VoxelFrame& frame_;
   IsoChoice iso_;
-  bool narrowBand_;
+  const DataEnd& dataEnd_;
   typename GridT::ConstAccessor accessor_;
   CellSamples samples_;
   bool isLoaded_ = false;
@@ -163,12 +161,12 @@ class VdbField final : public TrilinearField {
 template <class GridT>
 class Sampler {
  public:
-  Sampler(const GridT& grid, const VoxelFrame& frame, const IsoChoice& iso,
+  Sampler(const GridT& grid, const VoxelFrame& frame, const IsoChoice& iso, const DataEnd& dataEnd,
           std::vector<Vec3>& points, std::size_t most = std::numeric_limits<std::size_t>::max())
       : frame_(frame),
         iso_(iso),
-        narrowBand_(grid.getGridClass() == openvdb::GRID_LEVEL_SET),
-        field_(grid, frame, iso),
+        dataEnd_(dataEnd),
+        field_(grid, frame, iso, dataEnd),
         accessor_(grid.getConstAccessor()),
         points_(points),
         most_(most) {}
@@ -206,12 +204,13 @@ class Sampler {
 
   void addEdge(const Coord& lower, int axis) {
     const Coord upper = step(lower, axis, 1);
-    if (narrowBand_ && !(accessor_.isValueOn(toVdb(lower)) && accessor_.isValueOn(toVdb(upper))))
-      return;
-    const double a = accessor_.getValue(toVdb(lower));
-    const double b = accessor_.getValue(toVdb(upper));
+    typename GridT::ValueType lowerValue, upperValue;
+    const bool lowerActive = accessor_.probeValue(toVdb(lower), lowerValue);
+    const bool upperActive = accessor_.probeValue(toVdb(upper), upperValue);
+    const double a = lowerValue, b = upperValue;
     if (isInside(a, iso_) == isInside(b, iso_)) return;
     if (!std::isfinite(a) || !std::isfinite(b)) return;
+    if (dataEnd_.isAt(static_cast<std::size_t>(axis), a, b, lowerActive && upperActive)) return;
     Vec3 index = Vec3(lower);
     index[axis] += (iso_.isovalue - a) / (b - a);
     if (points_.size() >= most_) {
@@ -258,7 +257,7 @@ class Sampler {
 
   const VoxelFrame& frame_;
   const IsoChoice& iso_;
-  bool narrowBand_;
+  const DataEnd& dataEnd_;
   VdbField<GridT> field_;
   typename GridT::ConstAccessor accessor_;
   std::vector<Vec3>& points_;
@@ -277,7 +276,9 @@ template <class GridT>
 class VdbIsosurface final : public Isosurface {
  public:
   VdbIsosurface(const GridT& grid, const VoxelFrame& frame, const IsoChoice& iso)
-      : grid_(grid), frame_(frame), iso_(iso) {}
+      : grid_(grid), frame_(frame), iso_(iso), dataEnd_(readFieldScale(grid, iso)) {
+    requireFiniteBackground(static_cast<double>(grid.background()));
+  }
 
   [[nodiscard]] std::vector<Vec3> samples(base::Job& job) const override {
     constexpr std::size_t kGrain = 64;
@@ -286,7 +287,7 @@ class VdbIsosurface final : public Isosurface {
     std::vector<std::vector<Vec3>> parts((leaves.size() + kGrain - 1) / kGrain + 1);
     job.forRanges(parts.size() - 1, 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t part = first; part < last; ++part) {
-        Sampler<GridT> sampler(grid_, frame_, iso_, parts[part]);
+        Sampler<GridT> sampler(grid_, frame_, iso_, dataEnd_, parts[part]);
         const std::size_t end = std::min((part + 1) * kGrain, leaves.size());
         for (std::size_t i = part * kGrain; i < end; ++i) {
           for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) {
@@ -297,7 +298,7 @@ class VdbIsosurface final : public Isosurface {
     });
     // A tile is a few bytes, and its faces may be millions: no more than contour() takes.
     constexpr std::size_t kMostAtTiles = std::size_t{1} << 25;
-    Sampler<GridT> tiles(grid_, frame_, iso_, parts.back(), kMostAtTiles);
+    Sampler<GridT> tiles(grid_, frame_, iso_, dataEnd_, parts.back(), kMostAtTiles);
     forActiveTiles(grid_.tree(), [&](const openvdb::CoordBBox& tile) { tiles.addTile(tile); });
 
     std::size_t count = 0;
@@ -312,13 +313,14 @@ class VdbIsosurface final : public Isosurface {
   }
 
   [[nodiscard]] std::unique_ptr<TrilinearField> field() const override {
-    return std::make_unique<VdbField<GridT>>(grid_, frame_, iso_);
+    return std::make_unique<VdbField<GridT>>(grid_, frame_, iso_, dataEnd_);
   }
 
  private:
   const GridT& grid_;
   const VoxelFrame& frame_;
   const IsoChoice& iso_;
+  DataEnd dataEnd_;
 };
 
 }  // namespace

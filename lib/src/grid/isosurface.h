@@ -32,12 +32,13 @@ class Isosurface {
   virtual ~Isosurface() = default;
 
   /// Points on it, in voxel space: where it crosses a lattice edge with an active end, and one
-  /// inside each cell whose lowest corner is active. In level sets both ends must be active.
+  /// inside each cell whose lowest corner is active. A level set has none where its data end.
   [[nodiscard]] virtual std::vector<Vec3> samples(base::Job& job) const = 0;
   [[nodiscard]] virtual std::unique_ptr<TrilinearField> field() const = 0;
 };
 
-/// The isosurface of a float or double grid; chooseIsovalue() refuses others.
+/// The isosurface of a float or double grid; chooseIsovalue() refuses others. Throws Error as
+/// requireFiniteBackground() does.
 [[nodiscard]] std::unique_ptr<const Isosurface> isosurfaceOf(const openvdb::GridBase& grid,
                                                              const VoxelFrame& frame,
                                                              const IsoChoice& iso);

@@ -208,7 +208,7 @@ class CellTopologyBuilder {
           const int y = bit >> 3, z = bit & 7;
           const double a = samples.at(x, y, z);
           const double b = samples.at(x + (axis == 0), y + (axis == 1), z + (axis == 2));
-          if (std::abs(a - b) <= kLongestStep * scale_.axisLength[axis]) return;
+          if (std::abs(a - b) <= grid::kLongestStep * scale_.axisLength[axis]) return;
           cuts[axis].slabs[x] |= std::uint64_t{1} << bit;
           any = true;
         });
@@ -348,9 +348,6 @@ class CellTopologyBuilder {
       if (block.special >= 0) body(block, topology_.specials[block.special], accessor);
     });
   }
-
-  // The farthest that a distance can change in one step, in voxels, with a margin for rounding.
-  static constexpr double kLongestStep = 1.02;
 
   const grid::Blocks& blocks_;
   const grid::FieldScale& scale_;

@@ -51,6 +51,16 @@ TEST(CheckDistance, OffsetSphereIsAsFarAsItWasMoved) {
   }
 }
 
+// Cells with a sample that is not active were left out, and half the isosurface with them.
+TEST(CheckDistance, IsovaluesNearTheEndOfTheBandAreMeasuredTo) {
+  for (const double isovalue : {-2.0, 1.5, 2.0}) {
+    const DistanceReport report =
+        checkAgainst(test::sphere(kRadius + isovalue, 6), *sphereGrid(), {.isovalue = isovalue});
+    EXPECT_LT(report.meshToSurface.largest, kSphereTolerance) << isovalue;
+    EXPECT_LT(report.surfaceToMesh.largest, kSphereTolerance) << isovalue;
+  }
+}
+
 TEST(CheckDistance, SamplesOutsideTheBandAreMeasuredToo) {
   // Far inside and far outside there is no gradient to follow.
   for (const double offset : {-12.0, 25.0}) {
@@ -200,6 +210,7 @@ TEST(CheckDistance, RefusesWhatHasNoIsosurface) {
   openvdb::FloatGrid tile;
   tile.tree().addTile(3, openvdb::Coord(0), 1, true);
   EXPECT_EQ(codeOf(tile, {}), ErrorCode::LimitExceeded);
+  EXPECT_EQ(codeOf(openvdb::FloatGrid(std::nanf("")), {}), ErrorCode::NonFiniteValues);
   EXPECT_EQ(codeOf(*sphereGrid(), {.threads = -2}), ErrorCode::InvalidArgument);
   EXPECT_EQ(codeOf(*sphereGrid(), {.isovalue = std::nan("")}), ErrorCode::InvalidArgument);
   EXPECT_EQ(codeOf(*sphereGrid(), {.progress = [](auto, double) { return false; }}),

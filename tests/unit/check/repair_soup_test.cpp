@@ -96,6 +96,57 @@ TEST(RepairSoup, TurnsAClosedMeshOutward) {
   EXPECT_TRUE(report.after.watertight());
 }
 
+// All faces were turned after the first one.
+TEST(RepairSoup, TurnsThePartsOfFewFacesToThoseOfMost) {
+  Mesh bowl = test::sphere(1, 3);
+  std::erase_if(bowl.triangles,
+                [&](const Triangle& t) { return bowl.positions[t.vertices[0]].z > 0.5; });
+  for (const bool inward : {false, true}) {
+    Mesh mesh = test::joined(inward ? test::inverted(bowl) : bowl, cube());
+    const double volume = check(mesh).volume;
+    std::swap(mesh.triangles[0].vertices[1], mesh.triangles[0].vertices[2]);
+    RepairReport report;
+    (void)repair(mesh, {}, &report);
+    EXPECT_TRUE(report.after.oriented);
+    // That of an open part depends a little on the vertex that it is taken about.
+    EXPECT_NEAR(report.after.volume, volume, 0.5) << inward;
+  }
+  // Two spheres through each other.
+  Mesh other = test::sphere(1, 3);
+  for (Position& p : other.positions) p.x += 1;
+  Mesh two = test::joined(test::sphere(1, 3), other);
+  std::swap(two.triangles[0].vertices[1], two.triangles[0].vertices[2]);
+  EXPECT_TRUE(check(repair(two)).watertight());
+}
+
+TEST(RepairSoup, TurnsClosedPartsOutwardBesideSheets) {
+  Mesh mesh = test::inverted(cube());
+  mesh.positions.insert(mesh.positions.end(), {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}});
+  mesh.triangles.emplace_back(8, 9, 10);
+  RepairReport report;
+  (void)repair(mesh, {}, &report);
+  EXPECT_EQ(report.after.triangles, 13U);
+  EXPECT_NEAR(report.after.volume, 6, 1e-9);
+}
+
+// The outline of a triangle is no hole. Filled, it was a closed part of a face and its duplicate.
+TEST(RepairSoup, FillsNoOutlineOfASheet) {
+  Mesh mesh = cube();
+  mesh.positions.insert(mesh.positions.end(), {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}, {6, 6, 5}});
+  mesh.triangles.emplace_back(8, 9, 10);
+  for (const bool isStrip : {false, true}) {
+    if (isStrip) mesh.triangles.emplace_back(9, 11, 10);
+    RepairOptions options;
+    options.fillEdges = 10;
+    options.dropOpen = true;
+    RepairReport report;
+    (void)repair(mesh, options, &report);
+    EXPECT_EQ(report.filledHoles, 0U);
+    EXPECT_EQ(report.droppedParts, 1U);
+    EXPECT_TRUE(report.after.watertight());
+  }
+}
+
 TEST(RepairSoup, FillsHolesUpToTheNumberOfEdges) {
   Mesh mesh = cube();
   mesh.quads.pop_back();

@@ -2,6 +2,7 @@
 
 #include <tufa/check.h>
 #include <tufa/error.h>
+#include <array>
 #include <limits>
 
 #include "unit/check/meshes.h"
@@ -276,6 +277,36 @@ TEST(CheckNesting, PiecesThatPokeThroughOthersAreJudgedByTheirMajority) {
   poking.positions[0] = Position(-1, -1, -1);
   EXPECT_TRUE(check(joined(large, inverted(poking))).outward);
   EXPECT_FALSE(check(joined(large, poking)).outward);
+}
+
+// Vertices on the face of another piece were inside it from below, and outside from above.
+TEST(CheckNesting, PiecesThatTouchAFaceFromEitherSideAreOutside) {
+  const Mesh large = box(Position(-5, -5, 0), Position(5, 5, 5));
+  const Mesh above = tetrahedron(Position(0, 0, 5));
+  Mesh below = inverted(above);
+  for (Position& p : below.positions) p.z = 5 - p.z;
+  EXPECT_TRUE(check(joined(large, above)).watertight());
+  EXPECT_TRUE(check(joined(large, below)).watertight());
+  EXPECT_FALSE(check(joined(large, inverted(below))).outward);
+}
+
+TEST(CheckNesting, PiecesWithAllVerticesOnOthersAreJudgedByTheirFaces) {
+  // An octahedron in a cube.
+  const Mesh cube = box(Position(-1, -1, -1), Position(1, 1, 1)), inside = test::sphere(1, 0);
+  EXPECT_TRUE(check(joined(cube, inverted(inside))).outward);
+  EXPECT_FALSE(check(joined(cube, inside)).outward);
+  // A block between two others.
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto slab = [&](double from, double to) {
+      std::array<double, 3> least{0, 0, 0}, most{1, 1, 1};
+      least[axis] = from;
+      most[axis] = to;
+      return box(Position(least[0], least[1], least[2]), Position(most[0], most[1], most[2]));
+    };
+    const Mesh ends = joined(slab(-2, -1), slab(3, 4)), middle = slab(-1, 3);
+    EXPECT_TRUE(check(joined(ends, middle)).watertight()) << axis;
+    EXPECT_FALSE(check(joined(ends, inverted(middle))).outward) << axis;
+  }
 }
 
 TEST(CheckNesting, ManyPiecesAgreeWithTheAnswerForFew) {

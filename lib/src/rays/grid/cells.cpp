@@ -11,6 +11,7 @@
 
 #include "base/box_ray.h"
 #include "base/bvh.h"
+#include "grid/data_end.h"
 #include "grid/openvdb_templates.h"
 #include "grid/volume.h"
 #include "rays/grid/grid_caster.h"
@@ -73,11 +74,12 @@ template <class GridT>
 class CellSurface final : public RaySurface {
  public:
   CellSurface(std::shared_ptr<const GridT> grid, const grid::IsoChoice& iso,
-              const std::vector<base::Box>& boxes, base::Job& job)
+              const grid::DataEnd& dataEnd, const std::vector<base::Box>& boxes, base::Job& job)
       : RaySurface(inWorld(boxes, grid::transformOf(*grid)),
                    0.5 * grid::Affine(grid::transformOf(*grid)).leastHeight()),
         grid_(std::move(grid)),
         iso_(iso),
+        dataEnd_(dataEnd),
         transform_(grid::transformOf(*grid_)),
         affine_(transform_),
         boxes_(boxes),
@@ -86,6 +88,7 @@ class CellSurface final : public RaySurface {
   [[nodiscard]] std::unique_ptr<Caster> caster() const override;
   [[nodiscard]] const GridT& grid() const { return *grid_; }
   [[nodiscard]] const grid::IsoChoice& iso() const { return iso_; }
+  [[nodiscard]] const grid::DataEnd& dataEnd() const { return dataEnd_; }
   [[nodiscard]] const grid::Transform& transform() const { return transform_; }
   [[nodiscard]] const grid::Affine& affine() const { return affine_; }
   [[nodiscard]] const base::Box& box(std::size_t n) const { return boxes_[n]; }
@@ -94,6 +97,7 @@ class CellSurface final : public RaySurface {
  private:
   std::shared_ptr<const GridT> grid_;
   grid::IsoChoice iso_;
+  grid::DataEnd dataEnd_;
   grid::Transform transform_;
   grid::Affine affine_;
   std::vector<base::Box> boxes_;  ///< of crossed cells, in index space
@@ -111,9 +115,7 @@ template <class GridT>
 class CellCaster final : public Caster {
  public:
   explicit CellCaster(const CellSurface<GridT>& surface)
-      : surface_(surface),
-        values_(surface.grid()),
-        onlyActive_(surface.grid().getGridClass() == openvdb::GRID_LEVEL_SET) {}
+      : surface_(surface), values_(surface.grid()) {}
 
   [[nodiscard]] std::optional<RayHit> cast(const UnitRay& ray) override {
     const grid::Transform& transform = surface_.transform();
@@ -170,19 +172,26 @@ class CellCaster final : public Caster {
   }
 
   /// The interpolant is a cubic along the ray: between the places where its slope is 0 it crosses
-  /// the isovalue at most once.
+  /// the isovalue at most once. What is at the isovalue is outside, as samples there are, and so is
+  /// what rounding may have made of it.
   [[nodiscard]] std::optional<double> inCell(const IndexRay& ray, const openvdb::Coord& cell,
                                              double begin, double end) const {
     const auto corners = values_.corners(cell);
+    const grid::IsoChoice& iso = surface_.iso();
     unsigned inside = 0;
+    double farthest = 0;
     for (int n = 0; n < 8; ++n) {
       if (!std::isfinite(corners[n])) return std::nullopt;
-      inside |= grid::isInside(corners[n], surface_.iso()) ? 1U << n : 0;
+      inside |= grid::isInside(corners[n], iso) ? 1U << n : 0;
+      farthest = std::max(farthest, std::abs(corners[n] - iso.isovalue));
     }
-    if (inside == 0 || inside == 0xFF || (onlyActive_ && !isData(cell))) return std::nullopt;
+    if (inside == 0 || inside == 0xFF || dataEndsIn(cell, corners, inside)) return std::nullopt;
     const Vec3 base(cell.x(), cell.y(), cell.z());
     const auto value = [&](double t) {
-      return Interpolant<GridT>::mixed(corners, ray.at(t) - base) - surface_.iso().isovalue;
+      return Interpolant<GridT>::mixed(corners, ray.at(t) - base) - iso.isovalue;
+    };
+    const auto isInside = [&, rounding = kRounding * farthest](double t) {
+      return (iso.insideIsBelow ? -value(t) : value(t)) > rounding;
     };
     const double length = end - begin;
     const std::array<double, 2> flat = flatPlaces(
@@ -190,18 +199,20 @@ class CellCaster final : public Caster {
     double a = begin;
     for (const double share : {flat[0], flat[1], 1.0}) {
       const double b = begin + share * length;
-      if ((value(a) < 0) != (value(b) < 0)) return between(value, a, b);
+      if (isInside(a) != isInside(b)) return between(isInside, a, b);
       a = b;
     }
     return std::nullopt;
   }
 
-  /// Outside its band a level set holds no distances, and the surface is left open there.
-  [[nodiscard]] bool isData(const openvdb::Coord& cell) const {
+  [[nodiscard]] bool dataEndsIn(const openvdb::Coord& cell, const std::array<double, 8>& corners,
+                                unsigned inside) const {
+    if (!surface_.dataEnd().exists()) return false;
+    unsigned active = 0;
     for (int n = 0; n < 8; ++n) {
-      if (!values_.isActive(cell.offsetBy(n & 1, n >> 1 & 1, n >> 2))) return false;
+      active |= values_.isActive(cell.offsetBy(n & 1, n >> 1 & 1, n >> 2)) ? 1U << n : 0;
     }
-    return true;
+    return surface_.dataEnd().isIn(corners, inside, active);
   }
 
   /// Where the slope of the cubic through values at 0, 1/3, 2/3 and 1 is 0, in order; 0 or 1 where
@@ -220,20 +231,23 @@ class CellCaster final : public Caster {
     return {std::min(first, second), std::max(first, second)};
   }
 
-  template <class Value>
-  static double between(const Value& value, double a, double b) {
+  template <class Predicate>
+  static double between(const Predicate& isInside, double a, double b) {
     constexpr int kHalvings = 50;
-    const bool below = value(a) < 0;
+    const bool first = isInside(a);
     for (int n = 0; n < kHalvings; ++n) {
       const double middle = (a + b) / 2;
-      ((value(middle) < 0) == below ? a : b) = middle;
+      (isInside(middle) == first ? a : b) = middle;
     }
     return b;
   }
 
+  // What rounding makes of interpolated values, beside the farthest of a cell's samples from the
+  // isovalue.
+  static constexpr double kRounding = 1e-9;
+
   const CellSurface<GridT>& surface_;
   Interpolant<GridT> values_;
-  bool onlyActive_;
 };
 
 template <class GridT>
@@ -251,17 +265,21 @@ std::shared_ptr<const RaySurface> makeCellSurface(std::shared_ptr<const openvdb:
   contour.inside = options.inside;
   contour.nonFinite = NonFinite::Outside;
   std::vector<base::Box> boxes;
+  grid::FieldScale scale;
   grid::IsoChoice iso;
   {
     const grid::Volume volume = grid::openVolume(*grid, contour, job);
     iso = volume.blocks.iso();
+    scale = volume.scale;
     boxes = crossedBoxes(volume.blocks, job);
   }
+  const grid::DataEnd end(scale);
   if (auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)) {
-    return std::make_shared<CellSurface<openvdb::FloatGrid>>(std::move(floats), iso, boxes, job);
+    return std::make_shared<CellSurface<openvdb::FloatGrid>>(std::move(floats), iso, end, boxes,
+                                                             job);
   }
   return std::make_shared<CellSurface<openvdb::DoubleGrid>>(
-      openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid), iso, boxes, job);
+      openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid), iso, end, boxes, job);
 }
 
 }  // namespace tufa::rays
