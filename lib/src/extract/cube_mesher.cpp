@@ -1,5 +1,7 @@
 #include "extract/cube_mesher.h"
 
+#include <bit>
+
 #include "base/huge_pages.h"
 #include "extract/place_crossings.h"
 #include "uniform/uniform_surface.h"
@@ -109,7 +111,9 @@ void placeCentre(unsigned around, int place, const CubeTable& table, VertexIndex
   sum = sum / count;
   mesh.positions[centre] = {sum[0], sum[1], sum[2]};
   if (mesh.normals.empty()) return;
-  if (!normal.normalize()) normal = Vec3(0);
+  if (!normal.normalize()) {
+    normal = Vec3(mesh.normals[table[place + kEdgeOffsets[std::countr_zero(around)]]]);
+  }
   mesh.normals[centre] = {static_cast<float>(normal[0]), static_cast<float>(normal[1]),
                           static_cast<float>(normal[2])};
 }

@@ -76,7 +76,7 @@ void fillLoop(const std::vector<LoopCorner>& loop, const Mesh& mesh, BlockTriang
     normal += Vec3(mesh.normals[from]);
     to.triangles.emplace_back(from, next, middle);
   }
-  if (!normal.normalize()) normal = Vec3(0);
+  if (!normal.normalize()) normal = Vec3(mesh.normals[loop.front().vertex]);
   to.positions.push_back(sum / static_cast<double>(loop.size()));
   to.normals.push_back(Normal(normal));
 }

@@ -81,12 +81,12 @@ class LoopCrossings {
 };
 
 /// The vertex of a loop at a point counted from the middle of its cell, with the mean normal of the
-/// crossings.
+/// crossings, or the first one where they cancel out.
 inline Feature featureAt(const uniform::Vector& point, const Coord& corner,
                          const LoopCrossings& crossings, const grid::Affine& affine) {
   Vec3 sum(0);
   for (int i = 0; i < crossings.size(); ++i) sum += Vec3(crossings.normal(i));
-  if (!sum.normalize()) sum = Vec3(0);
+  if (!sum.normalize()) sum = Vec3(crossings.normal(0));
   return {affine.position(corner, 0.5 + static_cast<double>(point[0]),
                           0.5 + static_cast<double>(point[1]), 0.5 + static_cast<double>(point[2])),
           Normal(sum)};

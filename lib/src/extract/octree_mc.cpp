@@ -1,6 +1,7 @@
 #include "extract/octree_mc.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/huge_pages.h"
@@ -294,7 +295,7 @@ class OctreeMesher {
       normal += Vec3(mesh.normals[vertices[edge]]);
       ++count;
     });
-    if (!normal.normalize()) normal = Vec3(0);
+    if (!normal.normalize()) normal = Vec3(mesh.normals[vertices[std::countr_zero(around)]]);
     out.positions.push_back(sum / count);
     out.normals.push_back(Normal(normal));
   }

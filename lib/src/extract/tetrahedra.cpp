@@ -318,7 +318,8 @@ class TetrahedraMesher {
   }
 
   // Places the crossings of edges of a kind by linear interpolation, their normals by that of the
-  // gradients at both ends.
+  // gradients at both ends. Where it vanishes beside the rise along the edge, the normal is along
+  // the edge.
   template <int kKind>
   void placeKind(const BlockBits& crossed, const Points& points, const Coord& origin,
                  std::size_t& vertex, Mesh& mesh) const {
@@ -329,8 +330,8 @@ class TetrahedraMesher {
       base::forEachBit(crossed.slabs[x], [&](int bit) {
         const std::array<int, 3> cell = {x, bit >> 3, bit & 7};
         const int lowest = BlockSamples::index(cell[0], cell[1], cell[2]);
-        const float along = Finder::keptOffEnds(
-            Finder::linearRoot(points.value(lowest + from), points.value(lowest + to)));
+        const float first = points.value(lowest + from), last = points.value(lowest + to);
+        const float along = Finder::keptOffEnds(Finder::linearRoot(first, last));
         std::array<double, 3> at;
         for (int axis = 0; axis < 3; ++axis) {
           const int step = kEdge.to[axis] - kEdge.from[axis];
@@ -338,11 +339,14 @@ class TetrahedraMesher {
         }
         mesh.positions[vertex] = volume_.affine.position(origin, at[0], at[1], at[2]);
         if (!mesh.normals.empty()) {
-          uniform::Vector g;
+          const float rise = last - first;
+          uniform::Vector g, edge;
           for (int i = 0; i < 3; ++i) {
-            const float first = points.gradient(i, lowest + from);
-            g[i] = first + along * (points.gradient(i, lowest + to) - first);
+            const float lower = points.gradient(i, lowest + from);
+            g[i] = lower + along * (points.gradient(i, lowest + to) - lower);
+            edge[i] = static_cast<float>(kEdge.to[i] - kEdge.from[i]) * (rise > 0 ? 1.0F : -1.0F);
           }
+          if (!(uniform::dot(g, g) > 1e-12F * rise * rise)) g = edge;
           mesh.normals[vertex] = volume_.affine.normal(g[0], g[1], g[2]);
         }
         ++vertex;

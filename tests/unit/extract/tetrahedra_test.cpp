@@ -8,9 +8,11 @@
 #include <tufa/extract.h>
 #include <algorithm>
 #include <map>
+#include <random>
 #include <set>
 #include <vector>
 
+#include "base/vec3.h"
 #include "support/fields.h"
 #include "support/mesh_oracle.h"
 
@@ -236,6 +238,43 @@ TEST(Tetrahedra, HaveTheSurfaceOfThePiecewiseLinearInterpolant) {
     const Mesh mesh = extract(*grid, method, options);
     EXPECT_EQ(mesh.positions.size(), expected.vertices()) << static_cast<int>(method);
     EXPECT_EQ(tufa::test::inspect(mesh).euler(), expected.euler()) << static_cast<int>(method);
+  }
+}
+
+// Of samples that are 0 or 1 the gradients at both ends of an edge often cancel out, and so do the
+// normals around a loop now and then.
+TEST(Tetrahedra, HaveUnitNormalsOnBinaryData) {
+  std::mt19937 random(1);
+  const auto grid = tufa::test::sampled<FloatGrid>(
+      {openvdb::Coord(0), openvdb::Coord(23)}, 0,
+      [&](const openvdb::Coord&) { return random() % 4 == 0 ? 1 : 0; });
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  ExtractOptions options;
+  options.contour.isovalue = 0.5;
+  for (const Method method :
+       {Method::MarchingTetrahedra5, Method::MarchingTetrahedra6, Method::MarchingTetrahedra24,
+        Method::BodyCentred, Method::MarchingCubes33, Method::ExtendedMarchingCubes,
+        Method::CubicalMarchingSquares, Method::OctreeCubes}) {
+    const Mesh mesh = extract(*grid, method, options);
+    for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+      const Vec3 normal(mesh.normals[v]);
+      ASSERT_NEAR(normal.length(), 1, 1e-5) << static_cast<int>(method) << " at " << v;
+    }
+  }
+}
+
+// One sample inside, at whose neighbours the gradient is as long the other way.
+TEST(Tetrahedra, HaveOutwardNormalsAroundOneSample) {
+  const auto grid = FloatGrid::create(0);
+  grid->tree().setValue(openvdb::Coord(10), 1);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  ExtractOptions options;
+  options.contour.isovalue = 0.5;
+  for (const Method method : {Method::MarchingTetrahedra5, Method::MarchingTetrahedra6}) {
+    const Mesh mesh = extract(*grid, method, options);
+    for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+      EXPECT_GT(Vec3(mesh.normals[v]).dot(Vec3(mesh.positions[v]) - Vec3(10)), 0);
+    }
   }
 }
 
