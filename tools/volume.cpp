@@ -265,7 +265,7 @@ std::optional<Length> lengthIn(const std::string& text) {
 }
 
 double voxelSizeOf(const openvdb::GridBase& grid) {
-  return std::cbrt(grid.transform().voxelVolume());
+  return std::cbrt(std::abs(grid.transform().voxelVolume()));
 }
 
 double readTolerance(const std::string& option, const std::string& text,

@@ -58,7 +58,7 @@ double sampleComponent(const Accessor& accessor, const Vec3d& place, int i) {
 /// A place whose coordinates fit 32-bit integers, and 0 in place of NaN: mesh and grid may be of
 /// any size. That far out there is nothing but background.
 Vec3d nearestPlace(const Vec3d& place) {
-  constexpr double kMost = 1e9;
+  constexpr double kMost = 2147483000.0;
   Vec3d nearest;
   for (int axis = 0; axis < 3; ++axis) {
     nearest[axis] = std::isnan(place[axis]) ? 0 : std::clamp(place[axis], -kMost, kMost);

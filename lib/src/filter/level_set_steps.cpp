@@ -200,7 +200,7 @@ template <class GridT>
 typename GridT::Ptr resample(const GridT& grid, const Resample& step, double mostVoxels,
                              ProgressInterrupter& interrupter) {
   base::requireVoxelSize(step.voxelSize);
-  const double factor = step.voxelSize / std::cbrt(grid.transform().voxelVolume());
+  const double factor = step.voxelSize / std::cbrt(std::abs(grid.transform().voxelVolume()));
   // A band grows with the surface, other grids with the volume.
   const double voxels =
       static_cast<double>(grid.activeVoxelCount()) / std::pow(factor, isLevelSet(grid) ? 2 : 3);

@@ -67,7 +67,10 @@ struct Target {
   bool doubles = false;
 };
 
-double voxelSizeOf(const GridBase& grid) { return std::cbrt(grid.transform().voxelVolume()); }
+// The volume of a mirrored grid is below 0.
+double voxelSizeOf(const GridBase& grid) {
+  return std::cbrt(std::abs(grid.transform().voxelVolume()));
+}
 
 bool isOnLattice(const GridBase& grid, const Target& target) {
   return grid.constTransform() == target.lattice->constTransform();

@@ -111,8 +111,9 @@ class VdbField final : public TrilinearField {
  private:
   /// Lattice coordinates are 32-bit integers; a mesh may lie anywhere.
   [[nodiscard]] bool isWithinLattice(const Vec3& point) const {
+    constexpr double kMost = 2147483000.0;
     const Vec3 index = frame_.toIndex(point);
-    return std::abs(index[0]) < 1e9 && std::abs(index[1]) < 1e9 && std::abs(index[2]) < 1e9;
+    return std::abs(index[0]) < kMost && std::abs(index[1]) < kMost && std::abs(index[2]) < kMost;
   }
 
   static constexpr int kMostSteps = 20;

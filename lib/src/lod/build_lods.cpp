@@ -231,13 +231,13 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
     }
     Lod lod;
     lod.certificate = refine::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves, job);
+    const double moved = refine::finishMesh(model, contour, adaptive.extracted, report, job);
+    refine::widen(lod.certificate, moved, chain.voxelSize);
     lod.tolerance = target.triangles > 0 ? lod.certificate.maxErrorVoxels : target.tolerance;
     for (const refine::Dropped& piece : adaptive.dropped) {
       lod.dropped.push_back({model.affine().toWorld(piece.centre), piece.size});
       if (target.triangles > 0) lod.tolerance = std::max(lod.tolerance, piece.size);
     }
-    const double moved = refine::finishMesh(model, contour, adaptive.extracted, report, job);
-    refine::widen(lod.certificate, moved, chain.voxelSize);
     refine::setAngles(lod.certificate, adaptive.extracted.mesh, contour.minAngle);
     lod.mesh = std::move(adaptive.extracted.mesh);
     if (contour.keepCells) {

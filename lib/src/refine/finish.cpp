@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/collect.h"
 #include "base/sort_unique.h"
 #include "refine/rounding.h"
 #include "refine/uniform_repair.h"
@@ -76,6 +77,27 @@ std::vector<intersect::PolygonIndex> candidatesOf(const ExtractedMesh& extracted
   return candidates;
 }
 
+// Normals of length 1 where gradients or faces cancel: those of the faces around by area, and of
+// any direction where these cancel, too.
+void replaceZeroNormals(Mesh& mesh, base::Job& job) {
+  const std::vector<VertexIndex> without =
+      base::collectIf(job, mesh.normals.size(),
+                      [&](VertexIndex v) { return Vec3(mesh.normals[v]).squaredLength() == 0; });
+  if (without.empty()) return;
+  std::vector<Vec3> sums(without.size(), Vec3(0));
+  const auto add = [&](VertexIndex v, const Vec3& normal) {
+    const auto at = std::lower_bound(without.begin(), without.end(), v);
+    if (at != without.end() && *at == v) sums[at - without.begin()] += normal;
+  };
+  for (const Triangle& t : triangulate(mesh)) {
+    const auto& [a, b, c] = t.vertices;
+    const Vec3 p(mesh.positions[a]), q(mesh.positions[b]), r(mesh.positions[c]);
+    for (const VertexIndex v : t.vertices) add(v, (q - p).cross(r - p));
+  }
+  for (std::size_t i = 0; i < without.size(); ++i)
+    mesh.normals[without[i]] = Normal(sums[i].unitOrX());
+}
+
 }  // namespace
 
 double finishMesh(SurfaceModel& model, const ContourOptions& options, ExtractedMesh& extracted,
@@ -101,6 +123,7 @@ double finishMesh(SurfaceModel& model, const ContourOptions& options, ExtractedM
   }
   if (options.normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
   if (options.normals == Normals::None) mesh.normals = {};
+  replaceZeroNormals(mesh, job);
   return moved / affine.voxelSize();
 }
 

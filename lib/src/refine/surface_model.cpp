@@ -20,8 +20,8 @@ SurfaceModel::SurfaceModel(grid::Volume volume, const ContourOptions& options,
   if (!repairs_) return;
   closePairs_ = repairUniform(surface_, report_, job);
   // What intersects once it is rounded as it will be written moves now: finishMesh() would do so
-  // too late for a mesh that is measured against this one.
-  if (!options.uniform) repairRounded(surface_, closePairs_, report_, job);
+  // too late for a mesh that is measured against this one, which is what is written of it, too.
+  repairRounded(surface_, closePairs_, report_, job);
 }
 
 base::TriangleArray SurfaceModel::takeFaces(base::Job& job) {

@@ -49,7 +49,9 @@ UniformSurface makeUniformSurface(grid::Volume volume, const ContourOptions& opt
   UniformSurface surface{std::move(volume), std::move(topology), VertexSheets(), Mesh()};
   const grid::FieldScale& scale = surface.volume.scale;
   job.beginStage("vertices", ends.vertices);
-  const bool normals = options.normals == Normals::Gradient || scale.distance || !options.uniform;
+  // Repair looks at them; the mesh is the same whatever normals it is to have.
+  const bool normals =
+      options.normals == Normals::Gradient || scale.distance || !options.uniform || options.repair;
   surface.sheets = placeVertices(surface.volume.blocks, scale, surface.topology, surface.affine(),
                                  normals, surface.mesh, job);
   job.beginStage("polygons", ends.polygons);

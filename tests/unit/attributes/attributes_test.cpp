@@ -84,6 +84,17 @@ TEST(Attributes, AreTheBackgroundFarAway) {
   EXPECT_EQ(sampleAttribute(mesh, *grid).values, (std::vector<float>{7, 7, 7}));
 }
 
+TEST(Attributes, AreReadAsFarAsVoxelsLie) {
+  Mesh mesh;
+  const auto grid = openvdb::FloatGrid::create(0);
+  grid->setName("field");
+  for (const int at : {1500000000, 2147480000, -2147480000}) {
+    grid->tree().setValue({at, 0, 0}, 7);
+    mesh.positions = {{static_cast<double>(at), 0, 0}};
+    EXPECT_EQ(sampleAttribute(mesh, *grid).values, std::vector<float>{7}) << at;
+  }
+}
+
 TEST(Attributes, IntegersAreNotRoundedBetweenVoxels) {
   Mesh mesh;
   mesh.positions = {{0.25, 0, 0}, {1.5, 0, 0}};

@@ -148,6 +148,28 @@ TEST(Contour, NormalsAreThoseAskedFor) {
   EXPECT_EQ(plain.positions, tufa::test::uniformMesh(*grid).positions);
 }
 
+// In noise gradients cancel, and repair looks at normals.
+TEST(Contour, NormalsHaveLength1AndLeaveTheMeshAsItIs) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    test::NoiseOptions noise;
+    noise.seed = seed;
+    noise.size = 24;
+    const auto grid = test::noise<FloatGrid>(noise);
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    ContourOptions options;
+    options.isovalue = 0;
+    const Mesh first = tufa::test::uniformMesh(*grid, options);
+    for (const Normals normals : {Normals::Gradient, Normals::Faces, Normals::None}) {
+      options.normals = normals;
+      const Mesh mesh = tufa::test::uniformMesh(*grid, options);
+      EXPECT_EQ(mesh.positions, first.positions);
+      EXPECT_EQ(mesh.quads, first.quads);
+      EXPECT_EQ(mesh.triangles, first.triangles);
+      for (const Normal& n : mesh.normals) ASSERT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-4);
+    }
+  }
+}
+
 TEST(Contour, NothingInGivesNothingOut) {
   ContourReport report;
   report.faceFlips = 7;

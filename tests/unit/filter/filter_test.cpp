@@ -141,6 +141,18 @@ TEST(Filters, ResamplingKeepsCavities) {
   EXPECT_GT(finer->tree().getValue({60, 0, 0}), 0);
 }
 
+// The determinant of a mirrored transform is below 0.
+TEST(Filters, MirroredGridsAreLikeOthers) {
+  const auto grid = makeSphere(1, {0.3F, 0, 0});
+  const auto mirrored = grid->deepCopy();
+  mirrored->transform().postMult(
+      openvdb::Mat4d(openvdb::Vec4d(-1, 0, 0, 0), {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, true));
+  for (const Filter& filter : {Filter(Offset{0.25}), Filter(Resample{0.06})}) {
+    EXPECT_NEAR(std::abs(volumeOf(*after(*mirrored, filter))), volumeOf(*after(*grid, filter)),
+                0.01 * ball(1));
+  }
+}
+
 // And there was no inside left of what a box had cut off.
 TEST(Filters, ResamplingKeepsOpenSurfaces) {
   const auto grid = makeSphere(1);
