@@ -212,7 +212,7 @@ void requireLeft(const openvdb::GridBase& grid, const std::string& file, const F
   if (first == run.reports.end()) return;
   const FilterWord& word = run.words[static_cast<std::size_t>(first - run.reports.begin())];
   // A box that lies inside a solid meets none of its voxels either.
-  const bool isClip = word.option == "clip" && grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+  const bool isClip = word.option == "clip" && isLevelSet(grid);
   const std::string hint = isClip ? ": the box meets none of the voxels around its surface" : "";
   throw Error(ErrorCode::UnsupportedGrid, "--" + word.option + " " + word.value +
                                               " leaves nothing of grid \"" + nameOf(grid) +

@@ -148,7 +148,7 @@ std::optional<double> readIsovalue(const std::optional<std::string>& text,
 void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid,
                   double isovalue) {
   if (text && *text != "auto") return;
-  if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return;
+  if (isLevelSet(grid)) return;
   printNote("note: isovalue " + formatNumber(isovalue) + " was taken for " +
             shownGrid(grid.getName()) + ", half way between the least and the greatest value");
 }
@@ -262,6 +262,10 @@ std::optional<Length> lengthIn(const std::string& text) {
   const std::optional<double> value = numberIn<double>(number);
   if (!value || !std::isfinite(*value)) return std::nullopt;
   return Length{*value, world};
+}
+
+bool isLevelSet(const openvdb::GridBase& grid) {
+  return grid.getGridClass() == openvdb::GRID_LEVEL_SET;
 }
 
 double voxelSizeOf(const openvdb::GridBase& grid) {

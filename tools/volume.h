@@ -80,6 +80,8 @@ struct Length {
 /// "0.1" is in voxels, "0.1w" or "0.1W" in world units; nothing for any other text.
 [[nodiscard]] std::optional<Length> lengthIn(const std::string& text);
 
+[[nodiscard]] bool isLevelSet(const openvdb::GridBase& grid);
+
 /// The cube root of a voxel's volume, in world units.
 [[nodiscard]] double voxelSizeOf(const openvdb::GridBase& grid);
 
