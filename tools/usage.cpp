@@ -117,7 +117,10 @@ std::string describeMisuse(const CLI::App& app, const CLI::ParseError& error,
     return "there is no option " + words.front() + "; a subcommand comes first (see tufa --help)";
   }
   const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
-  const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty();
+  // Of a mistyped option it may be said that it is required.
+  const bool extra = (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                      dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) &&
+                     !parsed.empty() && !extras.empty();
   const std::string what = extra ? unexpected(*parsed.front(), extras) : oneLine(error.what());
   return what + " (see tufa" + command + " --help)";
 }

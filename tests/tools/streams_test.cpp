@@ -42,6 +42,7 @@ TEST_F(Pipes, SummariesGoToStandardErrorBesideData) {
   EXPECT_EQ(test::parseJson(outcome.err).at("output"), "-");
   EXPECT_EQ(outcome.out.rfind("ply\n", 0), 0u);
   EXPECT_EQ(run("mesh s.vdb -o - --format ply --quiet").err, "");
+  EXPECT_EQ(run("mesh s.vdb -o - --format ply --quiet --threads 64").err, "");
   // A failure leaves standard output empty.
   const Outcome failure = run("mesh s.vdb -o - --format ply --grid none --json");
   EXPECT_EQ(failure.exitCode, 3);

@@ -204,6 +204,7 @@ TEST_F(Usage, SuggestsAnOption) {
   expectFailure("mesh s.vdb -o m.ply --tolerence 0.2", 2,
                 "there is no option --tolerence; did you mean --tolerance? (see tufa mesh");
   expectFailure("lod s.vdb -o m.glb --triangle=30", 2, "did you mean --triangles?");
+  expectFailure("mesh s.vdb --outputt m.ply", 2, "did you mean --output?");
   expectFailure("mesh s.vdb -o m.ply --wavelength 3", 2, "there is no option --wavelength (see");
   expectFailure("mesh s.1.vdb s.2.vdb -o m.ply", 2, "by one name in quotes, 'smoke.####.vdb'");
 }

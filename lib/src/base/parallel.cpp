@@ -1,6 +1,7 @@
 #include "base/parallel.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/partitioner.h>
@@ -8,6 +9,7 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <cstddef>
 
 #ifdef TUFA_THREAD_SANITIZER
 extern "C" {
@@ -72,7 +74,10 @@ void runWithThreads(int threads, const std::function<void()>& work) {
     return;
   }
   HandOver call;
-  tbb::task_arena arena(threads);
+  // Of more than the process may have, oneTBB would write to standard error.
+  const std::size_t most =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::task_arena arena(static_cast<int>(std::min(static_cast<std::size_t>(threads), most)));
   arena.execute([&] {
     const HandOver::Task task(call);
     runIsolated(work);
