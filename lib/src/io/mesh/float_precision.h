@@ -18,7 +18,8 @@ void requireFloatRange(const Mesh& mesh);
 
 /// How far a position moves at most when it is stored as floats counted from `origin`, world units.
 /// Throws Error(LimitExceeded), which names the format, where that is more than a twentieth of the
-/// edges in the mean, or turns triangles over, but for needles about as thin as a hundredth of them.
+/// edges in the mean, or turns triangles over, but for needles about as thin as a hundredth of
+/// them.
 [[nodiscard]] double requireFloatsEnough(const Mesh& mesh, const Position& origin,
                                          std::string_view format);
 
