@@ -68,6 +68,18 @@ std::string csvField(const std::string& text) {
   return field + "\"";
 }
 
+/// The files of a frame's grids, each once, with commas between; the name that was asked for if
+/// there are none.
+std::string outputsOf(const FrameRow& row) {
+  std::string text, last;
+  for (const Json& grid : gridsOf(row.result)) {
+    const std::string output = grid.value("output", row.output);
+    if (output != last) text += (last.empty() ? "" : ", ") + output;
+    last = output;
+  }
+  return last.empty() ? row.output : text;
+}
+
 std::string describeMesh(const FrameRow& row) {
   const Json& result = row.result;
   std::string text = formatCount(sumOf(result, "triangles")) + " triangles";
@@ -78,14 +90,7 @@ std::string describeMesh(const FrameRow& row) {
   if (const auto wrong = sumOf(result, "non_finite_values"); wrong > 0) {
     text += ", " + formatCount(wrong) + " NaN or infinite values";
   }
-  text += ", " + shortNumber(secondsOf(result)) + " s: ";
-  std::string last;
-  for (const Json& grid : gridsOf(result)) {
-    const std::string output = grid.value("output", row.output);
-    if (output != last) text += (last.empty() ? "" : ", ") + output;
-    last = output;
-  }
-  return text;
+  return text + ", " + shortNumber(secondsOf(result)) + " s: " + outputsOf(row);
 }
 
 }  // namespace
@@ -126,7 +131,7 @@ std::string FrameTable::describeLast() const {
     case FrameState::Done:
       return text + describeMesh(row) + "\n";
     case FrameState::Empty:
-      return text + "no surface, an empty mesh: " + row.output + "\n";
+      return text + "no surface, an empty mesh: " + outputsOf(row) + "\n";
     case FrameState::Missing:
       return text + "missing\n";
     case FrameState::Skipped:
@@ -154,7 +159,7 @@ Json FrameTable::toJson(double seconds) const {
     Json frame = {{"frame", row.number}, {"state", nameOfState(row.state)}};
     frame.update(row.result);
     frame["file"] = row.file;
-    frame["output"] = row.output;
+    frame.emplace("output", row.output);  // of several grids each has its own
     json["frames"].push_back(std::move(frame));
   }
   for (std::size_t state = 0; state < kStates.size(); ++state) {
@@ -172,7 +177,7 @@ std::string FrameTable::toCsv() const {
     const auto number = [&](const std::string& value) { return written ? value : std::string(); };
     const auto error = errorOf(row.result);
     text += std::to_string(row.number) + "," + nameOfState(row.state) + "," + csvField(row.file) +
-            "," + csvField(row.output) + "," +
+            "," + csvField(outputsOf(row)) + "," +
             number(std::to_string(sumOf(row.result, "triangles"))) + "," +
             number(std::to_string(sumOf(row.result, "vertices"))) + "," +
             (error ? formatNumber(*error) : "") + "," +

@@ -133,6 +133,13 @@ TEST_F(Sequence, TellsTheFilesOfSeveralGrids) {
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_NE(outcome.out.find(": m_sphere.0001.ply, m_second.0001.ply\n"), std::string::npos)
       << outcome.out;
+  ASSERT_EQ(
+      run("mesh 'f.####.vdb' -o 'm_{}.####.ply' --frames 1,2 --grid '*' --report r.csv").exitCode,
+      0);
+  const std::string table = readBytes(folder / "r.csv");
+  EXPECT_NE(table.find(",\"m_sphere.0001.ply, m_second.0001.ply\","), std::string::npos) << table;
+  const Outcome one = run("mesh 'f.####.vdb' -o 'm_{}.####.ply' --frames 2 --json");
+  EXPECT_EQ(Json::parse(one.out)["frames"][0]["output"], "m_sphere.0002.ply");
 }
 
 TEST_F(Sequence, IsovaluesThatDifferFromFrameToFrameAreTold) {
