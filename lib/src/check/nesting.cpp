@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/box.h"
+#include "base/count_odd.h"
 #include "base/vec3.h"
 #include "check/exact.h"
 #include "check/sum_ranges.h"
@@ -151,13 +152,7 @@ class CavityFinder {
       isOn = isOn || (box.meets(start) && liesOn(faces_.positions, face, from));
     });
     if (isOn) return std::nullopt;
-    std::sort(crossed.begin(), crossed.end());
-    std::size_t depth = 0;
-    for (std::size_t first = 0, last = 0; first < crossed.size(); first = last) {
-      while (last < crossed.size() && crossed[last] == crossed[first]) ++last;
-      depth += (last - first) % 2;
-    }
-    return depth;
+    return base::countOdd(crossed);
   }
 
   const Faces& faces_;

@@ -10,6 +10,7 @@
 
 #include "base/bvh.h"
 #include "base/connected.h"
+#include "base/count_odd.h"
 #include "base/sheared_ray.h"
 #include "base/vec3.h"
 #include "base/vertex_welder.h"
@@ -132,13 +133,7 @@ class Layering {
       const auto at = ray.passes(cornersOf(t));
       if (at && *at > 0) passed.push_back(part);
     });
-    std::sort(passed.begin(), passed.end());
-    std::size_t depth = 0;
-    for (std::size_t i = 0, end = 0; i < passed.size(); i = end) {
-      while (end < passed.size() && passed[end] == passed[i]) ++end;
-      depth += (end - i) % 2;
-    }
-    return depth;
+    return base::countOdd(passed);
   }
 
   [[nodiscard]] std::vector<ShellLayer> layers() const {
