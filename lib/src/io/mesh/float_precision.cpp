@@ -77,12 +77,14 @@ double requireFloatsEnough(const Mesh& mesh, const Position& origin, std::string
   }
   const double mean = count == 0 ? 0 : edges / static_cast<double>(count);
   if (largest <= (turned == 0 ? kMost : kThin) * mean) return largest;
+  const std::string turns = turned == 0 ? ""
+                                        : ", and turns " + std::to_string(turned) +
+                                              (turned == 1 ? " triangle over" : " triangles over");
   throw Error(ErrorCode::LimitExceeded,
               std::string(format) + " has single precision, which moves vertices by up to " +
                   base::shortNumberText(largest) + " where edges are " +
-                  base::shortNumberText(mean) + " long in the mean, and turns " +
-                  std::to_string(turned) + (turned == 1 ? " triangle" : " triangles") +
-                  " over: write .ply, .obj or .off, which have double precision, or move the "
+                  base::shortNumberText(mean) + " long in the mean" + turns +
+                  ": write .ply, .obj or .off, which have double precision, or move the "
                   "volume to the origin");
 }
 
