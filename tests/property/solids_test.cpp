@@ -9,6 +9,7 @@
 #include <tufa/implicit.h>
 #include <tufa/memory.h>
 #include <tufa/voxelize.h>
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -45,12 +46,16 @@ void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform,
   EXPECT_LE(test::largestDistance(mesh, uniform, reach) / kVoxel, most);
 }
 
-void expectKeptPromises(unsigned seed) {
-  SCOPED_TRACE("seed " + std::to_string(seed));
+openvdb::FloatGrid::Ptr gridOf(unsigned seed) {
   const std::string text = test::randomSolid(seed);
   VoxelizeOptions options;
   options.voxelSize = kVoxel;
-  const auto grid = voxelize(*implicit::readScene(FileBytes{text, "solid"}).field, options);
+  return voxelize(*implicit::readScene(FileBytes{text, "solid"}).field, options);
+}
+
+void expectKeptPromises(unsigned seed) {
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  const auto grid = gridOf(seed);
   const Mesh uniform = test::uniformMesh(*grid);
   if (uniform.positions.empty()) return;  // cut away, or outside what it was intersected with
   ContourOptions asked;
@@ -69,6 +74,22 @@ TEST(Solids, KeepTheirPromises) {
   const char* const from = std::getenv("TUFA_FIRST_SOLID");
   const auto first = static_cast<unsigned>(from != nullptr ? std::atoi(from) : 0);
   for (unsigned i = 0; i < count; ++i) expectKeptPromises(first + i);
+}
+
+// All tolerances are reached by way of the same smaller ones. A dozen triangles more or less is
+// chance, and so is two percent.
+TEST(Solids, HaveNoMoreTrianglesAtLargerTolerances) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const auto grid = gridOf(seed);
+    ContourOptions options;
+    std::size_t least = contour(*grid, options).triangleCount();
+    for (double tolerance = 0.14; tolerance < 7; tolerance *= 1.4) {
+      options.tolerance = tolerance;
+      const std::size_t triangles = contour(*grid, options).triangleCount();
+      EXPECT_LE(triangles, least + least / 50 + 12) << "seed " << seed << " at " << tolerance;
+      least = std::min(least, triangles);
+    }
+  }
 }
 
 // Its cut had a speck too thin for the way there to bound the way back.

@@ -36,11 +36,6 @@ constexpr int kClusterPhases = 3;
 // samples.
 constexpr float kFewInner = 0.6f;
 constexpr Index kFewerParts = 2;
-// On the way to a large tolerance each is this share of the next, down to kRampEnd voxels.
-constexpr float kRamp = 0.25f;
-constexpr float kRampEnd = 0.09f;
-// No step is below this many times the tolerance that the surface has been reduced to.
-constexpr float kRampStep = 1.5f;
 // Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
 constexpr int kMostPhases = 24;
 // Where lines alone are reduced, triangles beside them get longer and thinner than they will be.
@@ -56,10 +51,11 @@ constexpr float kLooseTolerance = 4;
 // A proxy is good for tolerances from so many times its error on: sample meshes have as many
 // triangles then, give or take a percent in sum.
 constexpr float kProxyRatio = 15;
-// What was beyond the tolerance is held within so many tolerances and voxels: at this share of the
-// tolerance, down to so many voxels; below, and where that does not help, it stays as it is.
+// What was beyond the tolerance is held within so many tolerances and voxels, twice the voxels with
+// each attempt: at this share of the tolerance, down to so many voxels; below, and where that does
+// not help, it stays as it is.
 constexpr float kHeldTolerances = 2;
-constexpr float kHeldVoxels = 2;
+constexpr float kHeldVoxels = 0.25f;
 constexpr float kHeldShare = 0.25f;
 constexpr float kLeastHeld = 0.2f;
 
@@ -183,7 +179,8 @@ void Reduction::chooseReference(float tolerance) {
 // Less is allowed around some faces of the reference than the tolerance.
 void Reduction::hold(const std::vector<Index>& faces, float tolerance) {
   const float share = kHeldShare * tolerance < kLeastHeld ? 0 : kHeldShare;
-  reference_.hold(faces, kHeldTolerances * tolerance + kHeldVoxels, share, job_);
+  const float radius = kHeldTolerances * tolerance + std::ldexp(kHeldVoxels, attempt_);
+  reference_.hold(faces, radius, share, job_);
 }
 
 // The surface as it was while the mesh was the reference. Made again where it is asked for, which
@@ -230,12 +227,13 @@ void Reduction::beginLines() {
 }
 
 // Large tolerances by way of smaller ones: most collapses are cheap there, as little surface is
-// near other surface and triangles hold few samples.
+// near other surface and triangles hold few samples. All tolerances have the same way, so the mesh
+// of a larger one is made of one that smaller ones are made of, too, and does not have more
+// triangles for having taken another course.
 void Reduction::descendTo(float tolerance, Index count) {
-  std::vector<float> way{tolerance};
-  const float least = std::max(kRampStep * tolerance_, kRampEnd);
-  while (way.back() * kRamp > least) way.push_back(way.back() * kRamp);
-  for (std::size_t i = way.size(); i-- > 1;) reduce(way[i], count, kRampPhases);
+  for (float step = kFirstStep; kRampStep * step <= tolerance; step *= kStep) {
+    if (step > kRampStep * tolerance_) reduce(step, count, kRampPhases);
+  }
   reduce(tolerance, count, kPhases);
 }
 

@@ -126,6 +126,11 @@ class Reduction {
  private:
   static constexpr int kPhases = 16;     ///< most at one tolerance
   static constexpr int kRampPhases = 2;  ///< at one on the way to a larger one
+  /// The first tolerance on the way to larger ones, in voxels, and the factor by which they grow.
+  static constexpr float kFirstStep = 0.1f;
+  static constexpr float kStep = 4;
+  /// None is followed by one below this many times itself.
+  static constexpr float kRampStep = 1.5f;
   /// Voxels. Where a larger tolerance gave little, the shape of triangles is in the way: slivers,
   /// fans and turns are allowed from then on.
   static constexpr float kStuckTolerance = 2;

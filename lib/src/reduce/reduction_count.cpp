@@ -10,13 +10,10 @@
 namespace tufa::reduce {
 namespace {
 
-// The first tolerance, and the factor by which it grows.
-constexpr float kFirstTolerance = 0.025f;
-constexpr float kStep = 4;
 // The least tolerance that reaches the number may be smaller by so much than one at which two
-// phases do not; it is found to 3%.
+// phases do not. It is found to this factor.
 constexpr float kReserve = 1.5f;
-constexpr int kBisections = 6;
+constexpr float kFound = 1.03f;
 // A mesh above the number by less than one triangle in so many gets more phases: in other parts
 // they may find what is missing.
 constexpr Index kNearly = 8;
@@ -73,8 +70,9 @@ float Reduction::toCountWithin(Index count, float mostTolerance) {
 }
 
 // Growing tolerances to the first that reaches the count, and between that one and the one before
-// by halves, each from the mesh of two tolerances ago: as toTolerance() goes. So the error at the
-// count is that of the tolerance that gives as many triangles. Whether the count is reached.
+// by halves, each from the mesh of two tolerances ago: the way that toTolerance() goes, step for
+// step. So the error at the count is that of the tolerance that gives as many triangles. Whether
+// the count is reached.
 bool Reduction::findCount(Index count, float mostTolerance) {
   keepsShape_ = true;
   const auto isReached = [&] { return triangleCount() <= count; };
@@ -83,8 +81,9 @@ bool Reduction::findCount(Index count, float mostTolerance) {
     reduce(tolerance, count, phases);
   };
   State start = state(), last = start;
-  float low = tolerance_,
-        high = std::min(std::max(tolerance_ * kStep, kFirstTolerance), mostTolerance);
+  float low = tolerance_, high = kFirstStep;
+  while (high <= kRampStep * tolerance_) high *= kStep;
+  high = std::min(high, mostTolerance);
   for (int stuck = 0;;) {
     const Index before = triangleCount();
     State next = state();
@@ -100,9 +99,10 @@ bool Reduction::findCount(Index count, float mostTolerance) {
     if (isLast) return false;
     low = high / kReserve, high = std::min(high * kStep, mostTolerance);
   }
-  low = std::max({low, start.tolerance, high / (kStep * kReserve)});
+  const float least = high > kFirstStep ? high / (kStep * kReserve) : kLeastTolerance;
+  low = std::max({low, start.tolerance, least});
   State best = state();
-  for (int i = 0; i < kBisections && low < high; ++i) {
+  while (kFound * low < high) {
     const float middle = std::sqrt(low * high);
     restore(start);
     trees_.clear(), nextTree_ = 0;
