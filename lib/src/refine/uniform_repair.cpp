@@ -65,23 +65,28 @@ class UniformRepair {
     report_.flippedDiagonals += repaired.flippedDiagonals;
   }
 
-  // A vertex that a crease or the repair moved out of its cell may have passed a small component.
-  // Moves misplaced components and what is beside them to their mass points. Returns these
-  // vertices, sorted.
+  // A vertex that a crease or the repair moved out of its cell may have passed a small component,
+  // or lie in the plane of all others of one. Moves misplaced components and what is beside them,
+  // and components that rounding may turn over, to their mass points. Returns the vertices that
+  // moved, sorted.
   std::vector<VertexIndex> putBackComponents() {
     if (surface_.sheets.sharpCount() == 0 || surface_.topology.openEdges > 0 ||
         surface_.volume.blocks.isPart()) {
       return {};
     }
-    std::vector<VertexIndex> misplaced = topology::findMisplaced(mesh_, job_, kMostSmall);
-    if (misplaced.empty()) return misplaced;
+    const std::vector<VertexIndex> misplaced =
+        topology::findMisplaced(mesh_, job_, kMostSmall, margin_);
+    if (misplaced.empty()) return {};
     const std::vector<Position> fallbacks = sourceOf(surface_, job_).massPoints(misplaced);
+    std::vector<VertexIndex> moved;
     for (std::size_t i = 0; i < misplaced.size(); ++i) {
-      mesh_.positions[misplaced[i]] = fallbacks[i];
       surface_.sheets.withdraw(misplaced[i]);
+      if (mesh_.positions[misplaced[i]] == fallbacks[i]) continue;
+      mesh_.positions[misplaced[i]] = fallbacks[i];
+      moved.push_back(misplaced[i]);
     }
-    report_.movedVertices += misplaced.size();
-    return misplaced;
+    report_.movedVertices += moved.size();
+    return moved;
   }
 
   void addCandidates(const std::vector<intersect::PolygonIndex>& polygons) {

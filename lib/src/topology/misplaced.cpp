@@ -69,24 +69,22 @@ class Pieces {
   [[nodiscard]] std::size_t size(std::size_t component) const { return sizes_[component]; }
 
   // Six times the signed volume of each component. Taken about its lowest vertex, so that one far
-  // from the origin does not lose its volume to rounding. Sums of parts of the mesh, whichever
-  // threads make them, are added up in the order of the parts.
+  // from the origin does not lose its volume to rounding.
   [[nodiscard]] std::vector<double> volumes() const {
-    constexpr std::size_t kAtOnce = 4096;  // runs
-    std::vector<std::vector<std::pair<std::uint32_t, double>>> sums(runCount() / kAtOnce + 1);
-    job_.forRanges(sums.size(), 1, [&](std::size_t from, std::size_t to) {
-      for (std::size_t part = from; part < to; ++part) {
-        const std::size_t last = std::min((part + 1) * kAtOnce, runCount());
-        for (std::size_t run = part * kAtOnce; run < last; ++run) {
-          forTrianglesOf(run, [&](const Triangle& triangle) { addTo(sums[part], triangle); });
-        }
-      }
+    return sums([&](std::uint32_t component, const Triangle& triangle) {
+      const auto& v = triangle.vertices;
+      const Vec3 origin = at(first_[component]);
+      return (at(v[0]) - origin).dot((at(v[1]) - origin).cross(at(v[2]) - origin));
     });
-    std::vector<double> volumes(count());
-    for (const auto& part : sums) {
-      for (const auto& [component, sum] : part) volumes[component] += sum;
-    }
-    return volumes;
+  }
+
+  // Twice the area of each component of at most so many vertices; 0 of others.
+  [[nodiscard]] std::vector<double> areas(std::size_t mostVertices) const {
+    return sums([&](std::uint32_t component, const Triangle& triangle) {
+      const auto& v = triangle.vertices;
+      if (sizes_[component] > mostVertices) return 0.0;
+      return (at(v[1]) - at(v[0])).cross(at(v[2]) - at(v[0])).length();
+    });
   }
 
   // For each of some vertices whether it lies inside an odd number of other components: whether a
@@ -174,12 +172,30 @@ class Pieces {
     });
     return box;
   }
-  void addTo(std::vector<std::pair<std::uint32_t, double>>& sums, const Triangle& triangle) const {
-    const auto& v = triangle.vertices;
-    const std::uint32_t component = componentOf_[v[0]];
-    if (sums.empty() || sums.back().first != component) sums.emplace_back(component, 0);
-    const Vec3 origin = at(first_[component]);
-    sums.back().second += (at(v[0]) - origin).dot((at(v[1]) - origin).cross(at(v[2]) - origin));
+  // The sum of value(component, triangle) over the triangles of each component. Sums of parts of
+  // the mesh, whichever threads make them, are added up in the order of the parts.
+  template <class Value>
+  [[nodiscard]] std::vector<double> sums(const Value& value) const {
+    constexpr std::size_t kAtOnce = 4096;  // runs
+    std::vector<std::vector<std::pair<std::uint32_t, double>>> parts(runCount() / kAtOnce + 1);
+    job_.forRanges(parts.size(), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        auto& part = parts[i];
+        const std::size_t last = std::min((i + 1) * kAtOnce, runCount());
+        for (std::size_t run = i * kAtOnce; run < last; ++run) {
+          forTrianglesOf(run, [&](const Triangle& triangle) {
+            const std::uint32_t component = componentOf_[triangle.vertices[0]];
+            if (part.empty() || part.back().first != component) part.emplace_back(component, 0);
+            part.back().second += value(component, triangle);
+          });
+        }
+      }
+    });
+    std::vector<double> all(count());
+    for (const auto& part : parts) {
+      for (const auto& [component, sum] : part) all[component] += sum;
+    }
+    return all;
   }
 
   const Mesh& mesh_;
@@ -189,27 +205,25 @@ class Pieces {
   std::vector<std::size_t> sizes_;          // and how many it has
 };
 
-}  // namespace
-
-std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
-  return base::connectedItems(mesh.positions.size(), [&](const auto& connect) {
-    base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
-      for (const VertexIndex other : v) connect(v[0], other);
-    });
-  });
+// All vertices of those components of which component(i) holds.
+template <class Predicate>
+std::vector<VertexIndex> verticesOf(const Pieces& pieces, std::size_t vertices, base::Job& job,
+                                    const Predicate& component) {
+  std::vector<VertexIndex> found;
+  for (VertexIndex i = 0; i < vertices; ++i) {
+    job.pollCancelled(i);
+    if (component(pieces.componentOf(i))) found.push_back(i);
+  }
+  return found;
 }
 
-std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::size_t mostVertices) {
-  const Pieces pieces(mesh, job);
-  if (pieces.count() <= 1) return {};
-  std::vector<VertexIndex> small;  // the first vertex of each component that is
-  for (std::size_t i = 0; i < pieces.count(); ++i) {
-    if (pieces.size(i) <= mostVertices) small.push_back(pieces.first(i));
-  }
-  if (small.empty()) return {};
+// The vertices of misplaced components, of those with these first vertices, and the vertices of the
+// triangles of others nearest to them.
+std::vector<VertexIndex> findWrong(const Pieces& pieces, const std::vector<double>& volumes,
+                                   std::size_t allVertices, std::vector<VertexIndex> small,
+                                   base::Job& job) {
   // Vertices that no polygon uses are components without volume. The component of the largest
   // volume lies in no other one.
-  const std::vector<double> volumes = pieces.volumes();
   const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const double outermost = *std::max_element(volumes.begin(), volumes.end(), isSmaller);
   // Leaves of some vertices those on the wrong side.
@@ -229,28 +243,54 @@ std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::si
   // whole. Only components whose first vertex is wrong are tested vertex by vertex.
   std::vector<std::size_t> wrong(pieces.count(), 0);  // vertices
   for (const VertexIndex vertex : small) wrong[pieces.componentOf(vertex)] = 1;
-  const auto verticesOfWrong = [&] {
-    std::vector<VertexIndex> vertices;
-    for (VertexIndex i = 0; i < mesh.positions.size(); ++i) {
-      job.pollCancelled(i);
-      if (wrong[pieces.componentOf(i)] != 0) vertices.push_back(i);
-    }
-    return vertices;
-  };
-  std::vector<VertexIndex> tested = verticesOfWrong();
+  const auto isWrong = [&](std::uint32_t component) { return wrong[component] != 0; };
+  std::vector<VertexIndex> tested = verticesOf(pieces, allVertices, job, isWrong);
   keepWrong(tested);
   std::fill(wrong.begin(), wrong.end(), 0);
   for (const VertexIndex vertex : tested) ++wrong[pieces.componentOf(vertex)];
   for (std::size_t i = 0; i < wrong.size(); ++i) {
     if (wrong[i] != pieces.size(i)) wrong[i] = 0;
   }
-  std::vector<VertexIndex> misplaced = verticesOfWrong();
+  std::vector<VertexIndex> misplaced = verticesOf(pieces, allVertices, job, isWrong);
   if (misplaced.empty()) return {};
   for (const Triangle& nearest : pieces.nearestOthers(misplaced)) {
     misplaced.insert(misplaced.end(), nearest.vertices.begin(), nearest.vertices.end());
   }
-  base::sortUnique(misplaced);
   return misplaced;
+}
+
+}  // namespace
+
+std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
+  return base::connectedItems(mesh.positions.size(), [&](const auto& connect) {
+    base::forPolygons(mesh, [&](base::PolygonIndex, base::Corners v) {
+      for (const VertexIndex other : v) connect(v[0], other);
+    });
+  });
+}
+
+std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::size_t mostVertices,
+                                       double thinnest) {
+  const Pieces pieces(mesh, job);
+  if (pieces.count() <= 1) return {};
+  std::vector<VertexIndex> small;  // the first vertex of each component that is
+  for (std::size_t i = 0; i < pieces.count(); ++i) {
+    if (pieces.size(i) <= mostVertices) small.push_back(pieces.first(i));
+  }
+  if (small.empty()) return {};
+  const std::vector<double> volumes = pieces.volumes();
+  const std::size_t all = mesh.positions.size();
+  std::vector<VertexIndex> found = findWrong(pieces, volumes, all, std::move(small), job);
+  if (thinnest > 0) {
+    // A plate of area 2A is as thick as its volume V over A; here are 6 V and 4 A.
+    const std::vector<double> areas = pieces.areas(mostVertices);
+    const std::vector<VertexIndex> thin = verticesOf(pieces, all, job, [&](std::uint32_t i) {
+      return areas[i] > 0 && std::abs(volumes[i]) <= 1.5 * thinnest * areas[i];
+    });
+    found.insert(found.end(), thin.begin(), thin.end());
+  }
+  base::sortUnique(found);
+  return found;
 }
 
 }  // namespace tufa::topology

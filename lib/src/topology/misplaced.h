@@ -21,11 +21,14 @@ namespace tufa::topology {
 /// volume, which lies in no other, tells what the outermost direction is. So a component is right
 /// if the number of others around it is odd exactly if its volume has the other sign. Components
 /// that intersect others are not reported; they are left to repair. Every component that lies
-/// wholly on the wrong side is found, but for those of more than `mostVertices`. Cost: one pass for
-/// components, one for volumes, and one for a ray from each component that is small enough; one
-/// pass if there is only one component, or all are larger. More where some seem wrong.
+/// wholly on the wrong side is found, but for those of more than `mostVertices`. With them are the
+/// vertices of components no thicker than `thinnest`, above 0: rounding may turn those over.
+///
+/// Cost: one pass for components, one for volumes, one for areas with `thinnest`, and one for a ray
+/// from each component that is small enough; one pass if there is only one component. More where
+/// some seem wrong.
 [[nodiscard]] std::vector<VertexIndex> findMisplaced(
     const Mesh& mesh, base::Job& job,
-    std::size_t mostVertices = std::numeric_limits<std::size_t>::max());
+    std::size_t mostVertices = std::numeric_limits<std::size_t>::max(), double thinnest = 0);
 
 }  // namespace tufa::topology

@@ -81,6 +81,20 @@ TEST(Misplaced, AreToldByTheLargestPiece) {
   EXPECT_EQ(misplaced(mesh), (Vertices{0, 2, 3, 12, 13, 14, 15}));
 }
 
+// As thin as rounding, whichever way it faces.
+TEST(Misplaced, AreThinOnesIfAskedFor) {
+  Mesh mesh;
+  addTetrahedron(mesh, {0, 0, 0}, 1);
+  addTetrahedron(mesh, {3, 0, 0}, 0.1);
+  addTetrahedron(mesh, {6, 0, 0}, 0.1);
+  mesh.positions.back().z = 1e-6;  // of an apex over 0.005 square units: on average a third of that
+  base::Job job(1, {});
+  EXPECT_EQ(findMisplaced(mesh, job), Vertices());
+  EXPECT_EQ(findMisplaced(mesh, job, 4, 3e-7), Vertices());
+  EXPECT_EQ(findMisplaced(mesh, job, 4, 4e-7), (Vertices{8, 9, 10, 11}));
+  EXPECT_EQ(findMisplaced(mesh, job, 3, 4e-7), Vertices());
+}
+
 // Above each of its vertices is a vertex or an edge of the larger ones.
 TEST(Misplaced, AreFoundWhereRaysPassThroughVertices) {
   Mesh mesh;
