@@ -2,6 +2,7 @@
 
 #include <tufa/progress.h>
 
+#include <cmath>
 #include <string_view>
 
 namespace tufa::base {
@@ -11,7 +12,7 @@ namespace tufa::base {
 inline Progress partOf(const Progress& whole, double begin, double end) {
   if (!whole) return nullptr;
   return [&whole, begin, end](std::string_view stage, double fraction) {
-    return whole(stage, begin + (end - begin) * fraction);
+    return whole(stage, std::lerp(begin, end, fraction));
   };
 }
 

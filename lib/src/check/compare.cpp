@@ -96,10 +96,13 @@ class Comparer {
     runPart(kReferenceEnd / 2, kReferenceEnd,
             [&](base::Job& job) { surface_.emplace(grid_, frame_, iso_, 1, job); });
     spread_.emplace(surface_->points().size());
-    const double share = (1 - kReferenceEnd) / static_cast<double>(names_.size());
+    const auto at = [&](std::size_t i) {
+      return std::lerp(kReferenceEnd, 1.0,
+                       static_cast<double>(i) / static_cast<double>(names_.size()));
+    };
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      begin_ = kReferenceEnd + share * static_cast<double>(i);
-      share_ = share;
+      begin_ = at(i);
+      end_ = at(i + 1);
       out_.methods.push_back(measured(names_[i]));
     }
     findDifference();
@@ -169,7 +172,7 @@ class Comparer {
 
   MethodResult measured(const std::string& name) {
     using Clock = std::chrono::steady_clock;
-    const auto at = [&](double share) { return begin_ + share_ * share; };
+    const auto at = [&](double share) { return std::lerp(begin_, end_, share); };
     MethodResult result;
     result.name = name;
     for (int run = 0; run < options_.repeats; ++run) {
@@ -256,7 +259,7 @@ class Comparer {
   std::vector<std::string> names_;
   std::optional<checks::SurfaceReference> surface_;
   std::optional<Spread> spread_;
-  double begin_ = 0, share_ = 0;  ///< of the progress, of the method at hand
+  double begin_ = 0, end_ = 0;  ///< of the progress, of the method at hand
   Comparison out_;
 };
 
