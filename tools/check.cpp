@@ -97,6 +97,9 @@ int checkFile(const std::string& file, const Truth& truth, const CheckArguments&
     }
   }
 
+  if (distance && !arguments.quiet) {
+    noteIsovalue(arguments.isovalue, *truth.grid, distance->isovalue);
+  }
   if (arguments.json) {
     Json json;
     json["file"] = file;
@@ -107,7 +110,6 @@ int checkFile(const std::string& file, const Truth& truth, const CheckArguments&
     }
     files.add(std::move(json));
   } else if (!arguments.quiet) {
-    if (distance) noteIsovalue(arguments.isovalue, *truth.grid, distance->isovalue);
     print(shownInput(file) + "\n" + (distance ? describe(*distance) : "") + describe(report));
   }
   if (!report.watertight() && !arguments.quiet) noteChunk(file);

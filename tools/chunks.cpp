@@ -191,7 +191,7 @@ void addBuildOptions(CLI::App& app, ChunksArguments& arguments) {
                  "voxels along an edge of a chunk, a power of two from 8 to 1024")
       ->capture_default_str();
   app.add_option("--levels", options.levels, "levels of each chunk")
-      ->check(CLI::Range(1, 16))
+      ->check(wholeNumberIn(1, 16))
       ->capture_default_str();
   app.add_option("--tolerance", arguments.tolerance,
                  "largest distance of level 0 to the uniform mesh, in voxels, or with the suffix w "

@@ -117,8 +117,8 @@ std::string describe(const ChunksRun& run, const ChunksArguments& arguments) {
   }
   return text + "read " + shortNumber(run.readSeconds) + " s, build " +
          shortNumber(run.buildSeconds) + " s" + describeAttributes(run) + "\nwrote " +
-         formatCount(files) + (files == 1 ? " file to " : " files to ") + arguments.output +
-         ", in " + shortNumber(run.writeSeconds) + " s\n";
+         formatCount(files) + (files == 1 ? " file to " : " files to ") +
+         shownFile(arguments.output) + ", in " + shortNumber(run.writeSeconds) + " s\n";
 }
 
 }  // namespace tufa::tools

@@ -58,8 +58,13 @@ void declareCommand(CLI::App& app, Command& chosen) {
 
 void addHelpCommand(CLI::App& app, Command& chosen) {
   const auto name = std::make_shared<std::string>();
+  std::string names;
+  for (const CLI::App* const command : app.get_subcommands({})) {
+    names += (names.empty() ? "" : ",") + command->get_name();
+  }
   CLI::App* const help = app.add_subcommand("help", "Print the options of a subcommand");
-  help->add_option("SUBCOMMAND", *name, "which one; none: all of them in short");
+  help->add_option("SUBCOMMAND", *name, "which one; none: all of them in short")
+      ->type_name("TEXT:{" + names + "}");
   help->callback(
       [&app, &chosen, name] { chosen = [&app, name] { return printHelp(helpOf(app, *name)); }; });
 }
@@ -82,10 +87,20 @@ CLI::Validator wholeNumberFrom(std::size_t least) {
           "INT >= " + std::to_string(least)};
 }
 
+CLI::Validator wholeNumberIn(std::size_t least, std::size_t most) {
+  const std::string from = std::to_string(least), to = std::to_string(most);
+  return {[=](std::string& text) {
+            const auto number = numberIn<std::size_t>(text);
+            if (number && *number >= least && *number <= most) return std::string();
+            return text + " is not a whole number from " + from + " to " + to;
+          },
+          "INT in [" + from + " - " + to + "]"};
+}
+
 void addThreadsOption(CLI::App& app, int& threads) {
   constexpr int kMost = 4096;
   app.add_option("--threads", threads, "most threads, 0: all")
-      ->check(CLI::Range(0, kMost))
+      ->check(wholeNumberIn(0, kMost))
       ->capture_default_str();
 }
 

@@ -44,6 +44,9 @@ void addThreadsOption(CLI::App& app, int& threads);
 /// That an option is a whole number, `least` or more: CLI11 alone takes -1 for the greatest.
 [[nodiscard]] CLI::Validator wholeNumberFrom(std::size_t least);
 
+/// That an option is a whole number in a range, ends included.
+[[nodiscard]] CLI::Validator wholeNumberIn(std::size_t least, std::size_t most);
+
 /// Exit codes of the command.
 inline constexpr int kDone = 0;
 inline constexpr int kPromiseBroken = 1;   ///< the mesh is not what it should be

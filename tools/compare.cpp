@@ -145,7 +145,7 @@ void addCompareCommand(CLI::App& app, Command& chosen) {
   compare
       ->add_option("--repeats", arguments->options.repeats,
                    "runs of each method, of which the quickest counts")
-      ->check(CLI::Range(1, 1000))
+      ->check(wholeNumberIn(1, 1000))
       ->capture_default_str();
   compare
       ->add_option(

@@ -1,5 +1,6 @@
 #include "console.h"
 
+#include <poll.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -29,26 +30,64 @@ void requestStop(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+/// Not by std::signal(), after which the system goes on with a call that waits, for a reader of a
+/// pipe for instance, and the request would not be heard.
+void requestStopAt(int signal) {
+  struct sigaction action {};
+  action.sa_handler = requestStop;
+  ::sigaction(signal, &action, nullptr);
+}
+
+/// Waits a moment until a descriptor takes bytes, or writing to it fails at once; whether it does.
+bool takesBytes(int descriptor) {
+  pollfd output{descriptor, POLLOUT, 0};
+  constexpr int kMilliseconds = 200;
+  const int ready = ::poll(&output, 1, kMilliseconds);
+  return ready > 0 || (ready < 0 && errno != EINTR);
+}
+
 }  // namespace
 
 void installSignalHandlers() {
-  std::signal(SIGINT, requestStop);
-  std::signal(SIGTERM, requestStop);
+  requestStopAt(SIGINT);
+  requestStopAt(SIGTERM);
   // A terminal that is closed; nohup has it ignored.
-  if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) {
+    std::signal(SIGHUP, SIG_IGN);
+  } else {
+    requestStopAt(SIGHUP);
+  }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() { return stopRequested != 0; }
 
+void stopIfAsked() {
+  if (interrupted()) throw Error(ErrorCode::Cancelled, "cancelled");
+}
+
+void writeBytes(int descriptor, std::string_view bytes, const std::string& name) {
+  while (!bytes.empty()) {
+    if (!takesBytes(descriptor)) {
+      stopIfAsked();
+      continue;
+    }
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      throw Error(ErrorCode::UnwritableFile, "cannot write " + name + ": " + std::strerror(errno));
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
 void print(const std::string& text) {
-  auto* const target = printsToStandardError ? stderr : stdout;
-  const bool written = std::fwrite(text.data(), 1, text.size(), target) == text.size();
-  if (written && std::fflush(target) == 0) return;
-  throw Error(ErrorCode::UnwritableFile, std::string("cannot write standard ") +
-                                             (printsToStandardError ? "error: " : "output: ") +
-                                             std::strerror(errno));
+  if (printsToStandardError) {
+    writeBytes(STDERR_FILENO, text, "standard error");
+  } else {
+    writeBytes(STDOUT_FILENO, text, "standard output");
+  }
 }
 
 int printHelp(const std::string& text) {
@@ -70,6 +109,8 @@ void printNote(const std::string& text) {
 std::string shownGrid(const std::string& name) {
   return name.empty() ? "unnamed grid" : "grid \"" + base::printable(name) + "\"";
 }
+
+std::string shownFile(const std::filesystem::path& file) { return base::printable(file.string()); }
 
 void endAtOnce(int exitCode) {
   std::fflush(nullptr);

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace tufa::tools {
 
@@ -13,7 +15,15 @@ void installSignalHandlers();
 /// Whether the user asked to stop.
 [[nodiscard]] bool interrupted();
 
-/// Writes to standard output. Throws Error(UnwritableFile) if it is full or closed.
+/// Throws Error(Cancelled) if so.
+void stopIfAsked();
+
+/// Writes all bytes to a descriptor, which `name` names in errors. Where nobody takes them, who
+/// asks to stop need not wait. Throws Error: UnwritableFile, Cancelled.
+void writeBytes(int descriptor, std::string_view bytes, const std::string& name);
+
+/// Writes to standard output. Throws what writeBytes() throws, if it is full or closed for
+/// instance.
 void print(const std::string& text);
 
 /// Prints a help text or the version. Returns the exit code: 1, after a note, if standard output is
@@ -28,6 +38,10 @@ void printNote(const std::string& text);
 
 /// 'grid "NAME"', or "unnamed grid". Names come from files: what a terminal would obey is escaped.
 [[nodiscard]] std::string shownGrid(const std::string& name);
+
+/// The name of a file on one line. It may come from an archive, and is escaped as those of grids
+/// are.
+[[nodiscard]] std::string shownFile(const std::filesystem::path& file);
 
 /// Ends the program without freeing what it holds: a file that could not be read may have broken
 /// the heap, and a crash would follow the message.

@@ -7,6 +7,7 @@
 #include <array>
 #include <csignal>
 #include <cstddef>
+#include <cstdio>
 #include <exception>
 #include <string>
 #include <string_view>
@@ -23,7 +24,8 @@ constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 // have overwritten, as is the stack that it runs on: the usual one may have overflowed.
 std::array<char, 8192> message;
 std::size_t messageBytes = 0;
-int standardError = STDERR_FILENO;
+int outputCopy = STDOUT_FILENO;
+int errorCopy = STDERR_FILENO;
 alignas(16) std::array<char, std::size_t{64} << 10> handlerStack;
 
 void refuse(int /*signal*/) {
@@ -33,7 +35,7 @@ void refuse(int /*signal*/) {
     messageBytes = kOutOfMemory.copy(message.data(), message.size());
   }
   // If that fails, nothing more can be done.
-  [[maybe_unused]] const ssize_t written = ::write(standardError, message.data(), messageBytes);
+  [[maybe_unused]] const ssize_t written = ::write(errorCopy, message.data(), messageBytes);
   ::_exit(kUnusableFile);
 }
 
@@ -43,21 +45,36 @@ void compose(const std::string& file) {
   std::copy_n(text.begin(), messageBytes, message.begin());
 }
 
-/// Sends standard error nowhere, but for its copy.
-void muteStandardError() {
-  const int copy = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
-  if (copy < 0) return;
+/// Sends a standard stream nowhere, but for its copy, which it returns; itself if it has none.
+int mute(int descriptor) {
+  // The copy of one stream must not take the number of another that is closed.
+  const int copy = ::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (copy < 0) return descriptor;
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+  if (nowhere >= 0) ::dup2(nowhere, descriptor);
   if (nowhere >= 0) ::close(nowhere);
-  standardError = copy;
+  return copy;
 }
 
-void restoreStandardError() {
-  if (standardError == STDERR_FILENO) return;
-  ::dup2(standardError, STDERR_FILENO);
-  ::close(standardError);
-  standardError = STDERR_FILENO;
+void restore(int descriptor, int& copy) {
+  if (copy == descriptor) return;
+  ::dup2(copy, descriptor);
+  ::close(copy);
+  copy = descriptor;
+}
+
+/// OpenVDB's log goes to standard output where it was built with log4cplus. What was printed
+/// before it is kept, and what it says does not stay in the buffer.
+void muteStreams() {
+  std::fflush(stdout);
+  outputCopy = mute(STDOUT_FILENO);
+  errorCopy = mute(STDERR_FILENO);
+}
+
+void restoreStreams() {
+  std::fflush(stdout);
+  restore(STDOUT_FILENO, outputCopy);
+  restore(STDERR_FILENO, errorCopy);
 }
 
 void setHandlerStack(int flags) {
@@ -79,7 +96,7 @@ void handleCrashes(void (*handler)(int), int flags) {
 
 CrashGuard::CrashGuard(const std::string& file) : exceptions_(std::uncaught_exceptions()) {
   compose(file);
-  muteStandardError();
+  muteStreams();
   setHandlerStack(0);
   handleCrashes(refuse, SA_ONSTACK);
 }
@@ -89,7 +106,7 @@ CrashGuard::~CrashGuard() {
     handleCrashes(SIG_DFL, 0);
     setHandlerStack(SS_DISABLE);
   }
-  restoreStandardError();
+  restoreStreams();
 }
 
 }  // namespace tufa::tools

@@ -41,16 +41,20 @@ bool needsInside(const FilterArguments& arguments) {
          });
 }
 
-/// Throws Error(InvalidArgument) where there is no filter, or an isovalue that nothing depends on.
+/// Throws Error(InvalidArgument) where there is no filter, or an isovalue or a side that nothing
+/// depends on.
 void requireFilters(const FilterArguments& arguments) {
   if (arguments.filters.inOrder.empty()) {
     throw Error(ErrorCode::InvalidArgument,
                 "a filter is needed, such as --smooth mean or --keep-largest 1");
   }
-  if (arguments.isovalue && !needsInside(arguments)) {
+  if (needsInside(arguments)) return;
+  const bool asksInside = arguments.meshing.inside != Inside::Auto;
+  if (arguments.isovalue || asksInside) {
     throw Error(ErrorCode::InvalidArgument,
-                "--iso is for --keep-largest, --min-component and --nan outside: nothing else here "
-                "depends on it");
+                std::string(asksInside ? "--inside" : "--iso") +
+                    " is for --keep-largest, --min-component and --nan outside: nothing else here "
+                    "depends on it");
   }
 }
 

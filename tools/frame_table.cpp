@@ -90,7 +90,7 @@ std::string describeMesh(const FrameRow& row) {
   if (const auto wrong = sumOf(result, "non_finite_values"); wrong > 0) {
     text += ", " + formatCount(wrong) + " NaN or infinite values";
   }
-  return text + ", " + shortNumber(secondsOf(result)) + " s: " + outputsOf(row);
+  return text + ", " + shortNumber(secondsOf(result)) + " s: " + shownFile(outputsOf(row));
 }
 
 }  // namespace
@@ -125,17 +125,17 @@ std::size_t FrameTable::count(FrameState state) const {
 
 std::string FrameTable::describeLast() const {
   const FrameRow& row = rows_.back();
-  std::string text =
-      "[" + std::to_string(rows_.size()) + "/" + std::to_string(frames_) + "] " + row.file + ": ";
+  std::string text = "[" + std::to_string(rows_.size()) + "/" + std::to_string(frames_) + "] " +
+                     shownFile(row.file) + ": ";
   switch (row.state) {
     case FrameState::Done:
       return text + describeMesh(row) + "\n";
     case FrameState::Empty:
-      return text + "no surface, an empty mesh: " + outputsOf(row) + "\n";
+      return text + "no surface, an empty mesh: " + shownFile(outputsOf(row)) + "\n";
     case FrameState::Missing:
       return text + "missing\n";
     case FrameState::Skipped:
-      return text + "skipped, its mesh is newer: " + row.output + "\n";
+      return text + "skipped, its mesh is newer: " + shownFile(row.output) + "\n";
     case FrameState::Failed:
       return text + "failed\n";
   }

@@ -3,10 +3,12 @@
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "attribute_options.h"
@@ -25,6 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLeastTriangles = 4;  // of a closed surface
+constexpr std::array<std::string_view, 2> kFormatsOfLevels = {"glb", "usda"};
 
 /// Prints what the user should know to standard error; returns the exit code.
 int judge(const LodRun& run) {
@@ -107,11 +110,8 @@ void settle(LodArguments& arguments, const CLI::App& command) {
   }
   if (!glb && !usda && lodFile(arguments.output, 0) == arguments.output) {
     throw Error(ErrorCode::InvalidArgument,
-                isStandard(arguments.output)
-                    ? "only glb and usda can hold several levels on standard output"
-                    : arguments.output +
-                          ": only .glb and .usda hold several levels; --separate "
-                          "makes one file a level");
+                arguments.output +
+                    ": only .glb and .usda hold several levels; --separate makes one file a level");
   }
   if (arguments.check || arguments.report) requireChecker();
   requireDistinctLevels(arguments);
@@ -133,7 +133,7 @@ int runLod(const LodArguments& arguments) {
 
 void addChainOptions(CLI::App& app, LodArguments& arguments) {
   app.add_option("--levels", arguments.lod.levels, "most levels")
-      ->check(CLI::Range(1, 100))
+      ->check(wholeNumberIn(1, 100))
       ->capture_default_str();
   app.add_option("--tolerance", arguments.tolerance,
                  "largest distance of level 0 to the uniform mesh, in voxels, or with the suffix w "
@@ -190,7 +190,8 @@ void addLodCommand(CLI::App& app, Command& chosen) {
                   "a .glb or .usda with all levels, or OUT_LOD{} with any ending of tufa mesh for "
                   "one file a level, or - for standard output")
       ->required();
-  addFormatOption(*lod, arguments->format, "of standard output: glb or usda");
+  addFormatOption(*lod, arguments->format, "of standard output, a pipe or a device",
+                  kFormatsOfLevels);
   lod->add_option("--grid", arguments->grid, "name of the grid; default: the first level set");
   addChainOptions(*lod, *arguments);
   addGlbOptions(*lod, *arguments);

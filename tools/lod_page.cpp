@@ -55,16 +55,35 @@ std::string legend(const std::string& largest) {
          ")\"></span> " + escaped(largest) + "</p>\n";
 }
 
-/// Rendering has no progress of its own: checks for cancellation between pictures.
-void report(const LodPage& page, std::size_t done, std::size_t all) {
-  if (!page.progress) return;
-  if (!page.progress("pictures", static_cast<double>(done) / static_cast<double>(all))) {
-    throw Error(ErrorCode::Cancelled, "cancelled while taking pictures");
+/// Takes the pictures of a page. Rendering has no progress of its own: whether to go on is asked
+/// before each.
+class Photographer {
+ public:
+  Photographer(const LodPage& page, std::size_t levels) : page_(page), all_(kOfLevel * levels) {}
+
+  std::string figureOf(const Mesh& mesh, const View& view, const std::string& caption) {
+    report();
+    ++done_;
+    return figure(render::render(mesh, view, kWidth, kHeight), caption);
   }
-}
+
+  void report() const {
+    if (!page_.progress) return;
+    if (!page_.progress("pictures", static_cast<double>(done_) / static_cast<double>(all_))) {
+      throw Error(ErrorCode::Cancelled, "cancelled while taking pictures");
+    }
+  }
+
+ private:
+  static constexpr std::size_t kOfLevel = 3;
+
+  const LodPage& page_;
+  std::size_t all_;
+  std::size_t done_ = 0;
+};
 
 std::string levelSection(const LodChain& chain, std::size_t level, const Mesh& reference,
-                         const LodPage& page, const View& view) {
+                         const LodPage& page, const View& view, Photographer& photographer) {
   const Lod& lod = chain.levels[level];
   const double largest = lod.certificate.maxErrorWorld;
   View wires = view;
@@ -74,6 +93,10 @@ std::string levelSection(const LodChain& chain, std::size_t level, const Mesh& r
   errors.colors = [&](const std::vector<Position>& points) {
     DistanceOptions options;
     options.threads = page.threads;
+    options.progress = [&](std::string_view /*stage*/, double /*fraction*/) {
+      photographer.report();
+      return true;
+    };
     std::vector<Color> colors;
     for (const double distance : distancesTo(reference, points, options)) {
       colors.push_back(rampAt(largest > 0 ? distance / largest : 0));
@@ -83,9 +106,9 @@ std::string levelSection(const LodChain& chain, std::size_t level, const Mesh& r
   std::string html = element("h2", "Level " + std::to_string(level) + ": " +
                                        formatCount(lod.mesh.triangleCount()) + " triangles");
   html += "<div class=\"row\">\n";
-  html += figure(render::render(lod.mesh, view, kWidth, kHeight), "surface");
-  html += figure(render::render(lod.mesh, wires, kWidth, kHeight), "triangles");
-  html += figure(render::render(lod.mesh, errors, kWidth, kHeight), "distance to the uniform mesh");
+  html += photographer.figureOf(lod.mesh, view, "surface");
+  html += photographer.figureOf(lod.mesh, wires, "triangles");
+  html += photographer.figureOf(lod.mesh, errors, "distance to the uniform mesh");
   html += "</div>\n";
   return html +
          legend(shortNumber(lod.certificate.maxErrorVoxels) + " voxels, the certified error");
@@ -99,11 +122,11 @@ void writeLodPage(const LodChain& chain, const Mesh& reference, const LodPage& p
   view.yUp = page.yUp;
   view = render::fitted(chain.levels.front().mesh, view, kWidth, kHeight);
   std::string html = pageHead(page.title, page.summary) + table(page.headings, page.rows);
+  Photographer photographer(page, chain.levels.size());
   for (std::size_t level = 0; level < chain.levels.size(); ++level) {
-    report(page, level, chain.levels.size());
-    html += levelSection(chain, level, reference, page, view);
+    html += levelSection(chain, level, reference, page, view, photographer);
   }
-  report(page, chain.levels.size(), chain.levels.size());
+  photographer.report();
   writeFile(html + pageEnd(), path);
 }
 

@@ -93,9 +93,11 @@ void writeLevels(const LodArguments& arguments, ProgressBar& bar, LodRun& run) {
   options.threads = arguments.lod.contour.threads;
   options.progress = bar.callback();
   run.writeSeconds = timed([&] {
-    if (isStandard(arguments.output)) {
-      writeLods(run.chain, standardOutput(), meshFormat("-", arguments.format), options,
-                &run.written);
+    if (isDirect(arguments.output)) {
+      const MeshFormat format = meshFormat(arguments.output, arguments.format);
+      writeDirect(arguments.output, [&](std::ostream& stream) {
+        writeLods(run.chain, stream, format, options, &run.written);
+      });
       run.written.files.emplace_back(arguments.output);
     } else {
       writeLods(run.chain, arguments.output, options, &run.written);

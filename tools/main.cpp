@@ -46,10 +46,13 @@ int runGuarded(const Command& command, const Failures& failures) {
   try {
     return command();
   } catch (const tufa::Error& error) {
-    const bool cancelled = error.code() == tufa::ErrorCode::Cancelled;
-    failures.tell(nameOf(error.code()), cancelled ? "interrupted" : messageOf(error));
-    if (error.code() == tufa::ErrorCode::UnreadableFile) endAtOnce(exitCodeOf(error));
-    return exitCodeOf(error);
+    // A call that waited fails when it is interrupted, for instance to open a pipe.
+    const bool cancelled = error.code() == tufa::ErrorCode::Cancelled || interrupted();
+    failures.tell(nameOf(cancelled ? tufa::ErrorCode::Cancelled : error.code()),
+                  cancelled ? "interrupted" : messageOf(error));
+    const int exitCode = cancelled ? kCancelled : exitCodeOf(error);
+    if (error.code() == tufa::ErrorCode::UnreadableFile) endAtOnce(exitCode);
+    return exitCode;
   } catch (const std::bad_alloc&) {
     return tellOutOfMemory();
   } catch (const std::exception& error) {

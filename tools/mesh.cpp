@@ -87,7 +87,7 @@ void addSequenceOptions(CLI::App& app, SequenceArguments& sequence) {
                  "default: all that there are");
   constexpr int kMostJobs = 256;
   app.add_option("--jobs", sequence.jobs, "of a sequence: frames at a time")
-      ->check(CLI::Range(1, kMostJobs))
+      ->check(wholeNumberIn(1, kMostJobs))
       ->capture_default_str();
   app.add_flag("--resume", sequence.resume,
                "of a sequence: leave out frames whose mesh is newer than their volume");
@@ -239,7 +239,7 @@ void addMeshCommand(CLI::App& app, Command& chosen) {
                    "the mesh to write: .ply (binary), .obj, .stl, .off, .glb, .usda or .3mf, or - "
                    "for standard output; of a sequence a name with ####, or a .usda of all frames")
       ->required();
-  addFormatOption(*mesh, arguments->format, "of the mesh in standard output");
+  addFormatOption(*mesh, arguments->format, "of the mesh in standard output, a pipe or a device");
   addGridOptions(*mesh, *arguments);
   addMethodOption(*mesh, *arguments);
   addAdaptiveOptions(*mesh, *arguments);

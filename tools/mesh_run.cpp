@@ -6,10 +6,13 @@
 #include <tufa/unite.h>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "base/braces.h"
+#include "base/printable.h"
 #include "checker.h"
 #include "console.h"
 #include "number.h"
@@ -23,14 +26,37 @@ namespace {
 
 constexpr const char* kUnionName = "union";
 
-/// The output with braces replaced by the grid's name, which may hold what a file name may not.
+/// A grid's name as a part of a file's: without what leads into a folder, what a terminal obeys,
+/// and a dash in front, which commands take for an option.
+std::string filePartOf(std::string_view name) {
+  std::string part;
+  while (!name.empty()) {
+    const std::size_t count = base::shownBytes(name);
+    const bool keeps = count > 0 && name[0] != '/' && !(part.empty() && name[0] == '-');
+    part += keeps ? name.substr(0, count) : "_";
+    name.remove_prefix(std::max<std::size_t>(count, 1));
+  }
+  return part.empty() ? "mesh" : part;
+}
+
+/// The output with braces replaced by the grid's name.
 std::string outputOf(const std::string& output, const std::string& grid) {
   if (!base::hasBraces(output)) return output;
-  std::string part = grid.empty() ? "mesh" : grid;
-  for (char& c : part) {
-    if (c == '/' || c == '\0') c = '_';
+  return base::fillBraces(output, filePartOf(grid)).string();
+}
+
+/// Throws Error(InvalidArgument) if a grid would be written over the input or over another grid.
+void requireApart(const std::vector<std::string>& grids, const MeshArguments& arguments) {
+  std::map<std::string, std::string> gridOf;
+  for (const std::string& grid : grids) {
+    const std::string output = outputOf(arguments.output, grid);
+    requireDistinct(output, {arguments.input});
+    const std::string& first = gridOf.emplace(output, grid).first->second;
+    if (first == grid || !base::hasBraces(arguments.output)) continue;
+    throw Error(ErrorCode::InvalidArgument,
+                "the grids \"" + first + "\" and \"" + grid + "\" would both be written to " +
+                    output + "; mesh them one by one, with --grid and an output each");
   }
-  return base::fillBraces(output, part).string();
 }
 
 /// Meshes a grid that has been read, in `run.readSeconds`.
@@ -154,13 +180,15 @@ WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, Pr
 
 /// One file for all grids, or one for each where the name has braces.
 void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
-  const bool standard = isStandard(arguments.output);
   if (run.grids.size() == 1 || base::hasBraces(arguments.output)) {
     for (const GridRun& grid : run.grids) {
       const WriteOptions options = writeOptions(arguments, grid, bar);
       WriteReport written;
-      if (standard) {
-        write(grid.mesh, standardOutput(), meshFormat("-", arguments.format), options, &written);
+      if (isDirect(grid.output)) {
+        const MeshFormat format = meshFormat(grid.output, arguments.format);
+        writeDirect(grid.output, [&](std::ostream& stream) {
+          write(grid.mesh, stream, format, options, &written);
+        });
       } else {
         write(grid.mesh, grid.output, options, &written);
       }
@@ -174,8 +202,11 @@ void writeAll(MeshRun& run, const MeshArguments& arguments, ProgressBar& bar) {
   std::vector<NamedMesh> meshes;
   for (GridRun& grid : run.grids) meshes.push_back({grid.grid, std::move(grid.mesh)});
   const WriteOptions options = writeOptions(arguments, run.grids.front(), bar);
-  if (standard) {
-    writeMeshes(meshes, standardOutput(), meshFormat("-", arguments.format), options, &run.written);
+  if (isDirect(arguments.output)) {
+    const MeshFormat format = meshFormat(arguments.output, arguments.format);
+    writeDirect(arguments.output, [&](std::ostream& stream) {
+      writeMeshes(meshes, stream, format, options, &run.written);
+    });
   } else {
     writeMeshes(meshes, arguments.output, options, &run.written);
   }
@@ -353,9 +384,7 @@ MeshRun meshFile(const MeshArguments& arguments) {
   const bool united = arguments.join == Join::Union;
   const std::vector<std::string> meshes = united ? std::vector<std::string>{kUnionName} : names;
   requireRoomForAll(meshes, arguments);
-  for (const std::string& name : meshes) {
-    requireDistinct(outputOf(arguments.output, name), {arguments.input});
-  }
+  requireApart(meshes, arguments);
   // A frame of a sequence that may be empty need not have the grids.
   std::optional<AttributeGrids> attributes;
   if (!arguments.allowEmpty) attributes.emplace(arguments.input, arguments.attributes);

@@ -32,15 +32,12 @@ using Json = nlohmann::ordered_json;
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::InvalidArgument, why); }
 
-/// One frame, and what to do with it.
+/// One frame, and what to do with it. There may be a million.
 struct Frame {
   int number = 0;
-  MeshArguments arguments;
+  std::string input;
+  std::string output;  ///< of all frames where they go into one file
   FrameState state = FrameState::Done;
-  std::string joined;  ///< the file of all frames; empty if each has its own
-  [[nodiscard]] const std::string& output() const {
-    return joined.empty() ? arguments.output : joined;
-  }
 };
 
 /// Whether all frames go into one file: a .usda, whose meshes change with time.
@@ -71,11 +68,12 @@ class OneFile {
   bool join(const std::vector<Frame>& all, std::optional<double> fps) {
     std::vector<UsdaFrame> frames;
     for (const Frame& frame : all) {
-      const std::string& file = frame.arguments.output;
+      if (frame.state != FrameState::Done) continue;
+      const std::string file = frameFile(frame.number);
       if (std::filesystem::exists(file)) frames.push_back({frame.number, file});
     }
     if (frames.empty()) return false;
-    joinUsdaFrames(frames, fps, staged_.path() / output_.filename());
+    write(frames, fps);
     std::filesystem::remove_all(folder());
     staged_.commit(output_.filename().string());
     return true;
@@ -84,6 +82,19 @@ class OneFile {
  private:
   [[nodiscard]] std::filesystem::path folder() const {
     return std::filesystem::path(staged_.path()) / "frames";
+  }
+
+  /// Errors name the file that was asked for.
+  void write(const std::vector<UsdaFrame>& frames, std::optional<double> fps) {
+    const std::filesystem::path file = staged_.path() / output_.filename();
+    try {
+      joinUsdaFrames(frames, fps, file);
+    } catch (const Error& error) {
+      std::string message = error.what();
+      const std::size_t at = message.find(file.string());
+      if (at != std::string::npos) message.replace(at, file.string().size(), output_.string());
+      throw Error(error.code(), message);
+    }
   }
 
   std::filesystem::path output_;
@@ -100,25 +111,28 @@ bool isNewer(const std::string& output, const std::string& input) {
 Frame makeFrame(int number, const MeshArguments& arguments, const SequenceArguments& sequence) {
   Frame frame;
   frame.number = number;
-  frame.arguments = arguments;
-  frame.arguments.input = frameFile(arguments.input, number);
-  if (isOneFile(arguments)) {
-    frame.joined = arguments.output;
-  } else {
-    frame.arguments.output = frameFile(arguments.output, number);
-  }
-  frame.arguments.allowEmpty = true;
-  frame.arguments.quiet = true;
-  if (arguments.contour.threads == 0) {
-    frame.arguments.contour.threads = std::max(1, resolveThreads(0) / sequence.jobs);
-  }
+  frame.input = frameFile(arguments.input, number);
+  frame.output = isOneFile(arguments) ? arguments.output : frameFile(arguments.output, number);
   std::error_code error;
-  if (!std::filesystem::exists(frame.arguments.input, error)) {
+  if (!std::filesystem::exists(frame.input, error)) {
     frame.state = FrameState::Missing;
-  } else if (sequence.resume && isNewer(frame.arguments.output, frame.arguments.input)) {
+  } else if (sequence.resume && isNewer(frame.output, frame.input)) {
     frame.state = FrameState::Skipped;
   }
   return frame;
+}
+
+MeshArguments argumentsOf(const Frame& frame, const MeshArguments& all,
+                          const SequenceArguments& sequence) {
+  MeshArguments arguments = all;
+  arguments.input = frame.input;
+  arguments.output = frame.output;
+  arguments.allowEmpty = true;
+  arguments.quiet = true;
+  if (arguments.contour.threads == 0) {
+    arguments.contour.threads = std::max(1, resolveThreads(0) / sequence.jobs);
+  }
+  return arguments;
 }
 
 void requireSound(const MeshArguments& arguments, const SequenceArguments& sequence) {
@@ -155,11 +169,23 @@ void requireSound(const MeshArguments& arguments, const SequenceArguments& seque
   requireWritable(*sequence.report);
 }
 
+/// Throws Error(InvalidArgument) if a file of the frame would be overwritten.
+void requireOwnFiles(const Frame& frame, const std::optional<std::string>& report) {
+  requireDistinct(frame.output, {frame.input});
+  if (!report) return;
+  for (const std::string& file : {frame.input, frame.output}) {
+    if (sameFile(*report, file)) refuse("--report " + *report + " would overwrite " + file);
+  }
+}
+
 std::vector<Frame> framesOf(const MeshArguments& arguments, const SequenceArguments& sequence) {
   const std::vector<int> numbers =
       sequence.frames ? readFrames(*sequence.frames) : findFrames(arguments.input);
   std::vector<Frame> frames;
-  for (const int number : numbers) frames.push_back(makeFrame(number, arguments, sequence));
+  for (const int number : numbers) {
+    stopIfAsked();
+    frames.push_back(makeFrame(number, arguments, sequence));
+  }
   const auto missing = [](const Frame& frame) { return frame.state == FrameState::Missing; };
   if (std::all_of(frames.begin(), frames.end(), missing)) {
     throw Error(
@@ -168,27 +194,23 @@ std::vector<Frame> framesOf(const MeshArguments& arguments, const SequenceArgume
             (sequence.frames ? " is there, of the frames " + *sequence.frames : " is there"));
   }
   for (const Frame& frame : frames) {
-    requireDistinct(frame.arguments.output, {frame.arguments.input});
-    if (!sequence.report) continue;
-    for (const std::string& file : {frame.arguments.input, frame.arguments.output}) {
-      if (sameFile(*sequence.report, file)) {
-        refuse("--report " + *sequence.report + " would overwrite " + file);
-      }
-    }
+    stopIfAsked();
+    if (!missing(frame)) requireOwnFiles(frame, sequence.report);
   }
-  requireFeasible(frames.front().arguments);
+  requireFeasible(argumentsOf(frames.front(), arguments, sequence));
   return frames;
 }
 
-/// In the process of a frame: what there is to tell of it.
-std::string meshFrame(const Frame& frame) {
+/// In the process of a frame: what there is to tell of it. `output`: the file that is told of, if
+/// it is another than that of the arguments.
+std::string meshFrame(const MeshArguments& arguments, const std::string& output) {
   Json json;
   try {
-    MeshRun run = meshFile(frame.arguments);
-    if (!frame.joined.empty()) {
-      for (GridRun& grid : run.grids) grid.output = frame.joined;
+    MeshRun run = meshFile(arguments);
+    if (output != arguments.output) {
+      for (GridRun& grid : run.grids) grid.output = output;
     }
-    json = toJson(run, frame.arguments);
+    json = toJson(run, arguments);
   } catch (const Error& error) {
     json["error"] = errorToJson(nameOf(error.code()), messageOf(error));
   } catch (const std::bad_alloc&) {
@@ -245,6 +267,75 @@ class Isovalues {
   std::map<std::string, Range> ranges_;
 };
 
+/// Tells of all frames in their order.
+class FrameTeller {
+ public:
+  FrameTeller(const std::vector<Frame>& frames, bool printsEach)
+      : frames_(frames), printsEach_(printsEach), table_(frames.size()) {}
+
+  /// Of a frame that has been meshed, and those before it that are not to be. Whether to go on.
+  bool tell(std::size_t index, Json result) {
+    tellUpTo(index);
+    isovalues_.add(result);
+    const FrameRow& row = add(std::move(result));
+    // What is wrong with the command line is wrong with the first frame; with one behind it, it is
+    // what the frame holds that does not fit.
+    if (!std::exchange(anyMeshed_, true) && row.code() == nameOf(ErrorCode::InvalidArgument)) {
+      wrongUsage_ = row.message();
+    }
+    if (!wrongUsage_.empty()) return false;
+    if (row.state == FrameState::Failed) printNote(row.message());
+    if (printsEach_) print(table_.describeLast());
+    return true;
+  }
+
+  /// Of the frames behind the last that is meshed.
+  void finish() { tellUpTo(frames_.size()); }
+
+  [[nodiscard]] const FrameTable& table() const { return table_; }
+  [[nodiscard]] const Isovalues& isovalues() const { return isovalues_; }
+  /// What is wrong with the command line; empty if nothing is.
+  [[nodiscard]] const std::string& wrongUsage() const { return wrongUsage_; }
+
+ private:
+  const FrameRow& add(Json result) {
+    const Frame& frame = frames_[told_++];
+    return table_.add({frame.number, frame.input, frame.output, frame.state, std::move(result)});
+  }
+
+  void tellUpTo(std::size_t end) {
+    while (told_ < end) {
+      stopIfAsked();
+      add(Json::object());
+      if (printsEach_) print(table_.describeLast());
+    }
+  }
+
+  const std::vector<Frame>& frames_;
+  bool printsEach_;
+  FrameTable table_;
+  Isovalues isovalues_;
+  std::size_t told_ = 0;
+  bool anyMeshed_ = false;
+  std::string wrongUsage_;
+};
+
+std::vector<std::size_t> indicesToMesh(const std::vector<Frame>& frames) {
+  std::vector<std::size_t> indices;
+  for (std::size_t index = 0; index < frames.size(); ++index) {
+    if (frames[index].state == FrameState::Done) indices.push_back(index);
+  }
+  return indices;
+}
+
+std::string jsonOf(const FrameTable& table, double seconds) {
+  return table.toJson(seconds).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void writeReport(const FrameTable& table, double seconds, const std::string& report) {
+  writeFile(endingOf(report) == ".csv" ? table.toCsv() : jsonOf(table, seconds), report);
+}
+
 }  // namespace
 
 bool isSequence(const MeshArguments& arguments, const SequenceArguments& sequence) {
@@ -256,43 +347,32 @@ bool isSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
 
 int runSequence(const MeshArguments& arguments, const SequenceArguments& sequence) {
   requireSound(arguments, sequence);
-  std::vector<Frame> frames = framesOf(arguments, sequence);
+  const std::vector<Frame> frames = framesOf(arguments, sequence);
+  const std::vector<std::size_t> toMesh = indicesToMesh(frames);
   std::optional<OneFile> one;
-  if (isOneFile(arguments)) {
-    one.emplace(arguments.output);
-    for (Frame& frame : frames) frame.arguments.output = one->frameFile(frame.number);
-  }
-  FrameTable table(frames.size());
-  std::string wrongUsage;
-  Isovalues isovalues;
-  const auto work = [&](std::size_t index) {
-    return frames[index].state == FrameState::Done ? meshFrame(frames[index]) : std::string("{}");
+  if (isOneFile(arguments)) one.emplace(arguments.output);
+  FrameTeller teller(frames, !arguments.quiet && !arguments.json);
+  const auto work = [&](std::size_t n) {
+    const Frame& frame = frames[toMesh[n]];
+    MeshArguments ofFrame = argumentsOf(frame, arguments, sequence);
+    if (one) ofFrame.output = one->frameFile(frame.number);
+    return meshFrame(ofFrame, frame.output);
   };
-  const auto tell = [&](std::size_t index, const ProcessResult& result) {
-    const Frame& frame = frames[index];
-    Json json = readResult(result);
-    isovalues.add(json);
-    const FrameRow& row = table.add(
-        {frame.number, frame.arguments.input, frame.output(), frame.state, std::move(json)});
-    // What is wrong with the command line is wrong with every frame.
-    if (row.code() == nameOf(ErrorCode::InvalidArgument)) wrongUsage = row.message();
-    if (!wrongUsage.empty()) return false;
-    if (row.state == FrameState::Failed) printNote(row.message());
-    if (!arguments.quiet && !arguments.json) print(table.describeLast());
-    return true;
+  const auto tell = [&](std::size_t n, const ProcessResult& result) {
+    return teller.tell(toMesh[n], readResult(result));
   };
-  const double seconds = timed([&] { runInProcesses(frames.size(), sequence.jobs, work, tell); });
-  if (!wrongUsage.empty()) refuse(wrongUsage);
-  if (!arguments.isovalue || *arguments.isovalue == "auto") isovalues.note();
+  const double seconds = timed([&] { runInProcesses(toMesh.size(), sequence.jobs, work, tell); });
+  const FrameTable& table = teller.table();
+  if (teller.wrongUsage().empty()) teller.finish();
+  // Before what may fail still.
+  if (sequence.report) writeReport(table, seconds, *sequence.report);
+  if (!teller.wrongUsage().empty()) refuse(teller.wrongUsage());
+  if (!arguments.isovalue || *arguments.isovalue == "auto") teller.isovalues().note();
   bool isJoined = false;
   const double joinSeconds = timed([&] { isJoined = one && one->join(frames, sequence.fps); });
 
-  if (sequence.report) {
-    const bool csv = endingOf(*sequence.report) == ".csv";
-    writeFile(csv ? table.toCsv() : table.toJson(seconds).dump(2) + "\n", *sequence.report);
-  }
   if (arguments.json) {
-    print(table.toJson(seconds).dump(2) + "\n");
+    print(jsonOf(table, seconds));
   } else if (!arguments.quiet) {
     print(table.describe(seconds));
     if (isJoined) print(describeWritten({arguments.output}, joinSeconds));

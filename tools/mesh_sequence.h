@@ -21,8 +21,9 @@ struct SequenceArguments {
 [[nodiscard]] bool isSequence(const MeshArguments& arguments, const SequenceArguments& sequence);
 
 /// Meshes all frames of a sequence, each in a process of its own, and tells of each. A frame that
-/// fails does not stop the others. Returns the exit code: 1 if any failed. Throws Error for what
-/// holds for all frames.
+/// fails does not stop the others, unless it is the first that is meshed and the command line is
+/// wrong for it. Returns the exit code: 1 if any failed. Throws Error for what holds for all
+/// frames; the report is written then too, of the frames up to there.
 [[nodiscard]] int runSequence(const MeshArguments& arguments, const SequenceArguments& sequence);
 
 }  // namespace tufa::tools

@@ -12,12 +12,6 @@
 namespace tufa::tools {
 namespace {
 
-bool isPipeOrDevice(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  return std::filesystem::exists(status) && std::filesystem::is_other(status);
-}
-
 void requireFormat(MeshFormat format) {
   if (hasFormat(format)) return;
   throw Error(
@@ -36,6 +30,12 @@ void requireEnding(const std::string& output, const std::string& what, const std
 }
 
 }  // namespace
+
+bool isPipeOrDevice(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  return std::filesystem::exists(status) && std::filesystem::is_other(status);
+}
 
 bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   // Nothing is lost in a pipe or a device that is read from and written to.
@@ -68,13 +68,8 @@ void requireVolumeOutput(const std::string& output) { requireEnding(output, "a v
 void requirePictureOutput(const std::string& output) { requireEnding(output, "a picture", ".png"); }
 
 void requireMeshOutput(const std::string& output, const std::optional<std::string>& format) {
-  if (isStandard(output) || format) {
-    requireFormat(meshFormat(output, format));
-    return;
-  }
-  requireMeshEnding(output);
-  if (!isPipeOrDevice(output)) requireFormat(meshFormatOf(output));
-  requireWritable(output);
+  requireFormat(meshFormat(output, format));
+  if (!isStandard(output)) requireWritable(output);
 }
 
 void requireFile(const std::string& output, const std::string& what) {
@@ -107,11 +102,12 @@ std::string describeWritten(const std::vector<std::filesystem::path>& files, dou
   }
   std::string text = "wrote ";
   if (files.size() == 1) {
-    text += isStandard(files.front()) ? "standard output" : files.front().string();
+    text += isStandard(files.front()) ? "standard output" : shownFile(files.front());
   }
-  if (files.size() > 1) {
-    text += formatCount(files.size()) + " files, " + files.front().string() + " to " +
-            files.back().string();
+  if (files.size() == 2) text += shownFile(files.front()) + " and " + shownFile(files.back());
+  if (files.size() > 2) {
+    text += formatCount(files.size()) + " files, " + shownFile(files.front()) + " to " +
+            shownFile(files.back());
   }
   if (bytes > 0) text += ", " + formatCount(bytes) + " bytes";
   return text + ", in " + shortNumber(seconds) + " s\n";

@@ -9,6 +9,9 @@ namespace tufa::tools {
 
 // What is refused of the names of files before anything is read.
 
+/// Whether a name is that of something that bytes are sent to or come from rather than kept in.
+[[nodiscard]] bool isPipeOrDevice(const std::filesystem::path& path);
+
 /// Whether two names lead to one file, be it there or not. Pipes and devices can be shared,
 /// standard input and output too.
 [[nodiscard]] bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,6 +76,7 @@ void readSize(const std::string& text, PictureOptions& options) {
 void readCamera(const std::string& text, PictureView& view) {
   Position centre(0, 0, 0);
   int placed = 0;
+  std::set<std::string> given;
   const std::map<std::string, double*> numbers = {{"azimuth", &view.azimuth},
                                                   {"elevation", &view.elevation},
                                                   {"fov", &view.fieldOfView},
@@ -87,6 +89,10 @@ void readCamera(const std::string& text, PictureView& view) {
     const std::size_t equals = item.find('=');
     const std::string key = item.substr(0, equals);
     const std::string value = equals == std::string::npos ? "" : item.substr(equals + 1);
+    if (!given.insert(key).second) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "--camera takes " + key + "= once, not \"" + text + "\"");
+    }
     if (key == "up" && (value == "y" || value == "z")) {
       view.yUp = value == "y";
       continue;
@@ -106,6 +112,17 @@ void readCamera(const std::string& text, PictureView& view) {
     throw Error(ErrorCode::InvalidArgument, "--camera takes x, y and z together");
   }
   if (placed > 0) view.centre = centre;
+}
+
+/// Throws Error(UnsupportedGrid) if a volume has no surface, as tufa mesh does.
+void requireSomething(const RaySurface& surface, const openvdb::GridBase& grid,
+                      const std::optional<double>& isovalue, const std::string& file) {
+  const implicit::Box box = boundsOf(surface);
+  const bool isEmpty = box.least.x == box.greatest.x && box.least.y == box.greatest.y &&
+                       box.least.z == box.greatest.z;
+  if (isEmpty && (isovalue || isLevelSet(grid))) {
+    requireSurface({}, isovalue.value_or(0), grid, file);
+  }
 }
 
 /// What is on standard input its first character tells: JSON begins with a brace.
@@ -158,6 +175,7 @@ Subject readSubject(const PictureArguments& arguments, const RaySurfaceOptions& 
   requireVoxels(*grid, arguments.input);
   options.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
   subject.surface = makeRaySurface(grid, options);
+  requireSomething(*subject.surface, *grid, options.isovalue, arguments.input);
   subject.voxelSize = voxelSizeOf(*grid);
   return subject;
 }
@@ -168,8 +186,8 @@ void write(const Picture& picture, const std::string& output) {
   image.height = picture.height;
   image.pixels = picture.pixels;
   const std::string bytes = render::pngOf(image);
-  if (isStandard(output)) {
-    standardOutput() << bytes << std::flush;
+  if (isDirect(output)) {
+    writeDirect(output, [&](std::ostream& stream) { stream << bytes << std::flush; });
   } else {
     writeFile(bytes, output);
   }
@@ -209,7 +227,8 @@ std::string describePicture(const PictureArguments& arguments, const PictureRun&
   }
   if (run.picture) {
     text += std::to_string(run.picture->width) + " x " + std::to_string(run.picture->height) +
-            " pixels, " + std::to_string(arguments.options.samples) + " samples each, " +
+            " pixels, " + std::to_string(arguments.options.samples) +
+            (arguments.options.samples == 1 ? " sample each, " : " samples each, ") +
             shortNumber(100 * run.picture->covered) + "% covered, in " +
             shortNumber(run.pictureSeconds) + " s\n";
     text += describeWritten({arguments.output}, run.writeSeconds);

@@ -69,7 +69,7 @@ class Pool {
     stopAll();
     for (const Worker& worker : workers_) {
       ::close(worker.pipe);
-      ::waitpid(worker.process, nullptr, 0);
+      while (::waitpid(worker.process, nullptr, 0) < 0 && errno == EINTR) continue;
     }
   }
   Pool(const Pool&) = delete;
@@ -84,7 +84,7 @@ class Pool {
       readSome();
       tellInOrder();
     }
-    if (interrupted()) throw Error(ErrorCode::Cancelled, "cancelled");
+    stopIfAsked();
   }
 
  private:

@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 
+#include <tufa/check.h>
 #include <tufa/io.h>
 #include <tufa/repair.h>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "checker.h"
 #include "commands.h"
@@ -56,6 +58,22 @@ std::string describeRepair(const RepairReport& report) {
          describe(report.after);
 }
 
+/// Judges a mesh as a reader of .stl has it, which knows vertices by their places alone: those that
+/// touch are one, whatever was split.
+void judgeWelded(const Mesh& mesh, const RepairArguments& arguments, RepairReport& report) {
+  CheckOptions options;
+  options.weld = true;
+  options.threads = arguments.options.threads;
+  options.progress = [](std::string_view /*stage*/, double /*fraction*/) { return !interrupted(); };
+  const CheckReport welded = check(mesh, options);
+  if (report.after.watertight() && !welded.watertight()) {
+    printNote(shownFile(arguments.output) +
+              " is not watertight: touching vertices are one in .stl; write .ply, .obj, .off or "
+              ".glb");
+  }
+  report.after = welded;
+}
+
 int runRepair(const RepairArguments& arguments) {
   requireChecker();
   requireFile(arguments.output, "a repaired mesh");
@@ -71,6 +89,7 @@ int runRepair(const RepairArguments& arguments) {
     options.progress = bar.callback();
     repaired = repair(mesh, options, &report);
   }
+  if (endingOf(arguments.output) == ".stl") judgeWelded(repaired, arguments, report);
   const double seconds = timed([&] { write(repaired, arguments.output); });
   if (arguments.json) {
     Json json = {{"file", arguments.input}, {"output", arguments.output}};

@@ -16,7 +16,7 @@ implicit::Scene readSceneInput(const std::string& name, const std::optional<std:
     box = {Position(n[0], n[1], n[2]), Position(n[3], n[4], n[5])};
   }
   if (isStandard(name)) return implicit::readScene(standardInput(), box);
-  return implicit::readScene(std::filesystem::path(name), box);
+  return namingPipes(name, [&] { return implicit::readScene(std::filesystem::path(name), box); });
 }
 
 double voxelSizeFor(const implicit::Field& field) {

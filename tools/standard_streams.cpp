@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -9,11 +10,13 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <ios>
 #include <streambuf>
 #include <vector>
 
 #include "console.h"
+#include "paths.h"
 
 namespace tufa::tools {
 namespace {
@@ -30,7 +33,7 @@ void awaitInput() {
   constexpr int kMilliseconds = 200;
   int ready = 0;
   while (ready == 0 || (ready < 0 && errno == EINTR)) {
-    if (interrupted()) throw Error(ErrorCode::Cancelled, "cancelled while reading");
+    stopIfAsked();
     ready = ::poll(&input, 1, kMilliseconds);
   }
 }
@@ -50,20 +53,28 @@ std::string readAll() {
   }
 }
 
-/// Writes to standard output at once, and says why where that fails.
+/// Writes to standard output, a pipe or a device at once, and says why where that fails.
 class OutputBuffer final : public std::streambuf {
+ public:
+  explicit OutputBuffer(const std::string& name) : name_(name) {
+    if (isStandard(name)) {
+      name_ = "standard output";
+      return;
+    }
+    descriptor_ = ::open(name.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) {
+      throw Error(ErrorCode::UnwritableFile, "cannot write " + name + ": " + std::strerror(errno));
+    }
+  }
+  ~OutputBuffer() override {
+    if (descriptor_ != STDOUT_FILENO) ::close(descriptor_);
+  }
+  OutputBuffer(const OutputBuffer&) = delete;
+  OutputBuffer& operator=(const OutputBuffer&) = delete;
+
  protected:
   std::streamsize xsputn(const char* data, std::streamsize size) override {
-    for (std::streamsize done = 0; done < size;) {
-      const ssize_t written =
-          ::write(STDOUT_FILENO, data + done, static_cast<std::size_t>(size - done));
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) {
-        throw Error(ErrorCode::UnwritableFile,
-                    std::string("cannot write standard output: ") + std::strerror(errno));
-      }
-      done += written;
-    }
+    writeBytes(descriptor_, {data, static_cast<std::size_t>(size)}, name_);
     return size;
   }
 
@@ -72,24 +83,41 @@ class OutputBuffer final : public std::streambuf {
     if (!traits_type::eq_int_type(character, traits_type::eof())) xsputn(&byte, 1);
     return traits_type::not_eof(character);
   }
+
+ private:
+  std::string name_;
+  int descriptor_ = STDOUT_FILENO;
 };
+
+/// Throws Error(InvalidArgument): `--format` was given for a file.
+[[noreturn]] void refuseFormat(const std::string& purpose, const std::string& name) {
+  throw Error(ErrorCode::InvalidArgument,
+              "--format is for " + purpose + "; " +
+                  (std::filesystem::path(name).has_extension()
+                       ? "the ending of " + name + " says its format"
+                       : name + " is a file, whose name needs an ending that says its format"));
+}
 
 }  // namespace
 
 bool isStandard(const std::string& name) { return name == "-"; }
 
-std::string shownInput(const std::string& name) { return isStandard(name) ? kInput : name; }
+std::string shownInput(const std::string& name) {
+  return isStandard(name) ? kInput : shownFile(name);
+}
 
 FileBytes standardInput() {
   static const std::string bytes = readAll();
   return {bytes, kInput};
 }
 
-std::ostream& standardOutput() {
-  static OutputBuffer buffer;
-  static std::ostream stream(&buffer);
+bool isDirect(const std::string& name) { return isStandard(name) || isPipeOrDevice(name); }
+
+void writeDirect(const std::string& name, const std::function<void(std::ostream&)>& writeTo) {
+  OutputBuffer buffer(name);
+  std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit);
-  return stream;
+  writeTo(stream);
 }
 
 void keepApart(const std::string& output) {
@@ -101,8 +129,7 @@ void keepApart(const std::string& output) {
 }
 
 CLI::Option* addFormatOption(CLI::App& app, std::optional<std::string>& format,
-                             const std::string& help) {
-  const auto names = meshFormatNames();
+                             const std::string& help, std::span<const std::string_view> names) {
   return app.add_option("--format", format, help)
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
 }
@@ -117,16 +144,19 @@ MeshFormat meshFormat(const std::string& name, const std::optional<std::string>&
     if (format) return meshFormatOf("-." + *format);
     throw Error(ErrorCode::InvalidArgument, "the format of - has no ending to tell it: --format");
   }
+  const bool hasEnding = std::filesystem::path(name).has_extension();
+  if (isPipeOrDevice(name)) {
+    if (format) return meshFormatOf("-." + *format);
+    if (!hasEnding) return MeshFormat::Ply;  // as the library writes it
+  }
   if (!format) return meshFormatOf(name);
-  throw Error(
-      ErrorCode::InvalidArgument,
-      "--format is for standard input and output, -; the ending of " + name + " says its format");
+  refuseFormat("standard input and output, -, pipes and devices", name);
 }
 
 Mesh readMeshInput(const std::string& name, const std::optional<std::string>& format) {
   if (isStandard(name)) return readMesh(standardInput(), meshFormat(name, format));
-  if (format) static_cast<void>(meshFormat(name, format));  // throws
-  return readMesh(name);
+  if (format) refuseFormat("standard input, -", name);
+  return namingPipes(name, [&] { return readMesh(name); });
 }
 
 }  // namespace tufa::tools

@@ -78,6 +78,9 @@ std::string oneLine(std::string text) {
 std::string unexpected(const CLI::App& command, const std::vector<std::string>& extras) {
   for (const std::string& word : extras) {
     if (word.starts_with("--")) return unknownOption(command, word);
+    if (word.starts_with('-')) {
+      return "there is no option " + word + "; a file of that name is written ./" + word;
+    }
   }
   std::string text = extras.size() == 1 ? "unexpected argument" : "unexpected arguments";
   for (const std::string& word : extras) text += " " + word;

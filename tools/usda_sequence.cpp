@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/number_text.h"
 #include "console.h"
 
 namespace tufa::tools {
@@ -168,7 +169,7 @@ class Writer {
   void codes(std::optional<double> framesPerSecond) {
     stream_ << "    startTimeCode = " << firstCode_ << "\n    endTimeCode = " << lastCode_ << '\n';
     if (!framesPerSecond) return;
-    const std::string rate = formatNumber(*framesPerSecond);
+    const std::string rate = base::numberText(*framesPerSecond);
     stream_ << "    timeCodesPerSecond = " << rate << "\n    framesPerSecond = " << rate << '\n';
   }
 
@@ -202,7 +203,7 @@ class Writer {
     from.seekg(static_cast<std::streamoff>(place.begin));
     std::array<char, 65536> bytes;
     for (std::uint64_t left = place.size; left > 0;) {
-      if (interrupted()) throw Error(ErrorCode::Cancelled, "cancelled");
+      stopIfAsked();
       const auto size = std::min<std::uint64_t>(left, bytes.size());
       if (!from.read(bytes.data(), static_cast<std::streamsize>(size))) {
         failToRead(file);

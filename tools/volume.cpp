@@ -77,7 +77,7 @@ auto guarded(const std::string& file, Read&& read) {
   if (!isStandard(file)) {
     const CrashGuard guard(file);
     try {
-      return read(std::filesystem::path(file));
+      return namingPipes(file, [&] { return read(std::filesystem::path(file)); });
     } catch (const Error& error) {
       const std::string other = commandFor(file);
       if (error.code() != ErrorCode::UnreadableFile || other.empty()) throw;

@@ -50,8 +50,8 @@ void writeAndTell(const openvdb::GridBase::Ptr& grid, WrittenGrid written, Telli
   written.grid = grid->getName();
   written.activeVoxels = grid->activeVoxelCount();
   written.writeSeconds = timed([&] {
-    if (isStandard(written.output)) {
-      writeGrids({grid}, standardOutput());
+    if (isDirect(written.output)) {
+      writeDirect(written.output, [&](std::ostream& stream) { writeGrids({grid}, stream); });
     } else {
       writeGrids({grid}, written.output);
     }

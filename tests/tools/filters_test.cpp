@@ -166,6 +166,7 @@ TEST_F(FilterOptions, FilterSaysWhatIsWrong) {
   EXPECT_EQ(run("filter o.vdb -o g.vdb --keep-largest 1 --iso auto").exitCode, 0);
   expectFailure("filter d.vdb -o n.vdb", 2, "a filter is needed");
   expectFailure("filter d.vdb -o n.vdb --smooth mean --iso 0", 2, "--iso is for");
+  expectFailure("filter d.vdb -o n.vdb --smooth mean --inside above", 2, "--inside is for");
   expectFailure("filter d.vdb -o n.ply --smooth mean", 2, "n.ply");
   expectFailure("filter d.vdb -o d.vdb --smooth mean", 2, "d.vdb");
   expectFailure("filter d.vdb -o n.vdb --min-component 1000000", 3, "leaves nothing");

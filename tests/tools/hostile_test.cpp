@@ -67,6 +67,40 @@ TEST_F(Hostile, NamesOfGridsAreShownEscaped) {
   EXPECT_EQ(json["grids"][0]["name"].get<std::string>().substr(0, 5), name.substr(0, 5));
 }
 
+// One was written over the other.
+TEST_F(Hostile, NamesOfGridsThatMakeOneFileAreRefused) {
+  writeNamed("two.vdb", {"a/b", "a_b"});
+  expectFailure("mesh two.vdb -o 'x{}.ply' --grid '*'", 2,
+                R"(the grids "a/b" and "a_b" would both be written to xa_b.ply)");
+  EXPECT_EQ(run("mesh two.vdb -o 'x{}.ply' --grid a/b --quiet").exitCode, 0);
+  EXPECT_EQ(run("mesh two.vdb -o two.glb --grid '*' --quiet").exitCode, 0);
+  writeNamed("odd.vdb", {"-rf", "a\x1b[2J\n\xc2\x9b", "\xc3\xa9"});
+  ASSERT_EQ(run("mesh odd.vdb -o '{}.ply' --grid '*' --quiet").exitCode, 0);
+  for (const char* file : {"_rf.ply", "a_[2J___.ply", "\xc3\xa9.ply"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+  }
+}
+
+TEST_F(Hostile, NamesOfFilesAreShownEscaped) {
+  writeNamed("s.vdb", {"s"});
+  const std::string hostile = "a\x1b[2J";
+  std::filesystem::copy_file(folder / "s.vdb", folder / (hostile + ".1.vdb"));
+  const auto expectEscaped = [&](const std::string& arguments) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << arguments;
+    EXPECT_NE(outcome.out.find(R"(a\x1b[2J)"), std::string::npos) << outcome.out;
+  };
+  const std::string name = "'" + hostile + ".1.vdb'", mesh = "'" + hostile + ".ply'";
+  expectEscaped("info " + name);
+  expectEscaped("mesh s.vdb -o " + mesh);
+  expectEscaped("check " + mesh);
+  expectEscaped("compare " + name + " --methods dual");
+  expectEscaped("lod s.vdb -o '" + hostile + "{}.glb' --levels 2");
+  expectEscaped("chunks s.vdb -o '" + hostile + "' --levels 1");
+  expectEscaped("mesh '" + hostile + ".#.vdb' -o '" + hostile + ".#.ply'");
+}
+
 /// 557 KB that took over 12 seconds.
 TEST_F(Hostile, ManyTilesAtTheRootTakeNoTime) {
   const auto grid = openvdb::FloatGrid::create(0);

@@ -102,6 +102,8 @@ TEST_F(PictureCommand, RefusesWhatIsWrong) {
   refused("s.json -o s.png --samples 0", 2, "samples must be from 1");
   refused("s.json -o s.png --camera azimuth", 2, "--camera takes");
   refused("s.json -o s.png --camera x=1,y=2", 2, "x, y and z together");
+  refused("s.json -o s.png --camera x=1,y=2,z=3,x=2", 2, "--camera takes x= once");
+  refused("f.vdb -o s.png --iso 100", 3, "no surface at isovalue 100");
   refused("s.json -o s.png --camera fov=180", 2, "field of view");
   refused("s.json -o s.png --iso 0.1", 2, "--iso is for a volume");
   refused("f.vdb -o s.png --iso 0.1 --bounds 0,0,0,1,1,1", 2, "--bounds is for a scene");

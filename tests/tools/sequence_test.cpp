@@ -101,6 +101,38 @@ TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
   EXPECT_NE(csv.find("\n2,failed,f.0002.vdb,m.0002.ply,,,,,,"), std::string::npos) << csv;
 }
 
+TEST_F(Sequence, OneFrameWhoseGridNeedsAnOptionDoesNotStopTheOthers) {
+  ASSERT_EQ(run("make fog --voxel 0.1 -o f.0002.vdb --quiet").exitCode, 0);
+  const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --report all.csv --json");
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_NE(outcome.err.find("f.0002.vdb"), std::string::npos) << outcome.err;
+  const Json json = test::parseJson(outcome.out);
+  EXPECT_EQ(statesOf(json), (States{"done", "failed", "done"}));
+  EXPECT_EQ(json["frames"][1]["error"]["code"], "invalid_argument");
+  EXPECT_TRUE(exists("all.csv"));
+}
+
+TEST_F(Sequence, WhatIsWrongWithTheFirstFrameIsReported) {
+  ASSERT_EQ(run("make fog --voxel 0.1 -o f.0001.vdb --quiet").exitCode, 0);
+  const Outcome outcome =
+      run("mesh 'f.####.vdb' -o 'm.####.ply' --frames 0-4 --report all.csv --quiet");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_NE(outcome.err.find("a fog volume needs --iso"), std::string::npos) << outcome.err;
+  const std::string csv = readBytes(folder / "all.csv");
+  EXPECT_NE(csv.find("\n0,missing,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n1,failed,f.0001.vdb,"), std::string::npos) << csv;
+  EXPECT_EQ(csv.find("\n2,"), std::string::npos) << csv;
+}
+
+// Each took a process, and a kilobyte of memory.
+TEST_F(Sequence, AbsentFramesAreCheap) {
+  const Outcome outcome =
+      run("mesh 'f.####.vdb' -o 'm.####.ply' --frames 0-199999", "", "ulimit -v 2000000; ");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("\n200,000 frames: 3 done, 199,997 missing, in "), std::string::npos);
+  EXPECT_NE(outcome.out.find("\n[200000/200000] f.199999.vdb: missing\n"), std::string::npos);
+}
+
 TEST_F(Sequence, EmptyFramesAreWrittenEmpty) {
   const Outcome outcome =
       run("mesh 'f.####.vdb' -o 'm.####.ply' --iso 2.5 --report all.json --inside below");
@@ -185,8 +217,7 @@ TEST_F(Sequence, WhatIsWrongWithAllFramesIsToldOnce) {
   expectFailure("mesh 'g.####.vdb' -o 'm.####.ply'", 3, "no file of the sequence");
   expectFailure("mesh 'f.####.vdb' -o 'm.####.txt'", 2, "ending");
   expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --report all.txt", 2, ".csv");
-  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --report m.0001.csv --tolerance x", 2,
-                "--tolerance");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --tolerance x", 2, "--tolerance");
   expectFailure("mesh 'f.####.vdb' -o 'f.####.vdb'", 2, "overwritten");
   expectFailure("mesh 'f.####.vdb' -o 'm.####.####.ply'", 2, "# in several places");
 }
@@ -233,6 +264,24 @@ TEST_F(Sequence, OneUsdaHasTheValuesOfEveryFrame) {
           << declaration << " of frame " << frame;
     }
   }
+}
+
+// It was written with six digits.
+TEST_F(Sequence, OneUsdaHasTheExactRate) {
+  ASSERT_EQ(run("mesh 'f.####.vdb' -o all.usda --fps 23.976023976 --quiet").exitCode, 0);
+  EXPECT_NE(readBytes(folder / "all.usda").find("timeCodesPerSecond = 23.976023976\n"),
+            std::string::npos);
+}
+
+TEST_F(Sequence, ReportsAUsdaThatCannotBeJoined) {
+  // Room for each frame's file, but not for that of all, in blocks of 512 bytes.
+  ASSERT_EQ(run("mesh f.0001.vdb -o one.usda --quiet").exitCode, 0);
+  const auto blocks = std::filesystem::file_size(folder / "one.usda") * 2 / 512;
+  const Outcome outcome = run("mesh 'f.####.vdb' -o all.usda --report all.csv --quiet", "",
+                              "ulimit -f " + std::to_string(blocks) + "; ");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_EQ(outcome.err.rfind("tufa: cannot write all.usda: ", 0), 0u) << outcome.err;
+  EXPECT_NE(readBytes(folder / "all.csv").find("\n4,done,f.0004.vdb,all.usda,"), std::string::npos);
 }
 
 TEST_F(Sequence, OneUsdaHasFramesWithoutASurface) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <tufa/io.h>
 
 #include "support/json.h"
@@ -68,7 +70,7 @@ TEST_F(Pipes, LodGivesTheBytesOfAFile) {
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_EQ(outcome.out, readBytes(folder / "mesh.glb"));
   EXPECT_NE(outcome.err.find("wrote standard output"), std::string::npos) << outcome.err;
-  expectFailure("lod s.vdb -o - --format ply", 2, "only glb and usda can");
+  expectFailure("lod s.vdb -o - --format ply", 2, "ply not in {glb,usda}");
   expectFailure("lod s.vdb -o - --format glb --separate", 2, "a file for each");
 }
 
@@ -94,6 +96,58 @@ TEST_F(Pipes, SayWhatIsWrong) {
   writeBytes(folder / "cut.vdb", readBytes(folder / "s.vdb").substr(0, 5000));
   expectFailure("mesh - -o m.ply < cut.vdb", 3, "cannot read standard input");
   expectFailure("check - --format ply < cut.vdb", 3, "cannot read standard input");
+}
+
+// OpenVDB built with log4cplus warns of a version that it does not know on standard output.
+TEST_F(Pipes, OpenVdbSaysNothingOnThem) {
+  makeSphere();
+  std::string bytes = readBytes(folder / "s.vdb");
+  ++bytes[8];
+  writeBytes(folder / "new.vdb", bytes);
+  for (const char* arguments : {"info new.vdb", "mesh new.vdb -o - --format ply --quiet"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, 3);
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_NE(outcome.err.find("cannot read new.vdb: its format is version "), std::string::npos)
+        << outcome.err;
+  }
+}
+
+// A signal that came while a call waited was heard once that call was done, which may be never.
+TEST_F(Pipes, StopWhileNobodyOpensOrReadsThem) {
+  if (!std::filesystem::exists("/proc/self/status")) GTEST_SKIP() << "no /proc to look into";
+  ASSERT_EQ(run("make sphere --voxel 0.05 -o s.vdb --quiet").exitCode, 0);
+  ASSERT_EQ(::mkfifo((folder / "pipe.ply").c_str(), 0600), 0);
+  // As Command.StopsWhenAsked, and once its one thread sleeps.
+  const std::string interrupt =
+      "& until [ \"$(grep -c -e '^Name:.tufa$' -e '^State:.S' -e '^SigCgt:.*[2367abef]$' "
+      "/proc/$!/status)\" = 3 ]; do :; done; kill -INT $!; wait $!";
+  const auto expectStop = [&](const std::string& output, const std::string& after,
+                              const std::string& before) {
+    const Outcome outcome =
+        run("mesh s.vdb --uniform --quiet --threads 1 -o " + output, after + interrupt, before);
+    EXPECT_EQ(outcome.exitCode, 130) << output;
+    EXPECT_EQ(outcome.err, "tufa: interrupted\n") << output;
+  };
+  const std::string openWithoutReading = "exec 9<>pipe.ply; ";
+  expectStop("pipe.ply", "", "");
+  expectStop("pipe.ply", "", openWithoutReading);
+  expectStop("- --format ply", ">&9 ", openWithoutReading);
+}
+
+TEST_F(Pipes, WithNamesTakeAFormat) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o m.off --quiet").exitCode, 0);
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const Outcome outcome =
+      run("mesh s.vdb -o pipe --format off --quiet", "; wait", "cat pipe > got.off & ");
+  EXPECT_EQ(readBytes(folder / "got.off"), readBytes(folder / "m.off")) << outcome.err;
+  expectFailure("mesh s.vdb -o m.ply --format ply", 2, "the ending of m.ply says its format");
+  expectFailure("mesh s.vdb -o m --format ply", 2, "m is a file, whose name needs an ending");
+  expectFailure("info pipe", 3, "give it as -, standard input");
+  expectFailure("check pipe", 2, "give it as -, standard input");
+  std::filesystem::rename(folder / "pipe", folder / "pipe.ply");
+  expectFailure("check pipe.ply", 3, "give it as -, standard input");
 }
 
 TEST_F(Pipes, AFullOrClosedOutputIsAnError) {

@@ -224,6 +224,9 @@ TEST_F(Usage, RefusesCountsBelowWhatTheyMayBe) {
   expectFailure("lod s.vdb -o m.glb --tolerances 0.5,0.1", 2, "0.1 follows 0.5");
   expectFailure("import s.vdb -o o.vdb --size 1,1,1 --header -3", 2,
                 "--header: -3 is not a whole number, 0 or more");
+  expectFailure("mesh s.vdb -o m.ply --threads 1.5", 2,
+                "--threads: 1.5 is not a whole number from 0 to 4096");
+  expectFailure("lod s.vdb -o m.glb --levels 101", 2, "101 is not a whole number from 1 to 100");
   expectFailure("lod s.vdb -o m.glb --scale inf", 2, "inf is not a number above 0");
   expectFailure("chunks s.vdb -o d --tolerance 0", 2, "no level can follow one of tolerance 0");
 }
@@ -253,6 +256,8 @@ TEST_F(Usage, SaysWhatIsWrongInFewWords) {
   expectFailure("mesh s.vdb a b c -o m.ply", 2,
                 "unexpected arguments a b c (see tufa mesh --help)");
   expectFailure("mesh", 2, "(see tufa mesh --help)");
+  expectFailure("info -x.vdb", 2,
+                "there is no option -x.vdb; a file of that name is written ./-x.vdb");
   expectFailure("lod s.vdb -o m.glb --scale -1", 2, "--scale: -1 is not a number above 0 (see");
   expectFailure("make sphere --voxel 1e-6 -o v.vdb", 2, "--voxel: OpenVDB takes no voxels");
   for (const char* command : {"mesh none.vdb -o m.ply", "check none.ply", "info none.vdb",
@@ -308,7 +313,7 @@ TEST_F(Usage, SaysInItsLastLineWhatItWrote) {
   EXPECT_EQ(lastLine("voxelize m.ply --voxel 0.1 -o v.vdb").rfind("wrote v.vdb, ", 0), 0u);
   EXPECT_EQ(lastLine("lod s.vdb --levels 2 -o l.glb").rfind("wrote l.glb, ", 0), 0u);
   EXPECT_EQ(lastLine("lod s.vdb --levels 2 --separate -o l.ply")
-                .rfind("wrote 2 files, l_LOD0.ply to l_LOD1.ply, ", 0),
+                .rfind("wrote l_LOD0.ply and l_LOD1.ply, ", 0),
             0u);
   EXPECT_EQ(lastLine("chunks s.vdb --levels 1 -o d").rfind("wrote 9 files to d, ", 0), 0u);
   EXPECT_EQ(lastLine("chunks --assemble d --lods all:0 -o a.ply").rfind("wrote a.ply, ", 0), 0u);
@@ -375,6 +380,25 @@ TEST_F(Usage, RepairMakesASoupWatertightOrSaysWhatIsLeft) {
   EXPECT_EQ(open.exitCode, 1);
   EXPECT_NE(open.out.find("3 boundary edges"), std::string::npos) << open.out;
   expectFailure("repair m.stl -o m.stl", 2, "m.stl");
+}
+
+// Two tetrahedra with an edge in common: repair splits it, and readers of .stl join it again.
+TEST_F(Usage, RepairJudgesAnStlAsItIsRead) {
+  writeBytes(folder / "two.off",
+             "OFF\n6 8 0\n0 0 0\n0 0 1\n1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n"
+             "3 0 2 1\n3 0 3 2\n3 0 1 3\n3 1 2 3\n3 0 4 1\n3 0 5 4\n3 0 1 5\n3 1 4 5\n");
+  EXPECT_EQ(run("repair two.off -o r.off --quiet").exitCode, 0);
+  const Outcome outcome = run("repair two.off -o r.stl --json");
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_NE(outcome.err.find("touching vertices are one in .stl; write .ply"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(test::parseJson(outcome.out)["after"]["watertight"], false);
+  EXPECT_EQ(run("check r.stl --quiet").exitCode, 1);
+}
+
+TEST_F(Usage, RepairRefusesWhatIsNoHole) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o m.stl --quiet").exitCode, 0);
   expectFailure("repair m.stl -o n.ply --fill -1", 2, "holes");
 }
 

@@ -5,6 +5,8 @@
 
 #include <tufa/io.h>
 #include <tufa/shapes.h>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <limits>
 
@@ -87,6 +89,36 @@ TEST(GridFiles, TellWhatMakersNote) {
   EXPECT_EQ(describeGrids(folder / "m.vdb").at(0).metadata,
             (Metadata{{"creator", "a test"}, {"frame", "12"}}));
   EXPECT_EQ(describeGrid(*grid).metadata, describeGrids(folder / "m.vdb").at(0).metadata);
+}
+
+// OpenVDB goes on with a warning, on standard output where it was built with log4cplus.
+TEST(GridFiles, OfUnknownVersionsAreRefused) {
+  const ScratchFolder folder;
+  writeGrids({makeBall("ball")}, folder / "m.vdb");
+  const std::string bytes = readBytes(folder / "m.vdb");
+  constexpr std::size_t kVersion = 8;
+  const auto expectRefusal = [&](std::uint32_t version, const std::string& why) {
+    std::string other = bytes;
+    std::memcpy(other.data() + kVersion, &version, sizeof version);
+    writeBytes(folder / "n.vdb", other);
+    expectError(ErrorCode::UnreadableFile, "version " + std::to_string(version) + ", " + why,
+                [&] { (void)readGrid(folder / "n.vdb"); });
+  };
+  expectRefusal(openvdb::OPENVDB_FILE_VERSION + 1, "newer than");
+  expectRefusal(0xFFFFFFFF, "newer than");
+  expectRefusal(100, "older than OpenVDB 1.0");
+}
+
+// The other functions refuse it.
+TEST(GridFiles, WithoutAFiniteBackgroundCannotBeMeshed) {
+  for (const float background :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    const auto grid = openvdb::FloatGrid::create(background);
+    grid->tree().setValueOn(openvdb::Coord(0), 1.0f);
+    const GridInfo info = describeGrid(*grid);
+    EXPECT_FALSE(info.meshable);
+    EXPECT_NE(info.whyNot.find("background is not a finite number"), std::string::npos);
+  }
 }
 
 TEST(GridFiles, ShareTrees) {

@@ -106,6 +106,9 @@ GridInfo describe(const openvdb::GridBase& grid) {
   addValues<openvdb::FloatGrid>(grid, info);
   addValues<openvdb::DoubleGrid>(grid, info);
   info.whyNot = io::whyNotMeshable(grid);
+  if (info.whyNot.empty() && !std::isfinite(info.background)) {
+    info.whyNot = "its background is not a finite number";
+  }
   if (info.whyNot.empty() && info.activeVoxels == 0) info.whyNot = "it has no active voxels";
   info.meshable = info.whyNot.empty();
   for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta) {

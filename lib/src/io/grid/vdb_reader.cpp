@@ -22,6 +22,8 @@ using openvdb::io::GridDescriptor;
 
 namespace {
 
+constexpr std::size_t kMagicBytes = 8;
+
 GridBase::Ptr createGrid(const GridDescriptor& descriptor) {
   GridBase::Ptr grid = GridBase::createGrid(descriptor.gridType());
   grid->setSaveFloatAsHalf(descriptor.saveFloatAsHalf());  // tells readers of values their width
@@ -87,7 +89,6 @@ void VdbReader::openFile(const std::filesystem::path& path) {
 }
 
 bool VdbReader::readMagic() {
-  constexpr std::size_t kMagicBytes = 8;
   const std::array<char, kMagicBytes> vdb{' ', 'B', 'D', 'V', 0, 0, 0, 0};
   std::array<char, kMagicBytes> magic{};
   stream_.read(magic.data(), kMagicBytes);
@@ -119,10 +120,8 @@ void VdbReader::readNano() {
 void VdbReader::readHead() {
   streamMetadata_.reset(new openvdb::io::StreamMetadata);
   openvdb::io::setStreamMetadataPtr(stream_, streamMetadata_);
+  requireKnownVersion();
   readHeader(stream_);
-  if (fileVersion() < kOldestFormat) {
-    fail("its format is version " + std::to_string(fileVersion()) + ", older than OpenVDB 1.0");
-  }
   setFormatVersion(stream_);
   setLibraryVersion(stream_);
   setDataCompression(stream_);
@@ -146,6 +145,21 @@ void VdbReader::readHead() {
     }
   }
   if (inputHasGridOffsets()) requireApart();
+}
+
+/// OpenVDB goes on with a version that it does not know, after a warning on standard output or
+/// error.
+void VdbReader::requireKnownVersion() {
+  stream_.seekg(kMagicBytes);
+  const std::uint32_t version = takeNumber();
+  stream_.seekg(0);
+  const std::string format = "its format is version " + std::to_string(version);
+  if (version < kOldestFormat) fail(format + ", older than OpenVDB 1.0");
+  if (version > openvdb::OPENVDB_FILE_VERSION) {
+    fail(format + ", newer than the " + std::to_string(openvdb::OPENVDB_FILE_VERSION) +
+         " that OpenVDB " + openvdb::getLibraryVersionString() +
+         " knows: write it with an older OpenVDB, or it is damaged");
+  }
 }
 
 /// Many that share their bytes would make the work of many files from one.

@@ -54,6 +54,7 @@ class VdbReader : private openvdb::io::Archive {
   bool readMagic();
   void readNano();
   void readHead();
+  void requireKnownVersion();
   void readSequentially(std::size_t index);
   void requireInside(const openvdb::io::GridDescriptor& descriptor) const;
   void requireApart() const;
