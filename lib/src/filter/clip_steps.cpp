@@ -1,16 +1,15 @@
-// Boxes and masks, by OpenVDB's own tools.
+// Boxes and masks.
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/Clip.h>
-#include <openvdb/tools/GridTransformer.h>
 #include <openvdb/tools/LevelSetUtil.h>
+#include <openvdb/tools/Prune.h>
 
 #include <tufa/error.h>
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <string>
 
+#include "filter/clip_places.h"
+#include "filter/clipper.h"
 #include "filter/steps.h"
 
 namespace tufa::filter {
@@ -48,9 +47,8 @@ BoolGrid::Ptr activeOf(const openvdb::GridBase& grid) {
               "grid \"" + grid.getName() + "\" of type " + grid.type() + " cannot be a mask");
 }
 
-/// The mask on the lattice of the grid that it is for: each voxel as that of the mask at its place.
-MaskGrid::Ptr maskOf(const openvdb::GridBase& source, bool inside,
-                     const openvdb::math::Transform& transform) {
+/// The active voxels of a grid or, if `inside`, the inside of a level set, on their own lattice.
+BoolGrid::Ptr maskOf(const openvdb::GridBase& source, bool inside) {
   if (!source.transform().isLinear()) {
     throw Error(ErrorCode::UnsupportedGrid, "the transform of the mask \"" + source.getName() +
                                                 "\" is a frustum; it must be linear");
@@ -58,44 +56,14 @@ MaskGrid::Ptr maskOf(const openvdb::GridBase& source, bool inside,
   BoolGrid::Ptr chosen = inside ? insideOf(source) : nullptr;
   if (!chosen) chosen = activeOf(source);
   chosen->setTransform(source.transform().copy());
-  if (chosen->constTransform() != transform) {
-    auto resampled = BoolGrid::create(false);
-    resampled->setTransform(transform.copy());
-    openvdb::util::NullInterrupter nobody;
-    openvdb::tools::resampleToMatch<openvdb::tools::PointSampler>(*chosen, *resampled, nobody);
-    chosen = resampled;
-  }
-  const MaskGrid::TreePtrType tree(
-      new openvdb::MaskTree(chosen->tree(), false, true, openvdb::TopologyCopy()));
-  return MaskGrid::create(tree);
-}
-
-/// Around all leaves, and all tiles that are not background.
-template <class GridT>
-openvdb::CoordBBox boundsOf(const GridT& grid) {
-  openvdb::CoordBBox box;
-  grid.tree().evalLeafBoundingBox(box);
-  auto tile = grid.tree().cbeginValueAll();
-  tile.setMaxDepth(GridT::TreeType::DEPTH - 2);
-  for (; tile; ++tile) {
-    if (tile.isValueOn() || tile.getValue() != grid.background()) {
-      box.expand(tile.getBoundingBox());
-    }
-  }
-  return box;
-}
-
-/// What OpenVDB's clipping leaves out.
-template <class GridT>
-typename GridT::Ptr withMetadataOf(const GridT& source, const typename GridT::Ptr& clipped) {
-  clipped->insertMeta(source);
-  return clipped;
+  openvdb::tools::prune(chosen->tree());
+  return chosen;
 }
 
 }  // namespace
 
 template <class GridT>
-typename GridT::Ptr clipToBox(const GridT& grid, const ClipBox& step) {
+void clipToBox(GridT& grid, const ClipBox& step, ProgressInterrupter& interrupter) {
   const Position& a = step.least;
   const Position& b = step.greatest;
   const bool sound = a.x < b.x && a.y < b.y && a.z < b.z && std::isfinite(a.x + a.y + a.z) &&
@@ -108,33 +76,26 @@ typename GridT::Ptr clipToBox(const GridT& grid, const ClipBox& step) {
   openvdb::Vec3d least, greatest;
   openvdb::math::calculateBounds(grid.constTransform(), {a.x, a.y, a.z}, {b.x, b.y, b.z}, least,
                                  greatest);
-  // As tools::clip() does, but in what the grid holds: of a larger box it would fill all.
-  const openvdb::CoordBBox held = boundsOf(grid);
   openvdb::CoordBBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = held.min()[axis], high = held.max()[axis];
-    if (held.empty() || !(std::floor(least[axis]) <= high && std::floor(greatest[axis]) >= low)) {
-      return withMetadataOf(grid, openvdb::tools::clip_internal::doClip(grid, MaskGrid(), true));
-    }
-    box.min()[axis] = static_cast<std::int32_t>(std::max(low, std::floor(least[axis])));
-    box.max()[axis] = static_cast<std::int32_t>(std::min(high, std::floor(greatest[axis])));
+    box.min()[axis] = voxelAt(std::floor(least[axis]));
+    box.max()[axis] = voxelAt(std::floor(greatest[axis]));
   }
-  MaskGrid mask;
-  mask.fill(box, true);
-  return withMetadataOf(grid, openvdb::tools::clip_internal::doClip(grid, mask, true));
+  const BoxPlaces places(box);
+  Clipper<GridT, BoxPlaces>(grid, places, interrupter).run();
 }
 
 template <class GridT>
-typename GridT::Ptr clipToGrid(const GridT& grid, const openvdb::GridBase* mask, bool inside) {
+void clipToGrid(GridT& grid, const openvdb::GridBase* mask, bool inside,
+                ProgressInterrupter& interrupter) {
   if (mask == nullptr) throw Error(ErrorCode::InvalidArgument, "there is no grid to clip to");
-  const MaskGrid::Ptr places = maskOf(*mask, inside, grid.constTransform());
-  // tools::clip() for grids is this behind a resampling that C++20 does not compile with oneTBB.
-  return withMetadataOf(grid, openvdb::tools::clip_internal::doClip(grid, *places, true));
+  const MaskPlaces places(maskOf(*mask, inside), grid.constTransform());
+  Clipper<GridT, MaskPlaces>(grid, places, interrupter).run();
 }
 
-#define TUFA_STEPS(GridT)                                      \
-  template GridT::Ptr clipToBox(const GridT&, const ClipBox&); \
-  template GridT::Ptr clipToGrid(const GridT&, const openvdb::GridBase*, bool)
+#define TUFA_STEPS(GridT)                                                \
+  template void clipToBox(GridT&, const ClipBox&, ProgressInterrupter&); \
+  template void clipToGrid(GridT&, const openvdb::GridBase*, bool, ProgressInterrupter&)
 TUFA_STEPS(openvdb::FloatGrid);
 TUFA_STEPS(openvdb::DoubleGrid);
 #undef TUFA_STEPS

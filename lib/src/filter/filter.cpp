@@ -61,11 +61,13 @@ class Step {
   void operator()(const Resample& step) {
     grid_ = filter::resample(*grid_, step, options_.mostVoxels, interrupter_);
   }
-  void operator()(const ClipBox& step) { grid_ = filter::clipToBox(*grid_, step); }
+  void operator()(const ClipBox& step) { filter::clipToBox(*grid_, step, interrupter_); }
   void operator()(const ClipGrid& step) {
-    grid_ = filter::clipToGrid(*grid_, step.grid.get(), false);
+    filter::clipToGrid(*grid_, step.grid.get(), false, interrupter_);
   }
-  void operator()(const Mask& step) { grid_ = filter::clipToGrid(*grid_, step.grid.get(), true); }
+  void operator()(const Mask& step) {
+    filter::clipToGrid(*grid_, step.grid.get(), true, interrupter_);
+  }
   void operator()(const KeepLargest& step) {
     if (step.count == 0) {
       throw Error(ErrorCode::InvalidArgument, "at least one component must be kept");
@@ -93,7 +95,8 @@ class Step {
 
 template <class GridT>
 openvdb::GridBase::Ptr applyAll(const GridT& source, const std::vector<Filter>& filters,
-                                const FilterOptions& options, std::vector<FilterReport>& reports) {
+                                const FilterOptions& options, const Progress& progress,
+                                std::vector<FilterReport>& reports) {
   typename GridT::Ptr grid = source.deepCopy();
   const std::size_t nonFinite =
       grid::takeAsOutside(*grid, {options.nonFinite, options.isovalue, options.inside});
@@ -105,7 +108,7 @@ openvdb::GridBase::Ptr applyAll(const GridT& source, const std::vector<Filter>& 
     const auto share = [&](std::size_t done) {
       return static_cast<double>(done) / static_cast<double>(filters.size());
     };
-    ProgressInterrupter interrupter(options.progress, report.filter, share(i), share(i + 1));
+    ProgressInterrupter interrupter(progress, report.filter, share(i), share(i + 1));
     Step<GridT> step(std::move(grid), options, interrupter);
     // An interrupted tracking of level sets cancels the tasks around it, and with them the error.
     if (!interrupter.wasInterrupted(0)) base::runIsolated([&] { std::visit(step, filters[i]); });
@@ -136,14 +139,13 @@ openvdb::GridBase::Ptr applyFilters(const openvdb::GridBase& grid,
   openvdb::GridBase::Ptr result;
   std::vector<FilterReport> found;
   base::Job(options.threads, {}).run([&] {
-    try {
+    const std::string what = "OpenVDB cannot filter grid \"" + grid.getName() + '"';
+    filter::translatingErrors(options.progress, what, [&](const Progress& progress) {
       grid.apply<openvdb::RealGridTypes>(
-          [&](const auto& typed) { result = applyAll(typed, filters, options, found); });
-    } catch (const openvdb::Exception& error) {
-      throw Error(ErrorCode::UnsupportedGrid,
-                  "OpenVDB cannot filter grid \"" + grid.getName() + "\": " + error.what());
-    }
+          [&](const auto& typed) { result = applyAll(typed, filters, options, progress, found); });
+    });
   });
+  if (filters.empty()) (void)base::Job(options.threads, options.progress).finish();
   if (reports != nullptr) *reports = std::move(found);
   return result;
 }

@@ -13,9 +13,9 @@ void withIntegers(const openvdb::GridBase& grid, const Visit& visit) {
   } else if (grid.isType<openvdb::Int64Grid>()) {
     visit(static_cast<const openvdb::Int64Grid&>(grid));
   } else {
-    throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() +
-                                                "\" holds values of type " + grid.valueType() +
-                                                "; labels are 32- or 64-bit integers");
+    throw Error(ErrorCode::UnsupportedGrid, "grid \"" + grid.getName() + "\" is a " + grid.type() +
+                                                "; labels are 32- or 64-bit integers in OpenVDB's "
+                                                "standard tree (5_4_3)");
   }
 }
 

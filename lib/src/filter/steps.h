@@ -1,7 +1,10 @@
 #pragma once
 
 #include <openvdb/openvdb.h>
+#include <tufa/error.h>
 #include <tufa/filter.h>
+#include <string>
+#include <string_view>
 
 #include "grid/isovalue.h"
 #include "grid/progress_interrupter.h"
@@ -14,6 +17,31 @@ namespace tufa::filter {
 // anything: who calls asks the interrupter.
 
 using grid::ProgressInterrupter;
+
+/// Calls work(progress). What OpenVDB throws in it comes out as Error(UnsupportedGrid), which
+/// begins with `what`; what the caller's own progress throws comes out as it is, OpenVDB's kinds
+/// too.
+template <class Work>
+void translatingErrors(const Progress& callers, const std::string& what, const Work& work) {
+  bool isCallers = false;
+  Progress progress;
+  if (callers) {
+    progress = [&](std::string_view stage, double fraction) {
+      try {
+        return callers(stage, fraction);
+      } catch (...) {
+        isCallers = true;
+        throw;
+      }
+    };
+  }
+  try {
+    work(progress);
+  } catch (const openvdb::Exception& error) {
+    if (isCallers) throw;
+    throw Error(ErrorCode::UnsupportedGrid, what + ": " + error.what());
+  }
+}
 
 template <class GridT>
 void smooth(GridT& grid, const Smooth& step, ProgressInterrupter& interrupter);
@@ -32,12 +60,13 @@ typename GridT::Ptr resample(const GridT& grid, const Resample& step, double mos
                              ProgressInterrupter& interrupter);
 
 template <class GridT>
-typename GridT::Ptr clipToBox(const GridT& grid, const ClipBox& step);
+void clipToBox(GridT& grid, const ClipBox& step, ProgressInterrupter& interrupter);
 
 /// Keeps what lies where the active voxels of another grid are or, if `inside`, where that is a
 /// level set, what lies in its inside.
 template <class GridT>
-typename GridT::Ptr clipToGrid(const GridT& grid, const openvdb::GridBase* mask, bool inside);
+void clipToGrid(GridT& grid, const openvdb::GridBase* mask, bool inside,
+                ProgressInterrupter& interrupter);
 
 /// How many components there were, and how many are left.
 struct Components {

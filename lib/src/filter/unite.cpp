@@ -197,18 +197,19 @@ std::shared_ptr<GridBase> uniteLevelSets(const std::vector<std::shared_ptr<const
     if (!grid->empty()) full.push_back(grid.get());
   }
   if (grids.empty()) throw Error(ErrorCode::InvalidArgument, "a union takes one grid at least");
-  if (full.empty()) return grids.front()->deepCopyGrid();
+  if (full.empty()) {
+    (void)base::Job(options.threads, options.progress).finish();
+    return grids.front()->deepCopyGrid();
+  }
   const Target target = chooseTarget(full);
   for (const GridBase* grid : full) requireRoom(*grid, target, options.mostVoxels);
   GridBase::Ptr result;
   base::Job(options.threads, {}).run([&] {
-    try {
-      result = target.doubles ? unite<openvdb::DoubleGrid>(full, target, options.progress)
-                              : unite<openvdb::FloatGrid>(full, target, options.progress);
-    } catch (const openvdb::Exception& error) {
-      throw Error(ErrorCode::UnsupportedGrid,
-                  std::string("OpenVDB cannot unite these grids: ") + error.what());
-    }
+    filter::translatingErrors(
+        options.progress, "OpenVDB cannot unite these grids", [&](const Progress& progress) {
+          result = target.doubles ? unite<openvdb::DoubleGrid>(full, target, progress)
+                                  : unite<openvdb::FloatGrid>(full, target, progress);
+        });
   });
   return result;
 }

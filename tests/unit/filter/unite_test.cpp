@@ -101,7 +101,11 @@ TEST(Unite, KeepsDoublesAndLeavesEmptyGridsOut) {
   const auto grid = uniteLevelSets({empty, makeBall(1, 0), makeBall<DoubleGrid>(1, 3)});
   EXPECT_TRUE(grid->isType<DoubleGrid>());
   EXPECT_LT(strayOf(*grid, 3), 0.02);
-  EXPECT_TRUE(uniteLevelSets({empty})->empty());
+  double done = 0;
+  UniteOptions options;
+  options.progress = [&](std::string_view, double fraction) { return (done = fraction) <= 1; };
+  EXPECT_TRUE(uniteLevelSets({empty}, options)->empty());
+  EXPECT_EQ(done, 1);
 }
 
 TEST(Unite, RefusesWhatHasNoUnion) {
