@@ -42,9 +42,10 @@ struct RaySurfaceOptions {
 };
 
 /// The surface of a float or double grid: that of its trilinear interpolant. Level sets at isovalue
-/// 0 with cubes for voxels are searched by OpenVDB's LevelSetRayIntersector, which looks once in
-/// each voxel on the way; of others the first crossing in the cells on the way is found. Throws
-/// Error as contour() does.
+/// 0 with cubes for voxels, and a band of two or more to each side, are searched by OpenVDB's
+/// LevelSetRayIntersector, which looks once in each voxel on the way; of others the first crossing
+/// in the cells on the way is found. Throws Error as contour() does, and as that by default for NaN
+/// and infinite values.
 [[nodiscard]] TUFA_API std::shared_ptr<const RaySurface> makeRaySurface(
     std::shared_ptr<const openvdb::GridBase> grid, const RaySurfaceOptions& options = {});
 

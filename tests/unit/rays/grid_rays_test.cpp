@@ -165,6 +165,38 @@ TEST(GridRays, MeetLevelSetsAtIsovaluesNearTheEndOfTheBand) {
   }
 }
 
+// Rays passed through: OpenVDB's intersector looks in active voxels alone.
+TEST(GridRays, MeetLevelSetsWithNarrowBands) {
+  for (const float halfWidth : {1.1F, 1.5F, 1.9F, 2.0F}) {
+    const auto grid =
+        openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1, {0, 0, 0}, 0.05F, halfWidth);
+    const auto surface = makeRaySurface(grid);
+    for (const Ray& ray : raysTowards({Position(-1, -1, -1), Position(1, 1, 1)}, 2000)) {
+      const auto hit = castRay(*surface, {{0, 0, 0}, ray.direction});
+      ASSERT_TRUE(hit) << halfWidth;
+      ASSERT_NEAR(hit->distance, 1, 0.005) << halfWidth;
+    }
+  }
+}
+
+// They were holes, without a word.
+TEST(GridRays, RefuseValuesThatAreNotFinite) {
+  for (const openvdb::GridClass kind : {openvdb::GRID_LEVEL_SET, openvdb::GRID_UNKNOWN}) {
+    const auto grid = sphereGrid();
+    grid->setGridClass(kind);
+    RaySurfaceOptions options;
+    options.isovalue = 0;
+    options.inside = Inside::Below;
+    EXPECT_NO_THROW((void)makeRaySurface(grid, options));
+    for (const float value : {std::nanf(""), -std::numeric_limits<float>::infinity()}) {
+      grid->tree().setValue({1, 2, 3}, value);
+      test::expectError(ErrorCode::NonFiniteValues,
+                        "1 NaN or infinite value, the first at index (1, 2, 3)",
+                        [&] { (void)makeRaySurface(grid, options); });
+    }
+  }
+}
+
 // OpenVDB's intersector was off by most of a voxel, and missed.
 // A voxel is no step of a ray that begins so far away.
 TEST(GridRays, FromFarAwayComeToAnEnd) {

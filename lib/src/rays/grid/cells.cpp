@@ -12,7 +12,9 @@
 #include "base/box_ray.h"
 #include "base/bvh.h"
 #include "grid/data_end.h"
+#include "grid/non_finite.h"
 #include "grid/openvdb_templates.h"
+#include "grid/tree.h"
 #include "grid/volume.h"
 #include "rays/grid/grid_caster.h"
 #include "rays/surface.h"
@@ -181,7 +183,6 @@ class CellCaster final : public Caster {
     unsigned inside = 0;
     double farthest = 0;
     for (int n = 0; n < 8; ++n) {
-      if (!std::isfinite(corners[n])) return std::nullopt;
       inside |= grid::isInside(corners[n], iso) ? 1U << n : 0;
       farthest = std::max(farthest, std::abs(corners[n] - iso.isovalue));
     }
@@ -263,7 +264,6 @@ std::shared_ptr<const RaySurface> makeCellSurface(std::shared_ptr<const openvdb:
   ContourOptions contour;
   contour.isovalue = options.isovalue;
   contour.inside = options.inside;
-  contour.nonFinite = NonFinite::Outside;
   std::vector<base::Box> boxes;
   grid::FieldScale scale;
   grid::IsoChoice iso;
@@ -285,17 +285,36 @@ std::shared_ptr<const RaySurface> makeCellSurface(std::shared_ptr<const openvdb:
 }  // namespace tufa::rays
 
 namespace tufa {
+namespace {
+
+/// Throws Error(NonFiniteValues) as contour() does.
+void requireFiniteValues(const openvdb::GridBase& grid, const RaySurfaceOptions& options,
+                         base::Job& job) {
+  const std::shared_ptr<const grid::Tree> tree = grid::treeOf(grid, job);
+  std::vector<grid::BlockBits> sides(tree->leafCount());
+  const grid::Tree::Summary summary =
+      tree->readSides(grid::chooseIsovalue(grid, options.isovalue, options.inside), sides, job);
+  if (summary.nonFiniteValues > 0) {
+    grid::refuseNonFinite(summary.nonFiniteValues, summary.firstNonFinite);
+  }
+}
+
+}  // namespace
 
 std::shared_ptr<const RaySurface> makeRaySurface(std::shared_ptr<const openvdb::GridBase> grid,
                                                  const RaySurfaceOptions& options) {
   if (!grid) throw Error(ErrorCode::InvalidArgument, "there is no grid to cast rays at");
   grid::requireMeshable(*grid);
-  if (auto surface = rays::makeLevelSetSurface(grid, options)) return surface;
   base::Job job(options.threads, options.progress);
   std::shared_ptr<const RaySurface> surface;
   job.run([&] {
     job.beginStage("cells", 1);
-    surface = rays::makeCellSurface(std::move(grid), options, job);
+    surface = rays::makeLevelSetSurface(grid, options);
+    if (surface) {
+      requireFiniteValues(*grid, options, job);
+    } else {
+      surface = rays::makeCellSurface(std::move(grid), options, job);
+    }
   });
   job.finish();
   return surface;

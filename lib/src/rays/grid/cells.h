@@ -15,8 +15,8 @@ namespace tufa::rays {
     std::shared_ptr<const openvdb::GridBase> grid, const RaySurfaceOptions& options,
     base::Job& job);
 
-/// The same by OpenVDB's LevelSetRayIntersector, for a level set with cubes for voxels and its
-/// isovalue 0; null for other grids.
+/// The same by OpenVDB's LevelSetRayIntersector, for a level set with cubes for voxels, a band of
+/// two voxels to each side and its isovalue 0, whose values must be finite; null for other grids.
 [[nodiscard]] std::shared_ptr<const RaySurface> makeLevelSetSurface(
     const std::shared_ptr<const openvdb::GridBase>& grid, const RaySurfaceOptions& options);
 

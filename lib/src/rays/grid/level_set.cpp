@@ -125,8 +125,13 @@ bool isSuited(const openvdb::GridBase& grid, const RaySurfaceOptions& options) {
 std::shared_ptr<const RaySurface> makeLevelSetSurface(
     const std::shared_ptr<const openvdb::GridBase>& grid, const RaySurfaceOptions& options) {
   if (!isSuited(*grid, options)) return nullptr;
-  // The intersector refuses a surface at the end of the band, and backgrounds that are no band.
-  const auto usable = [](double background) { return background > 0 && std::isfinite(background); };
+  // It looks only in active voxels: of a narrower band some cells on the surface have none at the
+  // corner that it asks. It also refuses backgrounds that are no band.
+  constexpr double kLeastHalfWidth = 2 * (1 - 1e-6);  // voxels, but for rounding
+  const double least = kLeastHalfWidth * grid->voxelSize()[0];
+  const auto usable = [least](double background) {
+    return background >= least && std::isfinite(background);
+  };
   if (const auto floats = openvdb::gridConstPtrCast<openvdb::FloatGrid>(grid)) {
     return usable(floats->background()) ? surfaceOf<openvdb::FloatGrid>(grid) : nullptr;
   }
