@@ -63,8 +63,13 @@ struct LodChain {
   Position centre{0, 0, 0};  ///< of the bounding sphere of LOD 0
   double radius = 0;         ///< of that sphere, world units
   double sharedSeconds = 0;  ///< wall clock of what all LODs share: reading, uniform mesh, clusters
-  /// Why there are fewer LODs than asked for; empty if there are not. A number of triangles that
-  /// the LOD before does not exceed is left out; one that is out of reach ends the chain.
+  /// Why there are fewer LODs of a surface than asked for; empty if there are not. A number of
+  /// triangles that the LOD before does not exceed is left out; one that is out of reach ends the
+  /// chain. A tolerance is left out where the LOD would not have fewer triangles than the one
+  /// before by as much as is worth the error: three in ten at four times the tolerance or more,
+  /// less at less. The first of these ends a chain by `LodOptions::factor` without
+  /// `allowTopologyChange`, as what is left is needed for the topology; otherwise later tolerances
+  /// are tried. And no tolerance is above 10^6.
   std::string stopped;
 };
 

@@ -114,20 +114,37 @@ std::string stopOf(std::size_t level, const Target& target, std::size_t triangle
                    std::size_t worthwhile, const std::vector<Lod>& before) {
   if (target.triangles > 0) {
     return "level " + std::to_string(level) + " cannot have " + std::to_string(target.triangles) +
-           " triangles: the surface allows no fewer than " + std::to_string(triangles) +
+           " triangles: " + std::to_string(triangles) + " are the fewest that were reached" +
            (level > 0 ? ", and that level was left out" : "");
   }
-  return "level " + std::to_string(level) + " was left out: at a tolerance of " +
-         base::numberText(target.tolerance) + " voxels " + std::to_string(triangles) +
+  return "a level at a tolerance of " + base::numberText(target.tolerance) +
+         " voxels was left out: " + std::to_string(triangles) +
          " triangles were reached, and a level is kept with fewer than " +
          std::to_string(worthwhile) + ", of the " +
          std::to_string(before.back().mesh.triangleCount()) + " of level " +
          std::to_string(level - 1);
 }
 
+// Whether no LOD can follow one that was not worth its error, or out of reach: what is left is
+// needed for the topology. A list of tolerances need not rise as fast as that is judged by, and
+// where components may go, they do so at some larger tolerance.
+bool endsAt(const Target& target, const LodOptions& options) {
+  return target.triangles > 0 || (options.tolerances.empty() && !options.allowTopologyChange);
+}
+
 // Adds a reason why there are fewer LODs than asked for.
 void tell(LodChain& chain, const std::string& reason) {
   chain.stopped += (chain.stopped.empty() ? "" : "; ") + reason;
+}
+
+// Of a chain by a factor: that it has got to the largest tolerance.
+void tellOfLargest(LodChain& chain, const std::vector<Target>& targets, const LodOptions& options) {
+  const bool byFactor = options.triangles.empty() && options.tolerances.empty();
+  if (!byFactor || targets.size() == static_cast<std::size_t>(options.levels)) return;
+  const double last = targets.back().tolerance;
+  tell(chain, "no level follows the tolerance of " + base::numberText(last) +
+                  " voxels: the next, of " + base::numberText(last * options.factor) +
+                  ", would be above the largest, " + base::numberText(octree::kLargestTolerance));
 }
 
 // An LOD with so many triangles or more is not worth its error: at four times the tolerance three
@@ -194,6 +211,25 @@ class ChainMaker {
   std::optional<refine::SurfaceReduction> reduction_;
 };
 
+// Makes an LOD of a mesh that keeps its target.
+Lod finished(refine::SurfaceModel& model, const ContourOptions& contour, const Target& target,
+             refine::AdaptiveMesh& adaptive, ContourReport& report, base::Job& job) {
+  const double voxelSize = model.affine().voxelSize();
+  Lod lod;
+  lod.certificate = refine::certificateOf(adaptive, voxelSize, contour.keepLeaves, job);
+  const double moved = refine::finishMesh(model, contour, adaptive.extracted, report, job);
+  refine::widen(lod.certificate, moved, voxelSize);
+  lod.tolerance = target.triangles > 0 ? lod.certificate.maxErrorVoxels : target.tolerance;
+  for (const refine::Dropped& piece : adaptive.dropped) {
+    lod.dropped.push_back({model.affine().toWorld(piece.centre), piece.size});
+    if (target.triangles > 0) lod.tolerance = std::max(lod.tolerance, piece.size);
+  }
+  refine::setAngles(lod.certificate, adaptive.extracted.mesh, contour.minAngle);
+  lod.mesh = std::move(adaptive.extracted.mesh);
+  lod.intersectionsLeft = report.intersectionsLeft;
+  return lod;
+}
+
 LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, ContourReport& report,
                     base::Job& job) {
   const Clock::time_point start = Clock::now();
@@ -210,7 +246,8 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
   ChainMaker maker(model, rule, options, job);
   chain.sharedSeconds = secondsSince(start);
 
-  for (std::size_t i = 0; i < targets.size(); ++i) {
+  bool ended = false;
+  for (std::size_t i = 0; i < targets.size() && !ended; ++i) {
     const Clock::time_point begin = Clock::now();
     const double share = static_cast<double>(i + 1) / static_cast<double>(targets.size());
     const std::size_t level = chain.levels.size();
@@ -227,26 +264,17 @@ LodChain buildChain(const openvdb::GridBase& grid, const LodOptions& options, Co
     const bool coarser = level == 0 || triangles < most || !adaptive.dropped.empty();
     if (!coarser || (target.triangles > 0 && triangles > target.triangles)) {
       tell(chain, stopOf(level, target, triangles, most, chain.levels));
-      break;
+      ended = endsAt(target, options);
+      continue;
     }
-    Lod lod;
-    lod.certificate = refine::certificateOf(adaptive, chain.voxelSize, contour.keepLeaves, job);
-    const double moved = refine::finishMesh(model, contour, adaptive.extracted, report, job);
-    refine::widen(lod.certificate, moved, chain.voxelSize);
-    lod.tolerance = target.triangles > 0 ? lod.certificate.maxErrorVoxels : target.tolerance;
-    for (const refine::Dropped& piece : adaptive.dropped) {
-      lod.dropped.push_back({model.affine().toWorld(piece.centre), piece.size});
-      if (target.triangles > 0) lod.tolerance = std::max(lod.tolerance, piece.size);
-    }
-    refine::setAngles(lod.certificate, adaptive.extracted.mesh, contour.minAngle);
-    lod.mesh = std::move(adaptive.extracted.mesh);
+    Lod lod = finished(model, contour, target, adaptive, report, job);
     if (contour.keepCells) {
       lod.mesh.cells = grid::cellsOf(lod.mesh.positions, grid::transformOf(grid), job);
     }
-    lod.intersectionsLeft = report.intersectionsLeft;
     lod.seconds = secondsSince(begin);
     chain.levels.push_back(std::move(lod));
   }
+  if (!ended) tellOfLargest(chain, targets, options);
   setBounds(chain);
   setCoverage(chain, options);
   return chain;

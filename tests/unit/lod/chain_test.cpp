@@ -153,8 +153,7 @@ TEST(LodChain, SaysWhatWasComparedForALevelLeftOut) {
   const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.05), options);
   ASSERT_LT(chain.levels.size(), 4u);
   const std::size_t level = chain.levels.size();
-  const std::string begin = "level " + std::to_string(level) + " was left out: at a tolerance of ";
-  EXPECT_EQ(chain.stopped.rfind(begin, 0), 0u) << chain.stopped;
+  EXPECT_TRUE(chain.stopped.starts_with("a level at a tolerance of ")) << chain.stopped;
   EXPECT_EQ(chain.stopped.find("00000"), std::string::npos) << chain.stopped;
   const std::string compared = "of the " +
                                std::to_string(chain.levels.back().mesh.triangleCount()) +
@@ -320,8 +319,55 @@ TEST(LodChain, StopsWhereTopologyAllowsNoCoarserMesh) {
   };
   const LodChain chain = buildLods(*test::shapeOf(Shape::Sphere, 0.1), options);
   EXPECT_EQ(chain.levels.size(), 2u);
-  EXPECT_NE(chain.stopped.find("level 2"), std::string::npos) << chain.stopped;
+  EXPECT_NE(chain.stopped.find("a tolerance of 2000 voxels was left out"), std::string::npos)
+      << chain.stopped;
   EXPECT_EQ(last, 1);
+}
+
+// All tolerances after the first one that was not worthwhile were left out.
+TEST(LodChain, LeavesOutToleranceByToleranceOfAList) {
+  LodOptions options;
+  options.tolerances = {1e-300, 1e-200, 0.1, 0.4};
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.05), options);
+  ASSERT_EQ(chain.levels.size(), 3u) << chain.stopped;
+  EXPECT_EQ(chain.levels[1].tolerance, 0.1);
+  EXPECT_EQ(chain.levels[2].tolerance, 0.4);
+  EXPECT_TRUE(chain.stopped.starts_with("a level at a tolerance of 1e-200 voxels was left out"))
+      << chain.stopped;
+  expectPromises(chain);
+}
+
+// The chain ended before the tolerance at which a component could go.
+TEST(LodChain, GoesOnByTheFactorWhereComponentsMayGo) {
+  const openvdb::Vec3d other(48.3, 0.2, 0.1);
+  const auto grid = test::levelSet<openvdb::FloatGrid>(
+      {openvdb::Coord(-12), openvdb::Coord(64, 12, 12)}, 3, [&](const openvdb::Coord& at) {
+        return std::min(at.asVec3d().length() - 8, (at.asVec3d() - other).length() - 6);
+      });
+  LodOptions options;
+  options.levels = 3;
+  options.factor = 1.3;
+  options.contour.tolerance = 15;  // two tetrahedra, nearly; the smaller ball's box has 20.8
+  EXPECT_EQ(buildLods(*grid, options).levels.size(), 1u);
+  options.allowTopologyChange = true;
+  const LodChain chain = buildLods(*grid, options);
+  ASSERT_EQ(chain.levels.size(), 2u) << chain.stopped;
+  EXPECT_TRUE(chain.stopped.starts_with("a level at a tolerance of 19.5 voxels")) << chain.stopped;
+  EXPECT_EQ(chain.levels[1].dropped.size(), 1u);
+  EXPECT_EQ(check(chain.levels[1].mesh).components.size(), 1u);
+}
+
+// Levels were missing, and nothing said why.
+TEST(LodChain, SaysThatItGotToTheLargestTolerance) {
+  LodOptions options;
+  options.contour.tolerance = 0.1;
+  options.factor = 1e6;
+  options.levels = 3;
+  const LodChain chain = buildLods(*test::shapeOf(Shape::Torus, 0.05), options);
+  ASSERT_EQ(chain.levels.size(), 2u) << chain.stopped;
+  EXPECT_EQ(chain.stopped,
+            "no level follows the tolerance of 1e+05 voxels: the next, of 1e+11, would be above "
+            "the largest, 1e+06");
 }
 
 TEST(LodChain, IsEmptyWithoutASurface) {
