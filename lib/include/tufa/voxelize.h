@@ -38,12 +38,14 @@ struct VoxelizeReport {
   Position firstHidden{0, 0, 0};  ///< a place in the first of both kinds, in the lattice's order
 };
 
-/// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. Distances are exact
-/// within a voxel of the mesh; farther out, beyond its edges, they may be too large by about a
-/// tenth of a voxel. The mesh should be closed; an open one gives an unsigned shell that OpenVDB
-/// decides the inside of. Closed parts are filled, whichever way they face, but those that face
-/// inward in others are cavities. Throws Error: InvalidArgument (voxel size, half width, empty
-/// mesh), LimitExceeded (bandVoxels), Cancelled.
+/// Converts a mesh to a narrow-band level set with OpenVDB's meshToVolume. Over flat faces
+/// distances are exact; beside edges the step with which it mends signs makes them too low, of
+/// samples next to the surface too, by up to a voxel. A field of implicit::readScene() with an
+/// object of type "mesh" gives exact distances to closed meshes without intersections. The mesh
+/// should be closed; an open one gives an unsigned shell that OpenVDB decides the inside of. Closed
+/// parts are filled, whichever way they face, but those that face inward in others are cavities.
+/// Throws Error: InvalidArgument (voxel size, half width, empty mesh), LimitExceeded (bandVoxels),
+/// Cancelled.
 [[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh,
                                                         const VoxelizeOptions& options);
 

@@ -28,18 +28,27 @@ class Layering {
     base::VertexWelder welder(positions_);
     std::vector<VertexIndex> place;
     place.reserve(mesh.positions.size());
-    for (const Position& p : mesh.positions) place.push_back(welder.indexOf(p));
+    for (const Position& p : mesh.positions) {
+      job_.pollCancelled(place.size());
+      place.push_back(welder.indexOf(p));
+    }
     for (const Triangle& t : triangulate(mesh)) {
+      job_.pollCancelled(triangles_.size());
       const auto& v = t.vertices;
       triangles_.emplace_back(place[v[0]], place[v[1]], place[v[2]]);
     }
     partOf_ = base::connectedItems(positions_.size(), [&](const auto& connect) {
+      std::size_t done = 0;
       for (const Triangle& t : triangles_) {
+        job_.pollCancelled(done++);
         connect(t.vertices[0], t.vertices[1]);
         connect(t.vertices[0], t.vertices[2]);
       }
     });
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) parts_[partAt(t)].triangles.push_back(t);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      job_.pollCancelled(t);
+      parts_[partAt(t)].triangles.push_back(t);
+    }
   }
 
   std::vector<ShellLayer> run() {
@@ -89,6 +98,7 @@ class Layering {
   [[nodiscard]] bool isClosed(const Part& part) const {
     std::unordered_map<std::uint64_t, int> sums;
     for (const std::uint32_t t : part.triangles) {
+      job_.pollCancelled(t);
       const auto& v = triangles_[t].vertices;
       for (std::size_t i = 0; i < 3; ++i) {
         const VertexIndex a = v[i], b = v[(i + 1) % 3];

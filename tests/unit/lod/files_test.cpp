@@ -182,6 +182,31 @@ TEST(LodFiles, CanBeCancelledWhileTheyAreWritten) {
   }
 }
 
+// The arrays of a mesh were packed in one go, for half a second.
+TEST(LodFiles, CanBeCancelledBetweenArraysThatArePacked) {
+  const LodChain chain = chainOf(Shape::Sphere, 0.1, 1);
+  const ScratchFolder folder;
+  const auto callsOf = [&](GlbCompression compression, auto write, auto options) {
+    int calls = 0;
+    options.compression = compression;
+    options.progress = [&](std::string_view, double) { return ++calls > 0; };
+    write(options);
+    return calls;
+  };
+  const auto writeChain = [&](const LodWriteOptions& options) {
+    writeLods(chain, folder / "s.glb", options);
+  };
+  const auto writeOne = [&](const WriteOptions& options) {
+    write(chain.levels[0].mesh, folder / "s.glb", options);
+  };
+  const auto more = [&](auto write, auto options) {
+    return callsOf(GlbCompression::Meshopt, write, options) -
+           callsOf(GlbCompression::Quantized, write, options);
+  };
+  EXPECT_EQ(more(writeChain, LodWriteOptions()), 3) << "positions, normals, triangles";
+  EXPECT_EQ(more(writeOne, WriteOptions()), 3);
+}
+
 TEST(LodFiles, FloatsKeepEveryLevelAsItIs) {
   const ScratchFolder folder;
   const LodChain chain = chainOf(Shape::Bracket, 0.04);

@@ -172,6 +172,24 @@ TEST(Voxelize, CanBeCancelled) {
   expectError(ErrorCode::Cancelled, "cancelled", [&] { (void)voxelize(makeCube(), options); });
 }
 
+// The shells of a mesh were told apart before the first call, for a fifth of a second.
+TEST(Voxelize, AsksForCancellationBeforeItTellsShellsApart) {
+  int calls = 0, allowed = 0;
+  VoxelizeOptions options;
+  options.voxelSize = 0.1;
+  options.progress = [&](std::string_view, double) { return ++calls <= allowed; };
+  Mesh broken = makeCube();
+  broken.triangles.emplace_back(0, 1, 8);
+  expectError(ErrorCode::Cancelled, "cancelled", [&] { (void)voxelize(broken, options); });
+  // And once at least in each of its steps.
+  for (allowed = 1; allowed < 5; ++allowed) {
+    calls = 0;
+    expectError(ErrorCode::Cancelled, "cancelled by the caller",
+                [&] { (void)voxelize(makeCube(), options); });
+    EXPECT_EQ(calls, allowed + 1);
+  }
+}
+
 TEST(Voxelize, ProgressEndsAt1) {
   double last = 0;
   VoxelizeOptions options;

@@ -283,7 +283,8 @@ GlbStream motionStream(const Attribute& attribute, const ShadedMesh& shaded, con
 }
 
 GlbStreams encodeElements(const GlbFrame& frame, const std::vector<Floats>& elements,
-                          const Mesh& mesh, const ShadedMesh& shaded, const GlbPacking& packing) {
+                          const Mesh& mesh, const ShadedMesh& shaded, const GlbPacking& packing,
+                          const std::function<void()>& check) {
   GlbStreams streams;
   streams.frame = frame;
   streams.positions = positionStream(elements, shaded, frame);
@@ -298,9 +299,14 @@ GlbStreams encodeElements(const GlbFrame& frame, const std::vector<Floats>& elem
   }
   streams.indices = indexStream(shaded);
   if (packing.compression != GlbCompression::Meshopt) return streams;
-  packVertices(streams.positions);
-  if (!shaded.normals.empty()) packVertices(streams.normals);
-  for (GlbStream& attribute : streams.attributes) packVertices(attribute);
+  const auto pack = [&](GlbStream& stream) {
+    check();
+    packVertices(stream);
+  };
+  pack(streams.positions);
+  if (!shaded.normals.empty()) pack(streams.normals);
+  for (GlbStream& attribute : streams.attributes) pack(attribute);
+  check();
   packTriangles(shaded, streams.indices);
   return streams;
 }
@@ -347,12 +353,13 @@ std::vector<GlbFrame> framesFor(std::span<const Mesh* const> meshes, const GlbPa
 }
 
 GlbStreams encode(const Mesh& mesh, const ShadedMesh& shaded, std::span<const GlbFrame> frames,
-                  const GlbPacking& packing) {
+                  const GlbPacking& packing, const std::function<void()>& check) {
   for (const GlbFrame& frame : frames) {
+    check();
     const std::vector<Floats> elements = elementsOf(mesh, frame, packing.up);
     if (!tellsApart(mesh, elements)) continue;
     if (frame.quantized && !keepsAreas(mesh, shaded, elements)) continue;
-    return encodeElements(frame, elements, mesh, shaded, packing);
+    return encodeElements(frame, elements, mesh, shaded, packing, check);
   }
   throw Error(ErrorCode::LimitExceeded,
               "vertices are nearer to each other than the single precision of .glb tells apart; "
@@ -361,7 +368,7 @@ GlbStreams encode(const Mesh& mesh, const ShadedMesh& shaded, std::span<const Gl
 
 GlbStreams encodeIn(const GlbFrame& frame, const Mesh& mesh, const ShadedMesh& shaded,
                     const GlbPacking& packing) {
-  return encodeElements(frame, elementsOf(mesh, frame, packing.up), mesh, shaded, packing);
+  return encodeElements(frame, elementsOf(mesh, frame, packing.up), mesh, shaded, packing, [] {});
 }
 
 }  // namespace tufa::io

@@ -3,6 +3,7 @@
 #include <tufa/io.h>
 #include <tufa/mesh.h>
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -72,9 +73,11 @@ inline constexpr double kMostShort = 65535;
                                               const GlbPacking& packing);
 
 /// Encodes a mesh in the first frame that keeps all its vertices apart and, in 16 bits, leaves an
-/// area to all triangles that have one. Throws Error(LimitExceeded) if none does.
+/// area to all triangles that have one. Throws Error(LimitExceeded) if none does. Calls `check`
+/// between its arrays, each of which takes a while, and throws what that throws.
 [[nodiscard]] GlbStreams encode(const Mesh& mesh, const shading::ShadedMesh& shaded,
-                                std::span<const GlbFrame> frames, const GlbPacking& packing);
+                                std::span<const GlbFrame> frames, const GlbPacking& packing,
+                                const std::function<void()>& check);
 
 /// Encodes a mesh in a frame, whatever becomes of its vertices.
 [[nodiscard]] GlbStreams encodeIn(const GlbFrame& frame, const Mesh& mesh,

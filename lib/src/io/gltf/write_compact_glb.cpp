@@ -24,7 +24,7 @@ void writeCompactGlb(std::span<const MeshPart> parts, const FileFrame& frame,
     ShadedMesh shaded = part.shaded ? *part.shaded : shading::unsplit(mesh);
     const std::array<std::size_t, 1> whole{shaded.indices.size()};
     shading::orderForGraphics(shaded, whole);
-    GlbStreams streams = encode(mesh, shaded, frames, packing);
+    GlbStreams streams = encode(mesh, shaded, frames, packing, [&] { sink.advance(0); });
     if (!streams.frame.quantized) {
       report.floatMeshes.push_back(part.name);
       report.rounding = std::max(

@@ -234,7 +234,8 @@ class LodWriter {
     ShadedMesh shaded = shading::splitAtCreases(mesh, options_.creaseAngle, job_);
     const std::size_t whole[] = {shaded.indices.size()};
     shading::orderForGraphics(shaded, whole);
-    GlbStreams streams = encode(mesh, shaded, frames_, packing_);
+    GlbStreams streams =
+        encode(mesh, shaded, frames_, packing_, [&] { job_.checkCancelled(0, 1); });
     report_.vertices.push_back(shaded.sources.size());
     if (!streams.frame.quantized) {
       if (options_.compression != GlbCompression::None) report_.floatLevels.push_back(level);
