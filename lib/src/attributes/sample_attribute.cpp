@@ -134,8 +134,9 @@ Attribute sampleAttribute(std::span<const Position> positions, const openvdb::Gr
   });
   if (!sampled) {
     throw Error(ErrorCode::UnsupportedGrid,
-                shownName(grid) + " holds " + grid.valueType() +
-                    " values; an attribute is sampled from numbers, booleans or vectors");
+                shownName(grid) + " is a " + grid.type() +
+                    "; an attribute is sampled from numbers, booleans or vectors in OpenVDB's "
+                    "standard tree (5_4_3)");
   }
   return attribute;
 }

@@ -193,6 +193,10 @@ TEST(Attributes, RefuseWhatCannotBeSampled) {
   points->setName("points");
   expectError(ErrorCode::UnsupportedGrid, "numbers, booleans or vectors",
               [&] { static_cast<void>(sampleAttribute(mesh, *points)); });
+  // It holds floats, said the message, and must hold numbers.
+  const auto other = openvdb::Grid<openvdb::tree::Tree4<float, 3, 4, 3>::Type>::create();
+  expectError(ErrorCode::UnsupportedGrid, "Tree_float_3_4_3",
+              [&] { static_cast<void>(sampleAttribute(mesh, *other)); });
 }
 
 /// A sphere with a temperature, a velocity and a colour.
