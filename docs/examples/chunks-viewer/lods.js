@@ -22,7 +22,8 @@ function distanceTo(chunk, eye) {
 
 /// Lowers levels, in place, until neighbours differ by at most one.
 export function restrictLods(index, lods) {
-  const coarsest = Math.max(0, ...lods);
+  // Not Math.max(...lods): there may be more chunks than a call takes arguments.
+  const coarsest = lods.reduce((most, lod) => Math.max(most, lod), 0);
   for (let level = 0; level + 1 < coarsest; ++level) {
     for (let chunk = 0; chunk < lods.length; ++chunk) {
       if (lods[chunk] !== level) continue;

@@ -259,13 +259,15 @@ class ChunkBuilder {
 
   void handOut(const chunks::CutMesh& cut, ChunkIndex& index) {
     const chunks::CurveNormals curves(levels_, options_.creaseAngle, job_);
-    std::vector<std::vector<ChunkLevel>> levels;
-    std::vector<std::vector<std::size_t>> pairs;
-    for (chunks::ChainLevel& level : levels_) {
-      const auto shaded = chunks::shade(level, curves, options_.creaseAngle, job_);
-      levels.push_back(chunks::splitLevel(cut, level, shaded, job_));
-      pairs.push_back(countPairs(cut, level, job_));
-      level = {};
+    std::vector<std::vector<ChunkLevel>> levels(levels_.size());
+    std::vector<std::vector<std::size_t>> pairs(levels_.size());
+    chunks::CurveSides beyond;
+    for (std::size_t i = levels_.size(); i-- > 0;) {  // each takes normals from the next one
+      auto shaded = chunks::shade(levels_[i], curves, options_.creaseAngle, beyond, job_);
+      levels[i] = chunks::splitLevel(cut, levels_[i], shaded, job_);
+      pairs[i] = countPairs(cut, levels_[i], job_);
+      beyond = std::move(shaded.sides);
+      levels_[i] = {};
     }
     std::vector<ChunkEntry> entries;
     for (std::size_t c = 0; c < cut.chunks.size(); ++c) {

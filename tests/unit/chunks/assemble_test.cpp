@@ -5,6 +5,7 @@
 #include <tufa/chunks.h>
 #include <array>
 #include <set>
+#include <utility>
 
 #include "support/expect_error.h"
 #include "support/mesh_oracle.h"
@@ -126,6 +127,47 @@ TEST(AssembleChunks, NeedsSeamsForDistantLevelsOnly) {
   test::expectError(ErrorCode::InvalidArgument, "chunk (0, 0, 0) has no seams", [&] {
     static_cast<void>(assembleChunks(drum, {0, 2}));
   });
+}
+
+// A drum of four levels, the second and third of which have the same curve: the second has no
+// strips.
+std::vector<Chunk> makeDrumOfOneCurveTwice() {
+  std::vector<Chunk> drum = makeDrum();
+  for (Chunk& chunk : drum) {
+    chunk.levels.insert(chunk.levels.begin() + 1, chunk.levels[1]);
+    ChunkLevel& level = chunk.levels[1];
+    for (std::size_t face = 0; face < kChunkFaces; ++face) {
+      const std::vector<Triangle> strip = std::exchange(level.regular[face], {});
+      level.interior.insert(level.interior.end(), strip.begin(), strip.end());
+      level.transition[face].clear();
+      for (ChunkSeam& seam : level.seams[face]) {
+        for (std::size_t n = 0; n < seam.next.size(); ++n) {
+          seam.next[n] = level.positions[seam.vertices[n]];
+        }
+      }
+    }
+  }
+  return drum;
+}
+
+TEST(AssembleChunks, NeedsSeamsWhereCurvesDifferBeyondALevelWithoutStrips) {
+  std::vector<Chunk> drum = makeDrumOfOneCurveTwice();
+  EXPECT_TRUE(inspect(assembleChunks(drum, {0, 3})).closed());
+  for (Chunk& chunk : drum) {
+    for (ChunkLevel& level : chunk.levels) level.seams = {};
+  }
+  test::expectError(ErrorCode::InvalidArgument, "chunk (0, 0, 0) has no seams", [&] {
+    static_cast<void>(assembleChunks(drum, {0, 3}));
+  });
+  test::expectError(ErrorCode::InvalidArgument, "chunk (1, 0, 0) has no seams", [&] {
+    static_cast<void>(assembleChunks(drum, {3, 1}));
+  });
+}
+
+TEST(AssembleChunks, NeedsNoSeamsWhereCurvesAreTheSame) {
+  std::vector<Chunk> drum = makeDrumOfOneCurveTwice();
+  drum[0].levels[2].seams = {};
+  EXPECT_TRUE(inspect(assembleChunks(drum, {0, 2})).closed());
 }
 
 TEST(AssembleChunks, RefusesLevelsThatDoNotFit) {

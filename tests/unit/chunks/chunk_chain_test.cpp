@@ -132,7 +132,7 @@ TEST(SplitLevel, GivesEachTriangleToOnePartOfItsChunk) {
   base::Job& job = chain.model.job();
   const CurveNormals curves(chain.levels, 180, job);
   const std::vector<ChunkLevel> chunks =
-      splitLevel(chain.chain.cut(), level, shade(level, curves, 180, job), job);
+      splitLevel(chain.chain.cut(), level, shade(level, curves, 180, {}, job), job);
   ASSERT_EQ(chunks.size(), chain.chain.cut().chunks.size());
   std::size_t own = 0, strips = 0, other = 0;
   for (const ChunkLevel& chunk : chunks) {

@@ -35,6 +35,7 @@ struct Roof {
     }
     level.cutVertex = {none, none, none, 3, 4, 5, none, none, none};
     level.curveVertex = level.cutVertex;
+    level.chunkOf = {0, 0, 0, 0, 1, 1, 1, 1};
     level.own = 9;
     level.isEnd.assign(9, 0);
     level.into = {0, 1, 2, 3, 4, 5, 6, 7, 8};
@@ -45,9 +46,19 @@ struct Roof {
 
   [[nodiscard]] ShadedLevel shaded(double creaseAngle) {
     const CurveNormals curves({level}, creaseAngle, job);
-    return shade(level, curves, creaseAngle, job);
+    return shade(level, curves, creaseAngle, {}, job);
+  }
+
+  /// So flat that the ridge is no crease, with slopes of 17 degrees, and a normal to the left.
+  void flatten() {
+    for (Position& p : level.positions) p.z = 1 - 0.3 * std::abs(p.y);
+    level.normals[4] = Normal(Vec3(0, -0.1, 0.995));
   }
 };
+
+const Normal& normalAt(const ShadedLevel& shaded, const Triangle& triangle, std::size_t corner) {
+  return shaded.normals[triangle.vertices[corner]];
+}
 
 TEST(ShadedLevel, HasANormalForEachSideOfACrease) {
   Roof roof;
@@ -92,6 +103,45 @@ TEST(ShadedLevel, TakesTheNormalsOfAChangedCornerByTheNewTriangle) {
       }
     }
   }
+}
+
+// Each face alone is nearer to one of the two normals that the ridge has of the LOD before.
+TEST(ShadedLevel, HasOneNormalForAllFacesOfASmoothGroup) {
+  Roof first, flat;
+  flat.flatten();
+  const CurveNormals curves({first.level, flat.level}, 40, first.job);
+  ASSERT_EQ(curves.countAt(4), 2U);
+  const ShadedLevel shaded = shade(flat.level, curves, 40, {}, flat.job);
+  for (std::size_t t = 0; t < 8; ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (flat.level.triangles[t].vertices[i] != 4) continue;
+      EXPECT_EQ(normalAt(shaded, shaded.triangles[t], i), curves.at(4, 0)) << t;
+    }
+  }
+}
+
+// The eave in the plane is another vertex at the next LOD, which has one normal on its ridge.
+TEST(ShadedLevel, TakesTheNormalsOfTheNextLevelWhereBothMeetSmoothly) {
+  Roof fine, next;
+  next.flatten();
+  next.level.positions[5] = {1, 0.9, 0.73};
+  next.level.curveVertex[5] = 6;
+  fine.level.positions.push_back(next.level.positions[5]);
+  fine.level.normals.push_back(next.level.normals[5]);
+  fine.level.cutVertex.push_back(5);
+  fine.level.curveVertex.push_back(6);
+  fine.level.into.push_back(9);
+  fine.level.into[5] = 9;
+  const CurveNormals curves({fine.level, next.level}, 40, fine.job);
+  const ShadedLevel beyond = shade(next.level, curves, 40, {}, fine.job);
+  const ShadedLevel shaded = shade(fine.level, curves, 40, beyond.sides, fine.job);
+  // On its two sides: 2, 4 and 9, which was 5; and 4, 7 and 5.
+  const Triangle &here = shaded.changed[3], &there = beyond.triangles[6];
+  EXPECT_EQ(normalAt(shaded, here, 1), normalAt(beyond, there, 0));
+  EXPECT_EQ(normalAt(shaded, here, 2), normalAt(beyond, there, 2));
+  EXPECT_EQ(normalAt(shaded, shaded.triangles[3], 1), curves.at(4, 1));
+  EXPECT_EQ(normalAt(shaded, here, 1), curves.at(4, 0));
+  EXPECT_EQ(shaded.changed[2], shaded.triangles[2]);  // 1, 4 and 2 are drawn beside both
 }
 
 TEST(Lattice, HasStepsThatSixteenBitsCountThroughAChunk) {

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "base/job.h"
@@ -21,12 +24,37 @@ class CurveNormals {
   [[nodiscard]] const Normal& at(VertexIndex v, std::size_t number) const {
     return normals_[begin_[v] + number];
   }
-  /// The number of the one nearest in direction to the normal of a face, of any length.
-  [[nodiscard]] std::size_t nearest(VertexIndex v, const Vec3& face) const;
+  /// The number of the one nearest to a direction, of any length.
+  [[nodiscard]] std::size_t nearest(VertexIndex v, const Vec3& direction) const;
 
  private:
   std::vector<std::size_t> begin_;  ///< for each number, in `normals_`
   std::vector<Normal> normals_;
+};
+
+/// The triangles along the curves of an LOD, by their edges there.
+class CurveSides {
+ public:
+  struct Side {
+    std::uint32_t chunk;                 ///< as ChainLevel::chunkOf has it
+    Vec3 face;                           ///< the triangle's normal, of length 1
+    std::array<VertexIndex, 2> normals;  ///< the number of each end's in CurveNormals
+  };
+
+  /// Ends are numbers as in ChainLevel::curveVertex, in the order of the triangle's corners.
+  void add(VertexIndex from, VertexIndex to, const Side& side) {
+    sides_.emplace(keyOf(from, to), side);
+  }
+  [[nodiscard]] const Side* find(VertexIndex from, VertexIndex to) const {
+    const auto found = sides_.find(keyOf(from, to));
+    return found == sides_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  static std::uint64_t keyOf(VertexIndex from, VertexIndex to) {
+    return std::uint64_t{from} << 32 | to;
+  }
+  std::unordered_map<std::uint64_t, Side> sides_;
 };
 
 /// An LOD for graphics cards: each vertex has one normal, so that a point on a crease becomes
@@ -36,11 +64,15 @@ struct ShadedLevel {
   std::vector<Normal> normals;       ///< one for each vertex
   std::vector<Triangle> triangles;   ///< of these vertices, in the LOD's order
   std::vector<Triangle> changed;     ///< the same beside the next LOD; some are gone
+  CurveSides sides;                  ///< for the LOD before
 };
 
-/// Splits normals where faces differ by more than `creaseAngle` degrees. A triangle beside the next
-/// LOD keeps its normals where its corners do not change.
+/// Splits normals where faces differ by more than `creaseAngle` degrees. `beyond` are the sides of
+/// the next LOD; none behind the last. Of vertices on curves triangles that meet smoothly, on both
+/// sides of a plane, have the same normals: of one LOD those of a smooth group, and beside the next
+/// LOD those that this has. Elsewhere a triangle beside the next LOD keeps its normals where its
+/// corners do not change.
 [[nodiscard]] ShadedLevel shade(const ChainLevel& level, const CurveNormals& curves,
-                                double creaseAngle, base::Job& job);
+                                double creaseAngle, const CurveSides& beyond, base::Job& job);
 
 }  // namespace tufa::chunks

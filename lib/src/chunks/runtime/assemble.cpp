@@ -205,6 +205,16 @@ std::map<VertexIndex, VertexIndex> verticesAt(const Chunk& chunk, std::size_t lo
   return becomes;
 }
 
+/// Whether a chunk's curves on a face differ at two LODs. From one LOD to the next they do where
+/// there are strips.
+bool curvesDiffer(const Chunk& chunk, std::size_t lod, std::size_t coarse, std::size_t face) {
+  const auto first = chunk.levels.begin() + static_cast<std::ptrdiff_t>(lod);
+  const auto last = chunk.levels.begin() + static_cast<std::ptrdiff_t>(coarse);
+  return std::any_of(first, last, [&](const ChunkLevel& level) {
+    return !level.regular[face].empty() || !level.transition[face].empty();
+  });
+}
+
 /// Adds the strip on `face` of a chunk at LOD `lod` towards a neighbour at LOD `coarse`: that to
 /// the next LOD, and what lies in the face between the curves of that and of the neighbour.
 void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, std::size_t face,
@@ -212,8 +222,8 @@ void addDistantStrip(const Chunk& chunk, std::size_t lod, std::size_t coarse, st
   const ChunkLevel& next = levelOf(chunk, lod + 1);
   const ChunkLevel& other = levelOf(chunk, coarse);
   own.add(chunk.levels[lod].transition[face]);
-  const bool hasStrips = !next.regular[face].empty() || !next.transition[face].empty();
-  if (next.seams[face].empty() ? hasStrips : next.seams[face].size() != other.seams[face].size()) {
+  if (!curvesDiffer(chunk, lod + 1, coarse, face)) return;
+  if (next.seams[face].empty() || next.seams[face].size() != other.seams[face].size()) {
     throw Error(ErrorCode::InvalidArgument,
                 base::chunkText(chunk.index) + " has no seams: it cannot be drawn at level " +
                     std::to_string(lod) + " beside a chunk at level " + std::to_string(coarse));
