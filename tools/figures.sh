@@ -54,15 +54,40 @@ figure() {
   cat new > "$file"
 }
 
-# What the README says of sizes. The tolerances are the errors of volumeToMesh in docs/benchmarks.md.
-"$tufa" make sphere --voxel 0.02 -o sphere.vdb --quiet
-"$tufa" mesh sphere.vdb -o sphere.ply --tolerance 0.474 --json > out.json
-figure README.md '| triangles within 0.474 voxel of a sphere, voxel 0.02 | 1,452 | ' ' |' \
-  "$(grouped "$(key triangles)")"
-"$tufa" make bracket --voxel 0.02 -o bracket.vdb --quiet
-"$tufa" mesh bracket.vdb -o bracket.ply --tolerance 2.04 --json > out.json
-figure README.md '| triangles within 2.04 voxels of the bracket, voxel 0.02 | 16,988 | ' ' |' \
-  "$(grouped "$(key triangles)")"
+# error VOLUME METHOD: the largest distance of its mesh to the trilinear surface, both ways.
+error() {
+  "$tufa" compare "$1" --methods "$2" --json > out.json
+  sed -n 's/.*"largest": \([0-9.e+-]*\),\{0,1\}$/\1/p' out.json | sort -g | tail -n 1
+}
+
+# What the README says of sizes: triangles at the error of volumeToMesh, as tufa_error_table, whose rows
+# docs/benchmarks.md has, chooses the tolerance.
+for shape in sphere bracket; do
+  "$tufa" make $shape --voxel 0.02 -o $shape.vdb --quiet
+  own=$(error $shape.vdb dual-uniform)
+  theirs=$(error $shape.vdb volume-to-mesh-0.25)
+  triangles=$(grouped "$(key triangles)")
+  within=$(awk -v error="$theirs" 'BEGIN { printf "%.3g", error }')
+  tolerance=$(awk -v error="$theirs" -v own="$own" \
+    'BEGIN { t = error - own; printf "%.17g", (t > 0.05 ? t : 0.05) }')
+  "$tufa" mesh $shape.vdb -o $shape.ply --tolerance "$tolerance" --json > out.json
+  figure README.md '| triangles within ' " voxel of the $shape, voxel 0.02 | " "$within"
+  row="| triangles within $within voxel of the $shape, voxel 0.02 | "
+  figure README.md "$row" ' | ' "$triangles"
+  figure README.md "$row$triangles | " ' |' "$(grouped "$(key triangles)")"
+done
+
+# How far both are from the true bracket.
+"$tufa" make bracket --voxel 0.03 -o coarse.vdb --quiet
+from_truth() {
+  "$tufa" compare coarse.vdb --truth bracket --methods "$1" --json > out.json
+  awk '/"mesh_to_truth"/ { on = 1 } on && /"largest"/ { l = $2 + 0 } on && /"mean"/ { m = $2 + 0; on = 0 }
+    END { printf "%.2f, %.2g voxel", l, m }' out.json
+}
+row='| largest, mean distance to the true bracket, uniform mesh, voxel 0.03 | '
+theirs=$(from_truth volume-to-mesh-0)
+figure README.md "$row" ' | ' "$theirs"
+figure README.md "$row$theirs | " ' |' "$(from_truth dual-uniform)"
 
 # Methods compared: what does not depend on the machine.
 for method in mc emc surface-nets; do

@@ -35,17 +35,17 @@ const PageText& pageText(const std::string& subcommand) {
       {"advise",
        {"Says, before anything is meshed, whether a grid is fine enough for the features of its "
         "surface, and what voxel size it would take.",
-        {{"tufa advise scan.vdb --iso 0.5", "the thickness of solid and gaps, in voxels"}}}},
+        {{"tufa advise scan.vdb --iso 1150", "the thickness of solid and gaps, in voxels"}}}},
       {"filter",
        {"Filters a volume, as tufa mesh, tufa lod and tufa chunks do before they mesh, and writes "
         "it.",
-        {{"tufa filter scan.vdb -o clean.vdb --iso 300 --smooth gaussian --keep-largest 1",
+        {{"tufa filter scan.vdb -o clean.vdb --iso 1150 --smooth gaussian --keep-largest 1",
           "smoothed, and of its largest component alone"}}}},
       {"mesh",
        {"Meshes the surface of a volume at a value. The mesh is adaptive, closed, 2-manifold and "
         "within the tolerance of the uniform mesh, which its report certifies.",
         {{"tufa mesh part.vdb -o part.ply --check", "a level set, checked"},
-         {"tufa mesh scan.vdb -o bone.stl --iso 300 --smooth gaussian --keep-largest 1",
+         {"tufa mesh scan.vdb -o bone.stl --iso 1150 --smooth gaussian --keep-largest 1",
           "smoothed, and of its largest component alone"},
          {"tufa mesh rooms.vdb -o rooms.glb --grid '*' --join union",
           "all level sets as one surface"},
