@@ -20,7 +20,8 @@ tufa info scan.vdb
 # Smooth the noise, keep the largest piece of bone, and leave nothing open.
 tufa mesh scan.vdb -o bone.ply --iso $iso --smooth gaussian --keep-largest 1 --tolerance 0.2 --check
 
-# A world unit of the scan is a millimetre.
+# A world unit of the scan is a millimetre. The slices of the head run from crown to chin: z points down
+# in it, and the bone stands on its crown until it is turned in the program that slices it.
 if tufa mesh scan.vdb -o bone.3mf --iso $iso --smooth gaussian --keep-largest 1 --tolerance 0.2 \
   --scale 0.001 --up z 2> no_3mf.txt; then
   echo "bone.3mf is in millimetres"
@@ -29,5 +30,6 @@ else
   tufa mesh scan.vdb -o bone.stl --iso $iso --smooth gaussian --keep-largest 1 --tolerance 0.2
 fi
 
+# An elevation beyond 90 degrees turns the camera over, and so the head upright.
 tufa_render -o ct_bone.png --size 300x320 bone.ply:azimuth=120,elevation=170 \
   bone.ply:azimuth=120,elevation=170,edges=1

@@ -24,8 +24,8 @@ struct CheckComponent {
 
 /// What check() found. Everything counts triangles, quads being split from vertex 0 to vertex 2.
 ///
-/// Invalid and collapsed faces are counted and then left out: edges, vertices, boundaries,
-/// components, area and volume are those of the other faces.
+/// Invalid faces and those with a repeated vertex are counted and then left out: edges, vertices,
+/// boundaries, components, area and volume are those of the other faces.
 struct CheckReport {
   std::size_t vertices = 0;        ///< used by a face
   std::size_t triangles = 0;       ///< all of them, the faces that are left out included

@@ -77,10 +77,10 @@ struct ContourOptions {
   /// The angle that triangles are to keep, in degrees, 0 to 30, at the price of more triangles: a
   /// collapse makes no triangle with a smaller angle but in the place of as many, and flips aim at
   /// it. Where vertices have to stay close together, as at corners and the ends of creases, smaller
-  /// angles are left: the certificate tells how many. Angles above 30 are not to be had: asking for
-  /// them gives more triangles, and more under 30. 0: triangles of less than 10 degrees are few,
-  /// and the others as they come. Needs edge collapse: `simplify`, and no bounds on cells or
-  /// angles. Means nothing to a uniform mesh.
+  /// angles are left: the certificate tells how many. Angles above 30 throw
+  /// Error(InvalidArgument): they are not to be had, and there would be more triangles under 30. 0:
+  /// triangles of less than 10 degrees are few, and the others as they come. Needs edge collapse:
+  /// `simplify`, and no bounds on cells or angles. Means nothing to a uniform mesh.
   double minAngle = 0;
   /// Keep the leaves of the octree in the certificate.
   bool keepLeaves = false;

@@ -14,7 +14,8 @@
 namespace tufa {
 
 /// Demonstration volumes, most of which have an exact surface to compare with. All but Noise and
-/// Fog are signed distance fields.
+/// Fog are level sets: of exact signed distances, and of distances to first order for Gyroid and
+/// Terrain.
 enum class Shape {
   Sphere,   ///< radius 1
   Torus,    ///< radii 1 and 0.35, tilted
@@ -41,15 +42,17 @@ struct ShapeOptions {
 /// Names of all shapes, in the order of the enum.
 [[nodiscard]] TUFA_API const std::array<std::string_view, 8>& shapeNames();
 
-/// Samples the shape on a grid of the given voxel size. Noise is a dense cube of 64^3 random
-/// samples with a border of outside samples. Throws Error(InvalidArgument) for a voxel size or half
-/// width that is not positive, or so small that the grid's coordinates overflow.
+/// Samples the shape on a grid of the given voxel size. Noise is a dense cube of random samples, 2
+/// units long, with round(2 / voxelSize) of them along each edge, and a border of outside samples
+/// around them. Throws Error(InvalidArgument) for a half width that is not from 1 to 1000, a voxel
+/// size that is not from 1.5 * 10^-5 to 10^25, and one of Noise that leaves it no sample.
 [[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr makeShape(Shape shape,
                                                          const ShapeOptions& options = {});
 
 /// Exact signed distance from a world point to the true shape, negative inside; for Gyroid and
-/// Terrain the field that defines them, whose zero set is the shape. Throws Error(InvalidArgument)
-/// for Noise and Fog, which have no such surface.
+/// Terrain the field that defines them, whose zero set is the shape and whose values are distances
+/// to first order only. Throws Error(InvalidArgument) for Noise and Fog, which have no such
+/// surface.
 [[nodiscard]] TUFA_API double shapeDistance(Shape shape, const Position& point);
 
 /// Points along the true creases of Box and Bracket, at most `spacing` apart; empty for the others.
