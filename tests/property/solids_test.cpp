@@ -11,6 +11,7 @@
 #include <tufa/voxelize.h>
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 #include "support/mesh_oracle.h"
@@ -76,17 +77,18 @@ TEST(Solids, KeepTheirPromises) {
   for (unsigned i = 0; i < count; ++i) expectKeptPromises(first + i);
 }
 
-// All tolerances are reached by way of the same smaller ones. A dozen triangles more or less is
-// chance, and so is two percent.
+// All tolerances are reached by way of the same smaller ones. Ten triangles more or less are
+// chance, and so are two percent; with a way of its own for each tolerance these solids had up to
+// 47 more.
 TEST(Solids, HaveNoMoreTrianglesAtLargerTolerances) {
-  for (unsigned seed = 1; seed <= 8; ++seed) {
+  for (const unsigned seed : {1U, 4U, 13U, 14U, 15U}) {
     const auto grid = gridOf(seed);
     ContourOptions options;
-    std::size_t least = contour(*grid, options).triangleCount();
-    for (double tolerance = 0.14; tolerance < 7; tolerance *= 1.4) {
+    std::size_t least = std::numeric_limits<std::size_t>::max() / 2;
+    for (double tolerance = 0.5; tolerance < 5; tolerance *= 1.15) {
       options.tolerance = tolerance;
       const std::size_t triangles = contour(*grid, options).triangleCount();
-      EXPECT_LE(triangles, least + least / 50 + 12) << "seed " << seed << " at " << tolerance;
+      EXPECT_LE(triangles, least + least / 50 + 10) << "seed " << seed << " at " << tolerance;
       least = std::min(least, triangles);
     }
   }
