@@ -72,8 +72,8 @@ TEST(Clusters, AreNotMadeWhereTheyAreSwitchedOff) {
 // A tube of two voxels in a cube of eight is an annulus, not a disk.
 TEST(Clusters, ThatAreNoDisksStay) {
   const test::FineMesh thin = torus(40, 14, 1.6);
-  const Clustered result = clustered(thin, 0.3f);
-  expectPromises(thin, result, 0.3f);
+  const Clustered result = clustered(thin, 0.14f);
+  expectPromises(thin, result, 0.14f);
   EXPECT_GT(result.contractions(Outcome::Link), 0U);
 }
 
