@@ -23,7 +23,9 @@ class TUFA_API StagedFolder {
   [[nodiscard]] std::string path() const { return staging_.string(); }
 
   /// Moves the files to their places, the one named `last` behind all others. A file that is
-  /// replaced keeps its permissions; a link is replaced, not followed.
+  /// replaced keeps its permissions; a link is replaced, not followed. If one cannot be moved, all
+  /// are put back. While they move, the old ones are in `.before` in path(): that is where they are
+  /// if the process is killed then.
   void commit(const std::string& last);
 
  private:

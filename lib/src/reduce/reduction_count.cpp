@@ -71,8 +71,8 @@ float Reduction::toCountWithin(Index count, float mostTolerance) {
 
 // Growing tolerances to the first that reaches the count, and between that one and the one before
 // by halves, each from the mesh of two tolerances ago: the way that toTolerance() goes, step for
-// step. So the error at the count is that of the tolerance that gives as many triangles. Whether
-// the count is reached.
+// step. So the error at the count is about that of the tolerance that gives as many triangles,
+// but where the count rises with the tolerance. Whether the count is reached.
 bool Reduction::findCount(Index count, float mostTolerance) {
   keepsShape_ = true;
   const auto isReached = [&] { return triangleCount() <= count; };
