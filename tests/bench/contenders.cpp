@@ -12,14 +12,20 @@
 namespace tufa::bench {
 namespace {
 
-ContourOptions uniform() {
+ContourOptions adaptive(double isovalue) {
   ContourOptions options;
+  options.isovalue = isovalue;
+  return options;
+}
+
+ContourOptions uniform(double isovalue) {
+  ContourOptions options = adaptive(isovalue);
   options.uniform = true;
   return options;
 }
 
-ContourOptions cut() {
-  ContourOptions options;
+ContourOptions cut(double isovalue) {
+  ContourOptions options = adaptive(isovalue);
   options.simplify = false;
   return options;
 }
@@ -31,8 +37,9 @@ Outcome runTufa(const openvdb::FloatGrid& grid, ContourOptions options, int thre
   return {mesh->positions.size(), mesh->triangleCount(), report.stages, mesh};
 }
 
-Outcome runMethod(const openvdb::FloatGrid& grid, Method method, int threads) {
+Outcome runMethod(const openvdb::FloatGrid& grid, Method method, double isovalue, int threads) {
   ExtractOptions options;
+  options.contour.isovalue = isovalue;
   options.contour.threads = threads;
   ContourReport report;
   const auto mesh = std::make_shared<Mesh>(extract(grid, method, options, &report));
@@ -45,11 +52,13 @@ struct VolumeToMeshResult {
   std::vector<openvdb::Vec4I> quads;
 };
 
-Outcome runVolumeToMesh(const openvdb::FloatGrid& grid, double adaptivity, int threads) {
+Outcome runVolumeToMesh(const openvdb::FloatGrid& grid, double isovalue, double adaptivity,
+                        int threads) {
   const auto mesh = std::make_shared<VolumeToMeshResult>();
   tbb::task_arena arena(threads);
   arena.execute([&] {
-    openvdb::tools::volumeToMesh(grid, mesh->points, mesh->triangles, mesh->quads, 0.0, adaptivity);
+    openvdb::tools::volumeToMesh(grid, mesh->points, mesh->triangles, mesh->quads, isovalue,
+                                 adaptivity);
   });
   return {mesh->points.size(), mesh->triangles.size() + 2 * mesh->quads.size(), {}, mesh};
 }
@@ -88,8 +97,9 @@ Contender readOfAllLeaves(const openvdb::FloatGrid& grid, std::size_t peer) {
           }};
 }
 
-void addFlyingEdges(const openvdb::FloatGrid& grid, std::size_t peer, std::vector<Contender>& all) {
-  const auto run = flyingEdgesOf(grid);
+void addFlyingEdges(const openvdb::FloatGrid& grid, double isovalue, std::size_t peer,
+                    std::vector<Contender>& all) {
+  const auto run = flyingEdgesOf(grid, isovalue);
   if (!run) return;
   all.push_back({"vtkFlyingEdges3D on a dense copy", peer, [run](int threads) {
                    const FlyingEdgesMesh mesh = run(threads);
@@ -103,34 +113,40 @@ std::string nameOf(Method method) {
   return "tufa, " + std::string(methodNames().at(static_cast<std::size_t>(method)));
 }
 
-std::vector<Contender> methodsFor(const openvdb::FloatGrid& grid) {
+std::vector<Contender> methodsFor(const openvdb::FloatGrid& grid, double isovalue) {
   constexpr std::size_t kVolumeToMesh = 0, kMarchingCubes = 1;
-  std::vector<Contender> all = {{"volumeToMesh, adaptivity 0", kVolumeToMesh,
-                                 [&](int threads) { return runVolumeToMesh(grid, 0, threads); }}};
+  std::vector<Contender> all = {
+      {"volumeToMesh, adaptivity 0", kVolumeToMesh,
+       [&grid, isovalue](int threads) { return runVolumeToMesh(grid, isovalue, 0, threads); }}};
   for (const std::string_view name : methodNames()) {
     const Method method = *methodByName(name);
     if (method == Method::Dual) continue;
     const std::size_t peer = method == Method::MarchingCubes ? kVolumeToMesh : kMarchingCubes;
-    all.push_back({nameOf(method), peer,
-                   [&grid, method](int threads) { return runMethod(grid, method, threads); }});
+    all.push_back({nameOf(method), peer, [&grid, method, isovalue](int threads) {
+                     return runMethod(grid, method, isovalue, threads);
+                   }});
   }
-  addFlyingEdges(grid, kMarchingCubes, all);
+  addFlyingEdges(grid, isovalue, kMarchingCubes, all);
   return all;
 }
 
-std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid) {
+std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid, double isovalue) {
   constexpr std::size_t kUniformPeer = 1, kAdaptivePeer = 3;
-  std::vector<Contender> all = {{"tufa, uniform", kUniformPeer,
-                                 [&](int threads) { return runTufa(grid, uniform(), threads); }},
-                                {"volumeToMesh, adaptivity 0", kUniformPeer,
-                                 [&](int threads) { return runVolumeToMesh(grid, 0, threads); }},
-                                {"tufa, tolerance 0.1", kAdaptivePeer,
-                                 [&](int threads) { return runTufa(grid, {}, threads); }},
-                                {"volumeToMesh, adaptivity 0.25", kAdaptivePeer,
-                                 [&](int threads) { return runVolumeToMesh(grid, 0.25, threads); }},
-                                {"tufa, tolerance 0.1, --fast", kAdaptivePeer,
-                                 [&](int threads) { return runTufa(grid, cut(), threads); }}};
-  addFlyingEdges(grid, kUniformPeer, all);
+  const auto tufa = [&grid](const ContourOptions& options) {
+    return [&grid, options](int threads) { return runTufa(grid, options, threads); };
+  };
+  const auto volumeToMesh = [&grid, isovalue](double adaptivity) {
+    return [&grid, isovalue, adaptivity](int threads) {
+      return runVolumeToMesh(grid, isovalue, adaptivity, threads);
+    };
+  };
+  std::vector<Contender> all = {
+      {"tufa, uniform", kUniformPeer, tufa(uniform(isovalue))},
+      {"volumeToMesh, adaptivity 0", kUniformPeer, volumeToMesh(0)},
+      {"tufa, tolerance 0.1", kAdaptivePeer, tufa(adaptive(isovalue))},
+      {"volumeToMesh, adaptivity 0.25", kAdaptivePeer, volumeToMesh(0.25)},
+      {"tufa, tolerance 0.1, --fast", kAdaptivePeer, tufa(cut(isovalue))}};
+  addFlyingEdges(grid, isovalue, kUniformPeer, all);
   all.push_back(readOfAllLeaves(grid, kUniformPeer));
   return all;
 }

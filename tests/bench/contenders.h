@@ -27,15 +27,16 @@ struct Contender {
   std::function<Outcome(int threads)> run;
 };
 
-/// Every way to mesh `grid` there is on this machine, and last the floor: one parallel read of all
-/// leaf values, which no mesher that looks at the whole grid can beat. What a contender needs
-/// beside the grid is made here, outside of what is timed. `grid` must outlive the result.
-[[nodiscard]] std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid);
+/// Every way to mesh `grid` at an isovalue that there is on this machine, and last the floor: one
+/// parallel read of all leaf values, which no mesher that looks at the whole grid can beat. What a
+/// contender needs beside the grid is made here, outside of what is timed. `grid` must outlive the
+/// result.
+[[nodiscard]] std::vector<Contender> contendersFor(const openvdb::FloatGrid& grid, double isovalue);
 
 /// volumeToMesh at adaptivity 0, every method of tufa::extract() but dual contouring, and flying
 /// edges where VTK is at hand. Marching cubes is compared with volumeToMesh, the others with
 /// marching cubes. `grid` must outlive the result.
-[[nodiscard]] std::vector<Contender> methodsFor(const openvdb::FloatGrid& grid);
+[[nodiscard]] std::vector<Contender> methodsFor(const openvdb::FloatGrid& grid, double isovalue);
 
 /// How methodsFor() names a method.
 [[nodiscard]] std::string nameOf(Method method);

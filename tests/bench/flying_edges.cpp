@@ -27,11 +27,11 @@ vtkSmartPointer<vtkImageData> denseCopy(const openvdb::FloatGrid& grid,
   return image;
 }
 
-FlyingEdgesMesh run(vtkImageData* image, int threads) {
+FlyingEdgesMesh run(vtkImageData* image, double isovalue, int threads) {
   vtkSMPTools::Initialize(threads);
   vtkNew<vtkFlyingEdges3D> filter;
   filter->SetInputData(image);
-  filter->SetValue(0, 0);
+  filter->SetValue(0, isovalue);
   filter->ComputeNormalsOff();
   filter->ComputeScalarsOff();
   filter->Update();
@@ -43,12 +43,14 @@ FlyingEdgesMesh run(vtkImageData* image, int threads) {
 
 }  // namespace
 
-std::function<FlyingEdgesMesh(int)> flyingEdgesOf(const openvdb::FloatGrid& grid) {
+std::function<FlyingEdgesMesh(int)> flyingEdgesOf(const openvdb::FloatGrid& grid, double isovalue) {
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   const openvdb::Coord size = box.dim();
   if (1.0 * size[0] * size[1] * size[2] > kMostSamples) return {};
   vtkSMPTools::SetBackend("TBB");
-  return [image = denseCopy(grid, box)](int threads) { return run(image, threads); };
+  return [image = denseCopy(grid, box), isovalue](int threads) {
+    return run(image, isovalue, threads);
+  };
 }
 
 }  // namespace tufa::bench

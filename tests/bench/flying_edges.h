@@ -15,10 +15,10 @@ struct FlyingEdgesMesh {
   std::shared_ptr<void> made;
 };
 
-/// Runs VTK's vtkFlyingEdges3D, without normals, on a dense copy of the grid's bounding box, which
-/// is made now. Empty where the program was built without VTK or the copy would take more than two
-/// gigabytes.
+/// Runs VTK's vtkFlyingEdges3D at an isovalue, without normals, on a dense copy of the grid's
+/// bounding box, which is made now. Empty where the program was built without VTK or the copy would
+/// take more than two gigabytes.
 [[nodiscard]] std::function<FlyingEdgesMesh(int threads)> flyingEdgesOf(
-    const openvdb::FloatGrid& grid);
+    const openvdb::FloatGrid& grid, double isovalue);
 
 }  // namespace tufa::bench

@@ -2,10 +2,16 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/contour.h>
+#include <tufa/grid_files.h>
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "contenders.h"
 #include "measure.h"
@@ -19,6 +25,8 @@ using namespace tufa::bench;
 struct Arguments {
   std::vector<std::string> shapes = {"sphere", "gyroid", "bracket", "terrain"};
   std::vector<std::string> meshes;
+  std::vector<std::string> volumes;
+  std::optional<double> isovalue;
   std::vector<double> sizes = {1, 10};
   std::vector<int> threads = {1, 2};
   int repeats = 5;
@@ -30,7 +38,11 @@ void addOptions(CLI::App& app, Arguments& arguments) {
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--mesh", arguments.meshes, "mesh files to voxelize and mesh");
-  app.add_option("--sizes", arguments.sizes, "millions of active voxels")
+  app.add_option("--vdb", arguments.volumes, "files of volumes to mesh as they are");
+  app.add_option("--iso", arguments.isovalue,
+                 "isovalue of volumes that are no level sets (default half way between the least "
+                 "and the greatest value)");
+  app.add_option("--sizes", arguments.sizes, "millions of active voxels of shapes and meshes")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--threads", arguments.threads, "numbers of threads")
@@ -43,31 +55,49 @@ void addOptions(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
 }
 
-std::vector<Case> measureVolume(const std::string& volume, double millions,
+openvdb::FloatGrid::Ptr readVolume(const std::string& file) {
+  auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(tufa::readGrid(file));
+  if (!grid) throw std::runtime_error(file + " holds no grid of floats");
+  return grid;
+}
+
+double isovalueOf(const openvdb::FloatGrid& grid, const std::optional<double>& asked) {
+  if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) return 0;
+  if (asked) return *asked;
+  tufa::ContourOptions options;
+  options.uniform = true;
+  tufa::ContourReport report;
+  static_cast<void>(tufa::contour(grid, options, &report));
+  return report.isovalue;
+}
+
+std::vector<Case> measureVolume(const std::string& name, const openvdb::FloatGrid& grid,
                                 const Arguments& arguments) {
-  const openvdb::FloatGrid::Ptr grid = makeVolume(volume, millions * 1e6);
+  const double isovalue = isovalueOf(grid, arguments.isovalue);
   const std::vector<Contender> contenders =
-      arguments.methods ? methodsFor(*grid) : contendersFor(*grid);
+      arguments.methods ? methodsFor(grid, isovalue) : contendersFor(grid, isovalue);
   std::vector<Case> cases;
   for (const int threads : arguments.threads) {
-    cases.push_back({std::filesystem::path(volume).stem().string(),
-                     static_cast<double>(grid->activeVoxelCount()), threads,
+    cases.push_back({std::filesystem::path(name).stem().string(),
+                     static_cast<double>(grid.activeVoxelCount()), threads,
                      measure(contenders, threads, arguments.repeats)});
   }
   return cases;
 }
 
 void run(const Arguments& arguments) {
-  std::vector<std::string> volumes = arguments.shapes;
-  volumes.insert(volumes.end(), arguments.meshes.begin(), arguments.meshes.end());
   std::vector<Case> all;
-  for (const std::string& volume : volumes) {
-    for (const double millions : arguments.sizes) {
-      const std::vector<Case> cases = measureVolume(volume, millions, arguments);
-      std::cerr << timeTable(cases) << std::flush;
-      all.insert(all.end(), cases.begin(), cases.end());
+  const auto add = [&](const std::string& name, const openvdb::FloatGrid& grid) {
+    const std::vector<Case> cases = measureVolume(name, grid, arguments);
+    std::cerr << timeTable(cases) << std::flush;
+    all.insert(all.end(), cases.begin(), cases.end());
+  };
+  for (const auto* names : {&arguments.shapes, &arguments.meshes}) {
+    for (const std::string& name : *names) {
+      for (const double millions : arguments.sizes) add(name, *makeVolume(name, millions * 1e6));
     }
   }
+  for (const std::string& file : arguments.volumes) add(file, *readVolume(file));
   std::cout << timeTable(all);
   std::vector<std::string> names = {"tufa, uniform", "tufa, tolerance 0.1",
                                     "tufa, tolerance 0.1, --fast"};

@@ -2,6 +2,6 @@
 
 namespace tufa::bench {
 
-std::function<FlyingEdgesMesh(int)> flyingEdgesOf(const openvdb::FloatGrid&) { return {}; }
+std::function<FlyingEdgesMesh(int)> flyingEdgesOf(const openvdb::FloatGrid&, double) { return {}; }
 
 }  // namespace tufa::bench
