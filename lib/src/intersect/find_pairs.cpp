@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <mutex>
-#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "base/collect.h"
 #include "base/huge_pages.h"
@@ -80,14 +82,8 @@ std::vector<PolygonPair> intersectingAmong(const std::vector<PolygonPair>& pairs
 
 namespace {
 
-struct Candidate {
-  PolygonIndex polygon;
-  Box box;
-};
-
-// Runs, and polygons of a run, that are compared with the candidates near them at once.
+// Runs that are compared with the candidates near them at once.
 constexpr std::size_t kRunsAtOnce = 8;
-constexpr PolygonIndex kAtOnce = 4;
 
 using Matters = std::function<bool(PolygonIndex, PolygonIndex)>;
 
@@ -111,20 +107,90 @@ void test(const Search& search, const PolygonPair& pair, ClosePairs& found) {
   if (intersectElsewhere(positions, a, b, same)) found.intersecting.push_back(pair);
 }
 
-// Without branches: which of two neighbours meet is hard to foretell.
-bool meet(const Box& a, const Box& b) {
-  int apart = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    apart |= static_cast<int>(a.lower[axis] > b.upper[axis]);
-    apart |= static_cast<int>(b.lower[axis] > a.upper[axis]);
+// A box in single precision, counted from a place near it and no smaller.
+struct NearBox {
+  std::array<float, 3> lower, upper;
+
+  NearBox(const Box& box, const Vec3& from) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double least = box.lower[static_cast<int>(axis)] - from[static_cast<int>(axis)];
+      const double most = box.upper[static_cast<int>(axis)] - from[static_cast<int>(axis)];
+      constexpr double kRounding = 0x1p-23;
+      lower[axis] = static_cast<float>(least - kRounding * std::abs(least));
+      upper[axis] = static_cast<float>(most + kRounding * std::abs(most));
+    }
   }
-  return apart == 0;
-}
+};
+
+// Boxes that are compared with another one together: side by side, and without branches, as which
+// of two neighbours meet is hard to foretell.
+class NearBoxes {
+ public:
+  void clear() { resize(0); }
+  void add(const NearBox& box, std::uint32_t item) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower_[axis].push_back(box.lower[axis]);
+      upper_[axis].push_back(box.upper[axis]);
+    }
+    items_.push_back(item);
+  }
+
+  // The items of the boxes, those of the last takeMeeting() if there was one.
+  [[nodiscard]] const std::vector<std::uint32_t>& items() const { return items_; }
+
+  // Takes those of `all` that meet a box. Whether there are any.
+  bool takeMeeting(const NearBox& box, const NearBoxes& all) {
+    const std::vector<std::uint32_t>& places = findMeeting(box, all);
+    resize(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        lower_[axis][i] = all.lower_[axis][places[i]];
+        upper_[axis][i] = all.upper_[axis][places[i]];
+      }
+      items_[i] = all.items_[places[i]];
+    }
+    return !places.empty();
+  }
+
+  // The places in `all` of the boxes that meet a box.
+  const std::vector<std::uint32_t>& findMeeting(const NearBox& box, const NearBoxes& all) {
+    const std::size_t count = all.items_.size();
+    apart_.assign(count, 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float least = box.lower[axis], most = box.upper[axis];
+      const float* const lower = all.lower_[axis].data();
+      const float* const upper = all.upper_[axis].data();
+      for (std::size_t i = 0; i < count; ++i) {
+        apart_[i] |= static_cast<std::uint32_t>(lower[i] > most) |
+                     static_cast<std::uint32_t>(least > upper[i]);
+      }
+    }
+    places_.resize(count);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      places_[found] = static_cast<std::uint32_t>(i);
+      found += 1 - apart_[i];
+    }
+    places_.resize(found);
+    return places_;
+  }
+
+ private:
+  void resize(std::size_t count) {
+    for (auto* sides : {&lower_, &upper_}) {
+      for (std::vector<float>& side : *sides) side.resize(count);
+    }
+    items_.resize(count);
+  }
+
+  std::array<std::vector<float>, 3> lower_, upper_;
+  std::vector<std::uint32_t> items_;
+  std::vector<std::uint32_t> apart_, places_;  // of the last search
+};
 
 // Finds the pairs of the polygons of one section after another with the candidates around it. Boxes
 // are compared in steps, each of a part of what the step before has left: section, several runs,
-// run, several polygons, polygon. So a candidate is compared with few polygons that it does not
-// touch.
+// run, polygon. So a candidate is compared with few polygons that it does not touch.
 class SectionSearch {
  public:
   SectionSearch(const Search& search, const base::Bvh& tree,
@@ -132,67 +198,47 @@ class SectionSearch {
       : search_(search), surface_(search.surface), tree_(tree), candidates_(candidates) {}
 
   void run(std::size_t section) {
+    const Box& whole = surface_.sectionBox(section);
+    from_ = whole.lower;
     around_.clear();
-    tree_.itemsMeeting(surface_.sectionBox(section), [&](std::uint32_t i, const Box& box) {
-      around_.push_back({candidates_[i], box});
+    boxes_.clear();
+    near_[0].clear();
+    tree_.itemsMeeting(whole, [&](std::uint32_t i, const Box& box) {
+      near_[0].add({box, from_}, static_cast<std::uint32_t>(around_.size()));
+      around_.push_back(candidates_[i]);
+      boxes_.push_back(box);
     });
     if (around_.empty()) return;
-    std::vector<std::uint32_t>& all = near_[0];
-    all.resize(around_.size());
-    std::iota(all.begin(), all.end(), 0U);
     const std::size_t end = surface_.sectionEnd(section);
     for (std::size_t first = section * Surface::kSection; first < end; first += kRunsAtOnce) {
       const std::size_t last = std::min(first + kRunsAtOnce, end);
       Box box = Box::empty();
       for (std::size_t run = first; run < last; ++run) box.add(surface_.runBox(run));
-      if (!narrow(1, box)) continue;
+      if (!near_[1].takeMeeting({box, from_}, near_[0])) continue;
       for (std::size_t run = first; run < last; ++run) {
-        if (narrow(2, surface_.runBox(run))) pairsOfRun(run);
+        if (near_[2].takeMeeting({surface_.runBox(run), from_}, near_[1])) pairsOfRun(run);
       }
     }
   }
   [[nodiscard]] const ClosePairs& found() const { return found_; }
 
  private:
-  // Takes those of the step before that meet a box. Whether there are any.
-  bool narrow(std::size_t step, const Box& box) {
-    const std::vector<std::uint32_t>& before = near_[step - 1];
-    std::vector<std::uint32_t>& near = near_[step];
-    near.resize(before.size());
-    std::size_t count = 0;
-    for (const std::uint32_t i : before) {
-      near[count] = i;
-      count += meet(box, around_[i].box) ? 1 : 0;
-    }
-    near.resize(count);
-    return count > 0;
-  }
-
   void pairsOfRun(std::size_t run) {
+    const std::vector<std::uint32_t>& near = near_[2].items();
     const PolygonIndex begin = surface_.runBegin(run), end = surface_.runEnd(run);
     std::array<bool, Surface::kRun> isCandidate{};
-    for (const std::uint32_t i : near_[2]) {
-      const PolygonIndex polygon = around_[i].polygon;
-      if (polygon >= begin && polygon < end) isCandidate[polygon - begin] = true;
+    for (const std::uint32_t i : near) {
+      if (around_[i] >= begin && around_[i] < end) isCandidate[around_[i] - begin] = true;
     }
-    for (PolygonIndex first = begin; first < end; first += kAtOnce) {
-      const PolygonIndex last = std::min(first + kAtOnce, end);
-      std::array<Box, kAtOnce> boxes;
-      Box all = Box::empty();
-      for (PolygonIndex p = first; p < last; ++p) {
-        boxes[p - first] = surface_.box(p);
-        all.add(boxes[p - first]);
-      }
-      if (!narrow(3, all)) continue;
-      for (PolygonIndex p = first; p < last; ++p) {
-        if (!narrow(4, boxes[p - first])) continue;
-        for (const std::uint32_t i : near_[4]) {
-          const PolygonIndex other = around_[i].polygon;
-          // Of two candidates, the higher one is found from the lower one.
-          if (isCandidate[p - begin] && other < p) continue;
-          if (search_.matters && !search_.matters(p, other)) continue;
-          test(search_, {std::min(p, other), std::max(p, other)}, found_);
-        }
+    for (PolygonIndex p = begin; p < end; ++p) {
+      const Box box = surface_.box(p);
+      for (const std::uint32_t place : scratch_.findMeeting({box, from_}, near_[2])) {
+        const PolygonIndex other = around_[near[place]];
+        // Of two candidates, the higher one is found from the lower one.
+        if (isCandidate[p - begin] && other < p) continue;
+        if (!box.meets(boxes_[near[place]])) continue;
+        if (search_.matters && !search_.matters(p, other)) continue;
+        test(search_, {std::min(p, other), std::max(p, other)}, found_);
       }
     }
   }
@@ -201,8 +247,11 @@ class SectionSearch {
   const Surface& surface_;
   const base::Bvh& tree_;
   const std::vector<PolygonIndex>& candidates_;
-  std::vector<Candidate> around_;
-  std::array<std::vector<std::uint32_t>, 5> near_;  // of these, after each step
+  Vec3 from_{0.0};                    // the section's lower corner
+  std::vector<PolygonIndex> around_;  // candidates that meet the section
+  std::vector<Box> boxes_;            // theirs
+  std::array<NearBoxes, 3> near_;     // places in these two, after each step
+  NearBoxes scratch_;
   ClosePairs found_;
 };
 

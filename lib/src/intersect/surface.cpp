@@ -1,6 +1,9 @@
 #include "intersect/surface.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "base/sort_unique.h"
 
@@ -21,6 +24,22 @@ std::vector<PolygonIndex> distinctPolygonsOf(const std::vector<PolygonPair>& pai
   std::vector<PolygonIndex> polygons = polygonsOf(pairs);
   base::sortUnique(polygons);
   return polygons;
+}
+
+void renewPairsOf(const std::vector<PolygonIndex>& changed, const ClosePairs& found,
+                  ClosePairs& known) {
+  const auto isChanged = [&](PolygonIndex polygon) {
+    return std::binary_search(changed.begin(), changed.end(), polygon);
+  };
+  const auto renew = [&](const std::vector<PolygonPair>& fresh, std::vector<PolygonPair>& pairs) {
+    std::erase_if(pairs, [&](const PolygonPair& p) { return isChanged(p.a) || isChanged(p.b); });
+    std::vector<PolygonPair> all;
+    all.reserve(pairs.size() + fresh.size());
+    std::merge(pairs.begin(), pairs.end(), fresh.begin(), fresh.end(), std::back_inserter(all));
+    pairs = std::move(all);
+  };
+  renew(found.intersecting, known.intersecting);
+  renew(found.close, known.close);
 }
 
 std::vector<VertexIndex> verticesOf(const Mesh& mesh, const std::vector<PolygonIndex>& polygons) {

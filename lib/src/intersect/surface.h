@@ -123,6 +123,11 @@ struct ClosePairs {
   std::vector<PolygonPair> close;
 };
 
+/// Takes what was found for some polygons, sorted, that have changed in the place of what was known
+/// of them.
+void renewPairsOf(const std::vector<PolygonIndex>& changed, const ClosePairs& found,
+                  ClosePairs& known);
+
 /// Of the pairs of which at least one polygon is among `candidates`, those that intersect and those
 /// that are close to it. Both sorted. `matters` as for findPairs(), whose cost it has.
 [[nodiscard]] ClosePairs findClosePairs(

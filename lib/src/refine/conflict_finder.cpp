@@ -17,6 +17,13 @@
 namespace tufa::refine {
 namespace {
 
+void addPairs(const std::vector<intersect::PolygonPair>& pairs, std::vector<Conflict>& conflicts) {
+  conflicts.reserve(conflicts.size() + pairs.size());
+  for (const intersect::PolygonPair& pair : pairs) {
+    conflicts.push_back({Conflict::Kind::Pair, {pair.a, pair.b}, {}});
+  }
+}
+
 // Faces whose normals have a smaller cosine (140 degrees) make a fold.
 constexpr double kFold = -0.766;
 // An edge folded by more than 140 degrees has a face more than 70 degrees off the normal of each
@@ -95,7 +102,8 @@ std::vector<Conflict> ConflictFinder::findEverywhere() {
     addFolds(base::collectSorted(job_, mesh_.quads.size(), add), conflicts);
   }
   candidates_ = intersect::findCandidates(surface_.view(), mesh_, margin_, job_);
-  addPairs(intersect::findClosePairs(polygons_, candidates_, margin_, job_), conflicts);
+  pairs_ = intersect::findClosePairs(polygons_, candidates_, margin_, job_);
+  addPairs(pairs_.intersecting, conflicts);
   return conflicts;
 }
 
@@ -127,16 +135,11 @@ std::vector<Conflict> ConflictFinder::findAroundMoved(Pairs which) {
   const auto isCandidate = [&](std::uint32_t quad) {
     return std::binary_search(candidates_.begin(), candidates_.end(), quad);
   };
-  const auto isTouched = [&](std::uint32_t quad) {
-    return std::binary_search(touched_.begin(), touched_.end(), quad);
-  };
-  std::erase_if(close_, [&](const intersect::PolygonPair& pair) {
-    return isTouched(pair.a) || isTouched(pair.b);
-  });
-  addPairs(intersect::findClosePairs(
-               polygons_, touched_, margin_, job_,
-               [&](std::uint32_t a, std::uint32_t b) { return isCandidate(a) || isCandidate(b); }),
-           conflicts);
+  const intersect::ClosePairs found = intersect::findClosePairs(
+      polygons_, touched_, margin_, job_,
+      [&](std::uint32_t a, std::uint32_t b) { return isCandidate(a) || isCandidate(b); });
+  intersect::renewPairsOf(touched_, found, pairs_);
+  addPairs(found.intersecting, conflicts);
   return conflicts;
 }
 
@@ -171,18 +174,6 @@ void ConflictFinder::addFolds(const std::vector<std::uint32_t>& off,
     if (a.low != b.low || a.high != b.high || !isFold(a, b)) continue;
     conflicts.push_back({Conflict::Kind::Fold, {a.face, b.face}, {a.low, a.high}});
   }
-}
-
-void ConflictFinder::addPairs(const intersect::ClosePairs& found,
-                              std::vector<Conflict>& conflicts) {
-  conflicts.reserve(conflicts.size() + found.intersecting.size());
-  for (const intersect::PolygonPair& pair : found.intersecting) {
-    conflicts.push_back({Conflict::Kind::Pair, {pair.a, pair.b}, {}});
-  }
-  std::vector<intersect::PolygonPair> all;
-  std::merge(close_.begin(), close_.end(), found.close.begin(), found.close.end(),
-             std::back_inserter(all));
-  close_ = std::move(all);
 }
 
 std::vector<std::uint32_t> ConflictFinder::quadsAt(const std::vector<VertexIndex>& vertices) {

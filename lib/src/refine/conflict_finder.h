@@ -47,9 +47,8 @@ class ConflictFinder {
 
   /// The candidates of the mesh as it was at the last search. Sorted.
   [[nodiscard]] const std::vector<std::uint32_t>& candidates() const { return candidates_; }
-  /// And its pairs of quads that intersect or may, once each vertex moves by half of the margin.
-  /// Sorted.
-  [[nodiscard]] const std::vector<intersect::PolygonPair>& close() const { return close_; }
+  /// And its pairs of quads that intersect, or may once each vertex moves by half of the margin.
+  [[nodiscard]] const intersect::ClosePairs& pairs() const { return pairs_; }
 
  private:
   struct EdgeFace;
@@ -66,7 +65,6 @@ class ConflictFinder {
   [[nodiscard]] bool intersect(std::uint32_t a, std::uint32_t b, const Trial& trial) const;
   [[nodiscard]] bool isSharpAt(VertexIndex vertex, const Vec3& na, const Vec3& nb) const;
   void addFolds(const std::vector<std::uint32_t>& off, std::vector<Conflict>& conflicts);
-  void addPairs(const intersect::ClosePairs& found, std::vector<Conflict>& conflicts);
   /// The quads with some vertices, given in rising order. Rising.
   [[nodiscard]] std::vector<std::uint32_t> quadsAt(const std::vector<VertexIndex>& vertices);
   void mark(const std::vector<VertexIndex>& vertices, std::uint8_t value);
@@ -77,7 +75,7 @@ class ConflictFinder {
   base::Job& job_;
   intersect::Surface polygons_;
   std::vector<std::uint32_t> candidates_;
-  std::vector<intersect::PolygonPair> close_;
+  intersect::ClosePairs pairs_;
   std::vector<std::uint32_t> touched_;  // quads at the vertices that moved last, rising
   std::vector<std::uint8_t> marks_;     // of vertices, all 0 between searches
 };

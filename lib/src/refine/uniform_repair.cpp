@@ -1,7 +1,6 @@
 #include "refine/uniform_repair.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "refine/lone_samples.h"
 #include "refine/order_along_creases.h"
@@ -38,27 +37,27 @@ class UniformRepair {
         withdrawPlacements(surface_, margin_, job_, [this] { return putBackComponents(); });
     report_.intersectionsFound = withdrawn.pairsFound;
     report_.movedVertices += withdrawn.vertices;
-    if (withdrawn.left == 0) return std::move(withdrawn.close);
-    candidates_ = std::move(withdrawn.candidates);
-    repairCandidates();
+    pairs_ = std::move(withdrawn.pairs);
+    if (pairs_.intersecting.empty()) return std::move(pairs_.close);
+    repairPairs();
     for (int i = 0; i < kMostPutBack; ++i) {
       const std::vector<VertexIndex> misplaced = putBackComponents();
       if (misplaced.empty()) break;
       std::vector<std::uint8_t> marks(mesh_.positions.size(), 0);
       for (const VertexIndex vertex : misplaced) marks[vertex] = 1;
-      addCandidates(uniform::quadsAt(surface_.topology, mesh_, misplaced, marks, job_));
-      repairCandidates();
+      findAgain(uniform::quadsAt(surface_.topology, mesh_, misplaced, marks, job_));
+      repairPairs();
     }
-    return intersect::findClosePairs(intersect::Surface(mesh_, job_), candidates_, margin_, job_)
-        .close;
+    return std::move(pairs_.close);
   }
 
  private:
-  void repairCandidates() {
+  void repairPairs() {
     Source own = sourceOf(surface_, job_);
     own.crossings = nullptr;  // the forest has no place for the centres of fans
-    const RepairReport repaired = repairIntersections(mesh_, candidates_, own, job_);
-    addCandidates(repaired.changed);
+    const RepairReport repaired =
+        repairIntersections(mesh_, intersect::distinctPolygonsOf(pairs_.intersecting), own, job_);
+    findAgain(repaired.changed);
     report_.intersectionsFound = std::max(report_.intersectionsFound, repaired.pairsFound);
     report_.intersectionsLeft = repaired.left.size();
     report_.movedVertices += repaired.movedVertices;
@@ -89,11 +88,12 @@ class UniformRepair {
     return moved;
   }
 
-  void addCandidates(const std::vector<intersect::PolygonIndex>& polygons) {
-    std::vector<std::uint32_t> all;
-    std::set_union(candidates_.begin(), candidates_.end(), polygons.begin(), polygons.end(),
-                   std::back_inserter(all));
-    candidates_ = std::move(all);
+  // Looks for the pairs of quads, sorted, that have changed; all others are as before.
+  void findAgain(const std::vector<intersect::PolygonIndex>& changed) {
+    if (changed.empty()) return;
+    const intersect::Surface surface(mesh_, job_);
+    intersect::renewPairsOf(changed, intersect::findClosePairs(surface, changed, margin_, job_),
+                            pairs_);
   }
 
   uniform::UniformSurface& surface_;
@@ -101,7 +101,7 @@ class UniformRepair {
   ContourReport& report_;
   base::Job& job_;
   double margin_ = 0;  // twice the largest rounding
-  std::vector<std::uint32_t> candidates_;
+  intersect::ClosePairs pairs_;
 };
 
 }  // namespace

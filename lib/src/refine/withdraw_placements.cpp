@@ -44,8 +44,7 @@ class PlacementGuard {
       finder_.noteMoved(others);
       settle(finder_.findAroundMoved(ConflictFinder::Pairs::All));
     }
-    result_.candidates = finder_.candidates();
-    result_.close = finder_.close();
+    result_.pairs = finder_.pairs();
     return std::move(result_);
   }
 
@@ -57,8 +56,8 @@ class PlacementGuard {
       const std::vector<VertexIndex> moved = withdrawFrom(conflicts);
       if (moved.empty()) return;
       finder_.noteMoved(moved);
-      if (round == kMostWithdrawalRounds) return;
       conflicts = finder_.findAroundMoved(ConflictFinder::Pairs::WithCandidate);
+      if (round == kMostWithdrawalRounds) return;
     }
   }
 
@@ -79,10 +78,7 @@ class PlacementGuard {
       return apply(chosen);
     }
     for (const std::optional<Move>& move : settlingMoves(conflicts, vertices, points)) {
-      if (!move) {
-        ++result_.left;
-        continue;
-      }
+      if (!move) continue;
       std::optional<Move>& best = chosen[slotOf(vertices, move->vertex)];
       if (!best || leavesFewer(*move, *best)) best = move;
     }

@@ -15,11 +15,9 @@ namespace tufa::refine {
 struct Withdrawal {
   std::size_t pairsFound = 0;  ///< pairs of quads that intersected with all placements
   std::size_t vertices = 0;    ///< vertices that were moved
-  std::size_t left = 0;        ///< folds and pairs all of whose vertices are at their mass points
-  /// The candidates of the mesh as it is now, see intersect::findCandidates(). Sorted.
-  std::vector<std::uint32_t> candidates;
-  /// Pairs of quads that intersect, or may once each vertex moves by half of the margin. Sorted.
-  std::vector<intersect::PolygonPair> close;
+  /// Pairs of quads that intersect still, all of their vertices at their mass points, or may once
+  /// each vertex moves by half of the margin.
+  intersect::ClosePairs pairs;
 };
 
 /// Accepts as many places of vertices as stand together: withdraws those that fold the surface or
