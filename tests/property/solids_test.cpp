@@ -100,6 +100,11 @@ TEST(Solids, KeepTheirPromisesWhereASpeckIsThinnerThanTheTolerance) { expectKept
 // A wedge made the fold guard let a valley beside it be folded.
 TEST(Solids, KeepTheirPromisesWhereAValleyIsBesideAWedge) { expectKeptPromises(3246); }
 
+// The guard let edges beside a wedge become as sharp as it, and a wedge that gets blunt along its
+// edge stay as sharp.
+TEST(Solids, KeepTheirPromisesWhereAnEdgeIsBesideAWedge) { expectKeptPromises(70141); }
+TEST(Solids, KeepTheirPromisesWhereAWedgeGetsBlunt) { expectKeptPromises(70230); }
+
 // Three vertices of a quad lie in line on a crease, so that rounding turned it over.
 TEST(Solids, KeepTheirPromisesWhereAQuadHasATriangleWithoutArea) { expectKeptPromises(1019); }
 

@@ -88,14 +88,19 @@ class Part {
     int changed = 0;  ///< one that is new or has moved
     void add(Vec3f neighbour) { to[count++] = neighbour; }
   };
+  /// A turn at an edge of a star, or over needles at one. `next` is not of length 1.
+  struct Turn {
+    Vec3f normal, next;  ///< of the faces on both sides
+    float cosine = 1;
+    float height = 0;  ///< of the next face's apex over the first, times a positive number
+  };
   /// The least cosines of turns from a face of a star to the next, or 1: at edges where the next
   /// one falls away, and where it rises.
   struct Sharpest {
     float ridge = 1, valley = 1;
-    /// `height`: of the next face's apex over this one, times a positive number.
-    void see(float cosine, float height) {
-      float& least = height > 0 ? valley : ridge;
-      least = std::min(least, cosine);
+    void see(const Turn& turn) {
+      float& least = turn.height > 0 ? valley : ridge;
+      least = std::min(least, turn.cosine);
     }
     [[nodiscard]] float least() const { return std::min(ridge, valley); }
   };
@@ -214,10 +219,16 @@ class Part {
   bool windsInFrame();
   bool isSimpleStar(std::span<const Index> merged) const;
   Outcome trianglesGuard(Vec3f a, Vec3f b);
+  template <class Visit>
+  void forTurnsAfter(Visit&& visit) const;
   [[nodiscard]] Sharpest sharpestAfter() const;
   [[nodiscard]] bool foldGuard(std::span<const Index> merged) const;
+  [[nodiscard]] bool foldsWereThere(std::span<const Index> merged) const;
+  template <class Visit>
+  void forTurnsBefore(std::span<const Index> merged, int between, Visit&& visit) const;
+  template <class Visit>
+  void forTurnsAcross(Vec3f normal, Vec3f p, Index edge, int between, Visit& visit) const;
   [[nodiscard]] Sharpest sharpestBefore(std::span<const Index> merged, int between) const;
-  void seeTurnAcross(Vec3f normal, Vec3f p, Index edge, int between, Sharpest& sharpest) const;
   [[nodiscard]] float longestEdge2(Index t) const;
   [[nodiscard]] Vec3f outerNormal(Index corner) const;
   bool ringGuard();

@@ -13,6 +13,8 @@ constexpr float kFoldFace2 = 0.01f;    // of faces of 0.05 square voxels, whose 
 constexpr float kLeastLength = 1e-4f;  // of a cross product, in squared voxels: no area at all
 constexpr float kNeedleWidth = 0.01f;  // voxels: less is no face of its own between two others
 constexpr int kMostBetween = 3;        // so many of them
+constexpr float kFold = -0.8655f;      // 149.9 degrees: places are still to be rounded
+constexpr float kSameFace = 0.9f;      // of normals, for faces on one side of a wedge
 
 }  // namespace
 
@@ -142,12 +144,12 @@ Vec3f Part::outerNormal(Index c) const {
   return cross(position_[vertex_[nextCorner(d)]] - p, position_[vertex_[previousCorner(d)]] - p);
 }
 
-// The least cosines at edges of the new star, spokes and those of the ring. Faces without area to
-// speak of, as between vertices that stand close together on a crease, make no fold that shows;
-// what would cross is the business of the star guards.
-Part::Sharpest Part::sharpestAfter() const {
+// Visits turns at edges of the new star, spokes and those of the ring. Faces without area to speak
+// of, as between vertices that stand close together on a crease, make no fold that shows; what
+// would cross is the business of the star guards.
+template <class Visit>
+void Part::forTurnsAfter(Visit&& visit) const {
   constexpr float kFoldCosine2 = 0.6f;  // less than the square, so that the root is seldom taken
-  Sharpest sharpest;
   const auto isTiny = [&](int i) {
     return squaredLength(cross(spoke_[i], spoke_[i + 1])) <= kTinyFace2;
   };
@@ -155,53 +157,74 @@ Part::Sharpest Part::sharpestAfter() const {
     if (isTiny(i)) continue;
     const int last = i == 0 ? size_ - 1 : i - 1;
     if (!isTiny(last)) {
-      sharpest.see(dot(normal_[i], normal_[last]), dot(normal_[i], spoke_[last]));
+      visit(Turn{normal_[i], normal_[last], dot(normal_[i], normal_[last]),
+                 dot(normal_[i], spoke_[last])});
     }
     const Vec3f outer = outerNormal(at_[i]);
     const float cosine = dot(normal_[i], outer), outer2 = squaredLength(outer);
     if (cosine < 0 && outer2 > kTinyFace2 && cosine * cosine > kFoldCosine2 * outer2) {
       const Vec3f apex = position_[vertex_[opposite_[at_[i]]]] - place_;
-      sharpest.see(cosine / length(outer), dot(normal_[i], apex - spoke_[i]));
+      visit(Turn{normal_[i], outer, cosine / length(outer), dot(normal_[i], apex - spoke_[i])});
     }
   }
+}
+
+Part::Sharpest Part::sharpestAfter() const {
+  Sharpest sharpest;
+  forTurnsAfter([&](const Turn& turn) { sharpest.see(turn); });
   return sharpest;
 }
 
 // A sharper turn than kFoldCosine passes only where the old star had one as sharp to the same side,
 // which it has on a wedge of the solid, be it with needles between its sides, and one that counts
-// as a fold only where the old star had a fold without any between. Small faces do not count there:
-// a fold of theirs must not grow.
+// as a fold only where the old star had that fold without any between. Small faces do not count
+// there: a fold of theirs must not grow.
 bool Part::foldGuard(std::span<const Index> merged) const {
   constexpr float kSlack = 0.01f;
-  constexpr float kFold = -0.8655f;  // 149.9 degrees: places are still to be rounded
   const Sharpest after = sharpestAfter();
   if (after.least() >= kFoldCosine) return true;
   if (after.least() < kSharpestCosine) return false;
-  if (after.least() < kFold) {
-    const Sharpest before = sharpestBefore(merged, 0);
-    if (after.ridge < kFold && before.ridge >= kFold) return false;
-    if (after.valley < kFold && before.valley >= kFold) return false;
-  }
+  if (after.least() < kFold && !foldsWereThere(merged)) return false;
   const Sharpest before = sharpestBefore(merged, kMostBetween);
   return (after.ridge >= kFoldCosine || after.ridge >= before.ridge - kSlack) &&
          (after.valley >= kFoldCosine || after.valley >= before.valley - kSlack);
 }
 
-// Sees the turn from a face to the one across an edge of it, or to those beyond the needles without
-// width next to it, as they lie along creases: `between` of them at most. `p` is a vertex of the
-// face.
-void Part::seeTurnAcross(Vec3f normal, Vec3f p, Index edge, int between, Sharpest& sharpest) const {
+// Whether for each fold of the new star the old one had a fold to the same side, between faces that
+// faced the same ways: a wedge makes no other edge beside it a wedge.
+bool Part::foldsWereThere(std::span<const Index> merged) const {
+  bool all = true;
+  forTurnsAfter([&](const Turn& now) {
+    if (now.cosine >= kFold || !all) return;
+    const Vec3f next = unit(now.next);
+    bool was = false;
+    forTurnsBefore(merged, 0, [&](const Turn& then) {
+      if (then.cosine >= kFold || (then.height > 0) != (now.height > 0)) return;
+      const Vec3f nextThen = unit(then.next);
+      was |= (dot(now.normal, then.normal) > kSameFace && dot(next, nextThen) > kSameFace) ||
+             (dot(now.normal, nextThen) > kSameFace && dot(next, then.normal) > kSameFace);
+    });
+    all &= was;
+  });
+  return all;
+}
+
+// Visits the turns from a face to the one across an edge of it, or to those beyond the needles
+// without width next to it, as they lie along creases: `between` of them at most. `p` is a vertex
+// of the face.
+template <class Visit>
+void Part::forTurnsAcross(Vec3f normal, Vec3f p, Index edge, int between, Visit& visit) const {
   const Index d = opposite_[edge];
   if (d == kNone) return;
   const Vec3f outer = outerNormal(edge);
   const float outer2 = squaredLength(outer);
   if (outer2 > kFoldFace2) {
-    sharpest.see(dot(normal, unit(outer)), dot(normal, position_[vertex_[d]] - p));
+    visit(Turn{normal, outer, dot(normal, unit(outer)), dot(normal, position_[vertex_[d]] - p)});
     return;
   }
   if (between == 0 || outer2 > kNeedleWidth * kNeedleWidth * longestEdge2(d / 3)) return;
-  seeTurnAcross(normal, p, nextCorner(d), between - 1, sharpest);
-  seeTurnAcross(normal, p, previousCorner(d), between - 1, sharpest);
+  forTurnsAcross(normal, p, nextCorner(d), between - 1, visit);
+  forTurnsAcross(normal, p, previousCorner(d), between - 1, visit);
 }
 
 float Part::longestEdge2(Index t) const {
@@ -211,8 +234,9 @@ float Part::longestEdge2(Index t) const {
       {squaredLength(p[1] - p[0]), squaredLength(p[2] - p[1]), squaredLength(p[0] - p[2])});
 }
 
-Part::Sharpest Part::sharpestBefore(std::span<const Index> merged, int between) const {
-  Sharpest sharpest;
+// The same for all edges of the stars that are merged.
+template <class Visit>
+void Part::forTurnsBefore(std::span<const Index> merged, int between, Visit&& visit) const {
   for (const Index v : merged) {
     Index c = corner_[v];
     do {
@@ -221,12 +245,17 @@ Part::Sharpest Part::sharpestBefore(std::span<const Index> merged, int between) 
       const Vec3f own = cross(position_[vertex_[t + 1]] - p, position_[vertex_[t + 2]] - p);
       if (squaredLength(own) > kFoldFace2) {
         for (const Index edge : {c, nextCorner(c)}) {
-          seeTurnAcross(unit(own), p, edge, between, sharpest);
+          forTurnsAcross(unit(own), p, edge, between, visit);
         }
       }
       c = around(c);
     } while (c != corner_[v]);
   }
+}
+
+Part::Sharpest Part::sharpestBefore(std::span<const Index> merged, int between) const {
+  Sharpest sharpest;
+  forTurnsBefore(merged, between, [&](const Turn& turn) { sharpest.see(turn); });
   return sharpest;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/huge_pages.h"
 #include "reduce/clearance.h"
+#include "reduce/new_folds.h"
 #include "reduce/part.h"
 
 namespace tufa::reduce {
@@ -143,6 +144,8 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     measureWithin(tolerance_);
     std::vector<Index> held = certificate_.beyond;
     if (options_.faults) addFacesNear(options_.faults(mesh()), held);
+    const std::vector<Index> folded = facesAtNewFolds(surface_, reference_, tolerance_, job_);
+    held.insert(held.end(), folded.begin(), folded.end());
     if (held.empty() || attempt_ == options_.attempts) break;
     hold(held, tolerance);
     tolerance_ = toleranceBefore;
