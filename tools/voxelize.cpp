@@ -83,6 +83,8 @@ void addVoxelizeCommand(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   voxelize->add_flag("--fog", options.fog,
                      "a fog volume: 1 inside, down to 0 on the surface, in place of a level set");
+  voxelize->add_flag("--fast{false}", options.exactDistances,
+                     "OpenVDB's distances, too low beside concave edges, in place of exact ones");
   addThreadsOption(*voxelize, options.threads);
   voxelize->add_flag("--json", arguments->json, "one JSON object on standard output");
   voxelize->add_flag("--quiet", arguments->quiet, "no summary and no progress bar");

@@ -49,6 +49,7 @@ openvdb::GridBase::Ptr volumeOf(const std::string& name, int voxels) {
   for (const Position& p : mesh.positions) box.expand(openvdb::Vec3d(p.x, p.y, p.z));
   VoxelizeOptions options;
   options.voxelSize = box.extents()[static_cast<int>(box.maxExtent())] / voxels;
+  options.exactDistances = false;  // as other programs make volumes of meshes
   return voxelize(mesh, options);
 }
 

@@ -83,6 +83,7 @@ void printRows(const fs::path& path, std::string ending) {
     for (const int resolution : kResolutions) {
       VoxelizeOptions options;
       options.voxelSize = extentOf(mesh) / resolution;
+      options.exactDistances = false;  // as other programs make volumes of meshes
       std::cout << row(file, std::to_string(resolution), *voxelize(mesh, options), {});
     }
   }

@@ -43,6 +43,7 @@ openvdb::FloatGrid::Ptr makeVolume(const std::string& shapeOrFile, double active
   const auto make = [&](double voxelSize) {
     VoxelizeOptions options;
     options.voxelSize = voxelSize;
+    options.exactDistances = false;  // as other programs make volumes of meshes
     return voxelize(mesh, options);
   };
   return makeWithCount(make, extentOf(mesh) / 64, activeVoxels);

@@ -151,6 +151,14 @@ class MeshDistance final : public Field {
     return near.side * near.distance - half_.value_or(0);
   }
 
+  /// Of a solid, at a point that is no farther than `most` from it.
+  [[nodiscard]] double valueWithin(const Vec3& p, double most) const {
+    constexpr double kRounding = 1e-9;
+    Near near = nearestTo(p, most * (1 + kRounding));
+    if (near.distance == kInfinity) near = nearestTo(p);  // as on the surface, if `most` is 0
+    return near.side * near.distance;
+  }
+
   [[nodiscard]] Position gradient(const Position& p) const override {
     const Near near = nearestTo(p);
     Vec3 along = near.offset * near.side;
@@ -250,8 +258,9 @@ class MeshDistance final : public Field {
     Vec3 normal{0.0};        ///< there, of a solid
   };
 
-  [[nodiscard]] Near nearestTo(const Vec3& p) const {
-    double best = kInfinity;
+  /// Infinitely far if nothing is nearer than `most`.
+  [[nodiscard]] Near nearestTo(const Vec3& p, double most = kInfinity) const {
+    double best = most * most;
     std::uint32_t triangle = base::Bvh::kNone;
     const auto squared = [&](std::uint32_t n) { return triangles_->squaredDistance(p, n); };
     if (few_.empty()) triangle = triangles_->tree().nearest(p, best, squared);
@@ -309,6 +318,12 @@ class MeshDistance final : public Field {
 FieldPtr makeMeshSolid(const Mesh& mesh) {
   return std::make_shared<MeshDistance>(std::make_shared<const Triangles>(mesh, true),
                                         std::nullopt);
+}
+
+SignedDistance signedDistanceTo(const Mesh& mesh) {
+  return [solid = std::make_shared<const MeshDistance>(
+              std::make_shared<const Triangles>(mesh, true), std::nullopt)](
+             const Vec3& p, double most) { return solid->valueWithin(p, most); };
 }
 
 FieldPtr makeMeshSheet(const Mesh& mesh, double thickness) {

@@ -51,18 +51,21 @@ class Layering {
     }
   }
 
-  std::vector<ShellLayer> run() {
-    bool isAnyInward = false;
+  Shells run() {
     for (auto& [vertex, part] : parts_) {
       part.facesInward = volumeOf(part) < 0;
-      isAnyInward |= part.facesInward;
+      part.isClosed = isClosed(part);
     }
-    if (!isAnyInward || parts_.size() < 2) return {};
-    for (auto& [vertex, part] : parts_) part.isClosed = isClosed(part);
-    findDepths();
-    const bool hasCavities = std::any_of(parts_.begin(), parts_.end(),
-                                         [](const auto& part) { return part.second.isCavity(); });
-    return hasCavities ? layers() : std::vector<ShellLayer>();
+    if (parts_.size() > 1) findDepths();
+    const auto holdsFor = [&](bool (Part::*property)() const) {
+      return [property](const auto& part) { return (part.second.*property)(); };
+    };
+    Shells shells;
+    shells.boundSolid = std::all_of(parts_.begin(), parts_.end(), holdsFor(&Part::boundsSolid));
+    if (std::any_of(parts_.begin(), parts_.end(), holdsFor(&Part::isCavity))) {
+      shells.layers = layers();
+    }
+    return shells;
   }
 
  private:
@@ -72,6 +75,7 @@ class Layering {
     bool isClosed = false;
     std::size_t depth = 0;  // number of closed parts that it lies in
     [[nodiscard]] bool isCavity() const { return isClosed && facesInward && depth % 2 == 1; }
+    [[nodiscard]] bool boundsSolid() const { return isClosed && facesInward == (depth % 2 == 1); }
   };
 
   [[nodiscard]] std::uint32_t partAt(std::uint32_t triangle) const {
@@ -171,8 +175,6 @@ class Layering {
 
 }  // namespace
 
-std::vector<ShellLayer> shellLayers(const Mesh& mesh, base::Job& job) {
-  return Layering(mesh, job).run();
-}
+Shells findShells(const Mesh& mesh, base::Job& job) { return Layering(mesh, job).run(); }
 
 }  // namespace tufa::voxelize_mesh

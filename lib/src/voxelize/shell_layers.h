@@ -13,14 +13,21 @@ struct ShellLayer {
   bool isCavity = false;
 };
 
+struct Shells {
+  /// Empty if no part is a cavity, as in most meshes: then the mesh is one layer as it is.
+  std::vector<ShellLayer> layers;
+  /// Whether each part is closed, and faces outward or is a cavity, as they lie in each other: the
+  /// mesh bounds a solid, if it does not intersect itself.
+  bool boundSolid = false;
+};
+
 /// The parts of a mesh by how deep they lie in each other, the outermost first: what a voxelizer
 /// that fills closed parts adds or takes away by turns. A part is a cavity if it is closed, faces
-/// inward and lies in an odd number of other closed parts. Empty if no part is, as of most meshes:
-/// then the mesh is one layer as it is.
+/// inward and lies in an odd number of other closed parts.
 ///
 /// Equal positions count as one vertex. Whether a part lies in another is asked by rays from some
 /// of its faces, of which the majority decides. Cost: a hash table of the positions and one of the
-/// edges of parts that face inward; a tree over the faces if there are any such parts.
-[[nodiscard]] std::vector<ShellLayer> shellLayers(const Mesh& mesh, base::Job& job);
+/// edges; a tree over the faces if there are several parts.
+[[nodiscard]] Shells findShells(const Mesh& mesh, base::Job& job);
 
 }  // namespace tufa::voxelize_mesh

@@ -14,9 +14,11 @@
 #include "base/job.h"
 #include "base/lattice_range.h"
 #include "base/number_text.h"
+#include "base/part_of_progress.h"
 #include "base/require_mesh.h"
 #include "base/vec3.h"
 #include "grid/progress_interrupter.h"
+#include "voxelize/exact_distances.h"
 #include "voxelize/fog.h"
 #include "voxelize/shell_layers.h"
 
@@ -139,7 +141,7 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   if (mesh.triangleCount() == 0) {
     throw Error(ErrorCode::InvalidArgument, "the mesh has no faces to voxelize");
   }
-  constexpr double kLayersEnd = 0.01;  // of the time that it took, nearly
+  constexpr double kLayersEnd = 0.01, kVoxelsEnd = 0.4;  // of the time that it took, nearly
   base::Job job(options.threads, options.progress);
   job.beginStage("voxelizing", kLayersEnd);
   base::requireFaces(mesh);
@@ -148,15 +150,22 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   requireUsableBand(mesh, options);
   openvdb::initialize();
 
-  grid::ProgressInterrupter interrupter(options.progress, "voxelizing", kLayersEnd);
+  grid::ProgressInterrupter interrupter(options.progress, "voxelizing", kLayersEnd, kVoxelsEnd);
   openvdb::FloatGrid::Ptr result;
+  bool boundsSolid = false;
   job.run([&] {
-    const std::vector<voxelize_mesh::ShellLayer> layers = voxelize_mesh::shellLayers(mesh, job);
-    result = layers.empty() ? filled(mesh, options, interrupter)
-                            : combined(layers, options, interrupter);
+    const voxelize_mesh::Shells shells = voxelize_mesh::findShells(mesh, job);
+    boundsSolid = shells.boundSolid;
+    result = shells.layers.empty() ? filled(mesh, options, interrupter)
+                                   : combined(shells.layers, options, interrupter);
   });
   if (interrupter.cancelled() || interrupter.wasInterrupted(100))
     throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
+  base::Job rest(options.threads, base::partOf(options.progress, kVoxelsEnd, 1));
+  if (boundsSolid && options.exactDistances) {
+    rest.run([&] { voxelize_mesh::takeExactDistances(*result, mesh, rest); });
+  }
+  rest.finish();
   result->setGridClass(openvdb::GRID_LEVEL_SET);
   result->setName("surface");
   if (options.fog) base::runWithThreads(options.threads, [&] { voxelize_field::toFog(*result); });
