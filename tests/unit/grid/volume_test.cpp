@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "grid/vdb_coord.h"
@@ -74,6 +76,26 @@ TEST(Volume, ScalesALevelSetToVoxels) {
   EXPECT_EQ(nameOf(*grid), "");
   grid->setName("ball");
   EXPECT_EQ(nameOf(*grid), "ball");
+}
+
+// A plate in no direction of the lattice. In the middle of its thickness distances fall to both
+// sides, so that the mean of the gradients there is none.
+TEST(Volume, TellsDistancesInThinWalls) {
+  base::Job job(1, {});
+  for (const double thickness : {1.2, 1.7, 2.3, 3.0}) {
+    const openvdb::Vec3d normal(0.36, 0.48, 0.8);
+    const auto plate = [&](const openvdb::Coord& at) {
+      const double wall = std::abs(at.asVec3d().dot(normal)) - thickness / 2;
+      return std::max(wall, at.asVec3d().length() - 20);
+    };
+    const auto grid =
+        test::levelSet<FloatGrid>({openvdb::Coord(-24), openvdb::Coord(24)}, 3, plate, 0.5);
+    EXPECT_TRUE(openVolume(*grid, {}, job).scale.distance) << thickness;
+    const auto halved = [&](const openvdb::Coord& at) { return 0.5 * plate(at); };
+    const auto other =
+        test::levelSet<FloatGrid>({openvdb::Coord(-24), openvdb::Coord(24)}, 3, halved, 0.5);
+    EXPECT_FALSE(openVolume(*other, {}, job).scale.distance) << thickness;
+  }
 }
 
 TEST(Volume, OfABoxHasTheBlocksInItAndCountsFromTheSamePoint) {
