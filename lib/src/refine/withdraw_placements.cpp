@@ -78,7 +78,10 @@ class PlacementGuard {
       return apply(chosen);
     }
     for (const std::optional<Move>& move : settlingMoves(conflicts, vertices, points)) {
-      if (!move) continue;
+      if (!move) {
+        ++result_.left;
+        continue;
+      }
       std::optional<Move>& best = chosen[slotOf(vertices, move->vertex)];
       if (!best || leavesFewer(*move, *best)) best = move;
     }

@@ -15,6 +15,7 @@ namespace tufa::refine {
 struct Withdrawal {
   std::size_t pairsFound = 0;  ///< pairs of quads that intersected with all placements
   std::size_t vertices = 0;    ///< vertices that were moved
+  std::size_t left = 0;        ///< folds and pairs all of whose vertices are at their mass points
   /// Pairs of quads that intersect still, all of their vertices at their mass points, or may once
   /// each vertex moves by half of the margin.
   intersect::ClosePairs pairs;

@@ -65,7 +65,8 @@ TEST(ConflictFinder, FindsAroundMovedVerticesWhatIsThere) {
               intersect::findCandidates(surface.view(), surface.mesh, kMargin * voxel, job));
     ConflictFinder other(surface, kMargin * voxel, job);
     const std::vector<Conflict> all = other.findEverywhere();
-    EXPECT_EQ(finder.close(), other.close());
+    EXPECT_EQ(finder.pairs().close, other.pairs().close);
+    EXPECT_EQ(finder.pairs().intersecting, other.pairs().intersecting);
     for (const Conflict& conflict : around) EXPECT_TRUE(contains(all, conflict));
     for (const Conflict& conflict : all) {
       if (contains(around, conflict)) continue;
