@@ -89,14 +89,16 @@ class Distances {
     return true;
   }
 
-  // Adds voxels that OpenVDB has left out, as it took those beside them to be farther away: all
-  // that are next to one that is more than a voxel within the band.
+  // Adds voxels that OpenVDB has left out, as it took those beside them to be farther away, and
+  // mends the sides of those beyond a narrow band: all that are next to one that is more than a
+  // voxel within the band, or near the surface.
   bool widen(const std::vector<Leaf*>& leaves, base::Job& job) {
     auto tree = grid_.getAccessor();
+    const auto background = static_cast<double>(grid_.background());
     std::vector<std::pair<openvdb::Coord, double>> next;  // and how far they may be
     const auto visit = [&](const openvdb::Coord& at, double distance) {
       const double most = std::abs(distance) + voxelSize_;
-      if (most > static_cast<double>(grid_.background())) return;
+      if (most > background && std::abs(distance) > kFar * voxelSize_) return;
       for (int side = 0; side < 6; ++side) {
         openvdb::Coord beside = at;
         beside[side / 2] += side % 2 == 0 ? -1 : 1;
@@ -115,9 +117,14 @@ class Distances {
       next.pop_back();
       if (tree.isValueOn(at)) continue;
       const double distance = distanceAt(at, most);
-      if (isFarOnOtherSide(distance, tree.getValue(at))) return false;
-      tree.setValue(at, inBand(distance));
-      visit(at, distance);
+      const float before = tree.getValue(at);
+      if (isFarOnOtherSide(distance, before)) return false;
+      if (std::abs(distance) < background) {
+        tree.setValue(at, inBand(distance));
+        visit(at, distance);
+      } else if ((distance < 0) != (before < 0)) {
+        tree.setValueOff(at, inBand(distance));
+      }
     }
     return true;
   }
@@ -143,11 +150,8 @@ class Distances {
 }  // namespace
 
 bool takeExactDistances(openvdb::FloatGrid& grid, const Mesh& mesh, base::Job& job) {
-  constexpr double kSearchEnd = 0.2;  // of the time that it took on sample meshes
-  job.beginStage("intersections", kSearchEnd);
   const std::optional<Mesh> closed = closedMesh(mesh);
   if (!closed || intersectsItself(*closed, job)) return false;
-  job.beginStage("distances", 1);
   const auto exact = openvdb::gridPtrCast<openvdb::FloatGrid>(grid.deepCopyGrid());
   if (!Distances(*exact, *closed).take(job)) return false;
   grid.setTree(exact->treePtr());

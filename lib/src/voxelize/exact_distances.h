@@ -13,7 +13,6 @@ namespace tufa::voxelize_mesh {
 /// that OpenVDB left out become active. Returns whether it has. It has not, either, if a voxel's
 /// side is not OpenVDB's two voxels or more from the surface. Cost: a search for intersections
 /// among the triangles, and for the nearest one of each voxel of the band.
-/// Begins two stages of the job.
 bool takeExactDistances(openvdb::FloatGrid& grid, const Mesh& mesh, base::Job& job);
 
 }  // namespace tufa::voxelize_mesh

@@ -34,8 +34,9 @@ class Layering {
     }
     for (const Triangle& t : triangulate(mesh)) {
       job_.pollCancelled(triangles_.size());
-      const auto& v = t.vertices;
-      triangles_.emplace_back(place[v[0]], place[v[1]], place[v[2]]);
+      const VertexIndex a = place[t.vertices[0]], b = place[t.vertices[1]];
+      const VertexIndex c = place[t.vertices[2]];
+      if (a != b && b != c && c != a) triangles_.emplace_back(a, b, c);
     }
     partOf_ = base::connectedItems(positions_.size(), [&](const auto& connect) {
       std::size_t done = 0;
@@ -51,17 +52,25 @@ class Layering {
     }
   }
 
-  Shells run() {
+  Shells run(bool asksForSolid) {
+    bool isAnyInward = false, isAnyOpen = false;
     for (auto& [vertex, part] : parts_) {
       part.facesInward = volumeOf(part) < 0;
-      part.isClosed = isClosed(part);
+      isAnyInward |= part.facesInward;
     }
-    if (parts_.size() > 1) findDepths();
-    const auto holdsFor = [&](bool (Part::*property)() const) {
+    Shells shells;
+    const bool mayHaveCavities = isAnyInward && parts_.size() > 1;
+    if (!mayHaveCavities && !asksForSolid) return shells;
+    for (auto& [vertex, part] : parts_) {
+      part.isClosed = isClosed(part);
+      isAnyOpen |= !part.isClosed;
+    }
+    if (mayHaveCavities || (parts_.size() > 1 && !isAnyOpen)) findDepths();
+    const auto holdsFor = [](bool (Part::*property)() const) {
       return [property](const auto& part) { return (part.second.*property)(); };
     };
-    Shells shells;
-    shells.boundSolid = std::all_of(parts_.begin(), parts_.end(), holdsFor(&Part::boundsSolid));
+    shells.boundSolid =
+        asksForSolid && std::all_of(parts_.begin(), parts_.end(), holdsFor(&Part::boundsSolid));
     if (std::any_of(parts_.begin(), parts_.end(), holdsFor(&Part::isCavity))) {
       shells.layers = layers();
     }
@@ -175,6 +184,8 @@ class Layering {
 
 }  // namespace
 
-Shells findShells(const Mesh& mesh, base::Job& job) { return Layering(mesh, job).run(); }
+Shells findShells(const Mesh& mesh, bool asksForSolid, base::Job& job) {
+  return Layering(mesh, job).run(asksForSolid);
+}
 
 }  // namespace tufa::voxelize_mesh

@@ -16,8 +16,8 @@ struct ShellLayer {
 struct Shells {
   /// Empty if no part is a cavity, as in most meshes: then the mesh is one layer as it is.
   std::vector<ShellLayer> layers;
-  /// Whether each part is closed, and faces outward or is a cavity, as they lie in each other: the
-  /// mesh bounds a solid, if it does not intersect itself.
+  /// If that was asked for, whether each part is closed, and faces outward or is a cavity, as they
+  /// lie in each other: the mesh bounds a solid, if it does not intersect itself.
   bool boundSolid = false;
 };
 
@@ -26,8 +26,9 @@ struct Shells {
 /// inward and lies in an odd number of other closed parts.
 ///
 /// Equal positions count as one vertex. Whether a part lies in another is asked by rays from some
-/// of its faces, of which the majority decides. Cost: a hash table of the positions and one of the
-/// edges; a tree over the faces if there are several parts.
-[[nodiscard]] Shells findShells(const Mesh& mesh, base::Job& job);
+/// of its faces, of which the majority decides. Cost: a hash table of the positions; one of the
+/// edges, and with several parts a tree over the faces, if one of several parts faces inward or
+/// `asksForSolid`.
+[[nodiscard]] Shells findShells(const Mesh& mesh, bool asksForSolid, base::Job& job);
 
 }  // namespace tufa::voxelize_mesh

@@ -150,22 +150,27 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   requireUsableBand(mesh, options);
   openvdb::initialize();
 
-  grid::ProgressInterrupter interrupter(options.progress, "voxelizing", kLayersEnd, kVoxelsEnd);
+  grid::ProgressInterrupter interrupter(options.progress, "voxelizing", kLayersEnd,
+                                        options.exactDistances ? kVoxelsEnd : 1);
   openvdb::FloatGrid::Ptr result;
   bool boundsSolid = false;
   job.run([&] {
-    const voxelize_mesh::Shells shells = voxelize_mesh::findShells(mesh, job);
+    const voxelize_mesh::Shells shells =
+        voxelize_mesh::findShells(mesh, options.exactDistances, job);
     boundsSolid = shells.boundSolid;
     result = shells.layers.empty() ? filled(mesh, options, interrupter)
                                    : combined(shells.layers, options, interrupter);
   });
   if (interrupter.cancelled() || interrupter.wasInterrupted(100))
     throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
-  base::Job rest(options.threads, base::partOf(options.progress, kVoxelsEnd, 1));
-  if (boundsSolid && options.exactDistances) {
-    rest.run([&] { voxelize_mesh::takeExactDistances(*result, mesh, rest); });
+  if (options.exactDistances) {
+    base::Job rest(options.threads, base::partOf(options.progress, kVoxelsEnd, 1));
+    rest.beginStage("distances", 1);
+    if (boundsSolid) {
+      rest.run([&] { voxelize_mesh::takeExactDistances(*result, mesh, rest); });
+    }
+    rest.finish();
   }
-  rest.finish();
   result->setGridClass(openvdb::GRID_LEVEL_SET);
   result->setName("surface");
   if (options.fog) base::runWithThreads(options.threads, [&] { voxelize_field::toFog(*result); });

@@ -182,6 +182,40 @@ TEST(Voxelize, OtherPartsAreFilled) {
   }
 }
 
+// Corners that are one, as at the poles of spheres of other programs, leave a face out.
+TEST(Voxelize, IsExactDespiteFacesWithoutCorners) {
+  Mesh mesh = makeCube();
+  mesh.triangles.emplace_back(0, 0, 1);
+  mesh.positions.push_back(mesh.positions[0]);
+  mesh.triangles.emplace_back(0, 8, 2);
+  VoxelizeOptions options;
+  options.voxelSize = 0.07;
+  const auto grid = voxelize(mesh, options);
+  for (auto value = grid->cbeginValueOn(); value; ++value) {
+    const double truth = cubeDistance(grid->indexToWorld(value.getCoord()));
+    ASSERT_NEAR(*value, truth, 1e-6) << value.getCoord();
+  }
+}
+
+// A band of one voxel, in which OpenVDB leaves out voxels beside the surface of a slit.
+TEST(Voxelize, KnowsTheSidesBesideANarrowBand) {
+  Mesh mesh;
+  addCube(mesh, 1, false);
+  addCube(mesh, 1, false);
+  for (std::size_t v = 8; v < 16; ++v) mesh.positions[v].x += 2.08;
+  VoxelizeOptions options;
+  options.voxelSize = 0.1;
+  options.halfWidth = 1;
+  const auto grid = voxelize(mesh, options);
+  const openvdb::CoordBBox box(openvdb::Coord(-13), openvdb::Coord(34, 13, 13));
+  for (auto at = box.begin(); at; ++at) {
+    const openvdb::Vec3d p = grid->indexToWorld(*at);
+    const double truth = std::min(cubeDistance(p), cubeDistance(p - openvdb::Vec3d(2.08, 0, 0)));
+    if (std::abs(truth) < 1e-5) continue;  // rounding tells the side
+    ASSERT_EQ(grid->tree().getValue(*at) < 0, truth < 0) << *at;
+  }
+}
+
 TEST(Voxelize, MakesFogVolumes) {
   VoxelizeOptions options;
   options.voxelSize = 0.1;
