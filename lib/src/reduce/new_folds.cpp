@@ -59,13 +59,6 @@ std::vector<Fold> foldsOf(const Surface& surface, base::Job& job) {
   return folds;
 }
 
-float squaredDistanceToSegment(Vec3f p, Vec3f a, Vec3f b) {
-  const Vec3f along = b - a;
-  const float length2 = squaredLength(along);
-  const float share = length2 > 0 ? std::clamp(dot(p - a, along) / length2, 0.0f, 1.0f) : 0;
-  return squaredLength(p - (a + along * share));
-}
-
 // Whether the reference has a fold, seen from the faces below the ends of its edge.
 class FoldSearch {
  public:
@@ -82,18 +75,29 @@ class FoldSearch {
     };
     for (const Index face : first) reach(face);
     for (std::size_t i = 0; i < reached_.size(); ++i) {
-      bool isAtMiddle = false;
-      for (const Index v : reference_.vertices(reached_[i])) {
-        const Vec3f p = reference_.positions()[v];
-        isAtMiddle |= squaredLength(p - middle) < reach2_;
-        if (squaredDistanceToSegment(p, a, b) < reach2_) reference_.allAround(v, reach);
-      }
-      if (isAtMiddle && see(reached_[i], fold)) return true;
+      const Index face = reached_[i];
+      if (!isNear(face, a, b)) continue;
+      if (squaredDistance(face, middle) < reach2_ && see(face, fold)) return true;
+      for (const Index v : reference_.vertices(face)) reference_.allAround(v, reach);
     }
     return false;
   }
 
  private:
+  [[nodiscard]] float squaredDistance(Index face, Vec3f p) const {
+    const auto q = reference_.cornersOf(face);
+    return squaredDistanceToTriangle(p, q[0], q[1], q[2]);
+  }
+
+  // Whether a face is near an edge: one of its own sides is, or an end.
+  [[nodiscard]] bool isNear(Index face, Vec3f a, Vec3f b) const {
+    const auto q = reference_.cornersOf(face);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (squaredDistanceOfSegments(q[i], q[(i + 1) % 3], a, b) < reach2_) return true;
+    }
+    return squaredDistance(face, a) < reach2_ || squaredDistance(face, b) < reach2_;
+  }
+
   // Whether a face and one before it are as far apart as the fold's.
   bool see(Index face, const Fold& fold) {
     constexpr float kAnyArea = 1e-3f;  // less has no normal to speak of

@@ -59,6 +59,8 @@ constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 0.25f;
 constexpr float kHeldShare = 0.25f;
 constexpr float kLeastHeld = 0.2f;
+// Folds are held so often: one that is left was there before.
+constexpr int kFoldAttempts = 2;
 
 // The share of the vertices on the lower side of each cut between parts. It differs in all phases,
 // so that no two have borders at the same places: multiples of the golden ratio are far apart.
@@ -144,8 +146,10 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     measureWithin(tolerance_);
     std::vector<Index> held = certificate_.beyond;
     if (options_.faults) addFacesNear(options_.faults(mesh()), held);
-    const std::vector<Index> folded = facesAtNewFolds(surface_, reference_, tolerance_, job_);
-    held.insert(held.end(), folded.begin(), folded.end());
+    if (attempt_ < kFoldAttempts) {
+      const std::vector<Index> folded = facesAtNewFolds(surface_, reference_, tolerance_, job_);
+      held.insert(held.end(), folded.begin(), folded.end());
+    }
     if (held.empty() || attempt_ == options_.attempts) break;
     hold(held, tolerance);
     tolerance_ = toleranceBefore;

@@ -29,6 +29,12 @@ TEST(NewFolds, AreNotThoseOfTheReference) {
   EXPECT_TRUE(newFolds(wedge(20), wedge(25), 0.5f).empty());
 }
 
+// Triangles of the reference may be much larger than the distance that is looked at.
+TEST(NewFolds, AreNotThoseOfACoarseReference) {
+  const test::FineMesh large = test::subdivided(test::wedge(96, 20, 32), 1);
+  EXPECT_TRUE(newFolds(large, large, 0.1f).empty());
+}
+
 TEST(NewFolds, AreFoundOnAnEdgeThatIsBlunterInTheReference) {
   const test::FineMesh sharp = wedge(20), blunt = wedge(40);
   ASSERT_GT(test::folds(test::toMesh(sharp.positions, sharp.triangles)), 0U);
