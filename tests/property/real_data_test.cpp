@@ -95,7 +95,7 @@ double extentOf(const Mesh& mesh) {
 
 class SampleMesh : public Sample {};
 
-// As other programs make volumes of meshes: with distances that are wrong beside edges.
+// As other programs make volumes of meshes: with distances that are wrong beside concave edges.
 VoxelizeOptions voxelsOf(const Mesh& mesh, int along) {
   VoxelizeOptions options;
   options.voxelSize = extentOf(mesh) / along;

@@ -78,23 +78,24 @@ TEST(Volume, ScalesALevelSetToVoxels) {
   EXPECT_EQ(nameOf(*grid), "ball");
 }
 
-// A plate in no direction of the lattice. In the middle of its thickness distances fall to both
-// sides, so that the mean of the gradients there is none.
+// Plates in a direction of the lattice and in none. On the other side of the middle of a thin wall
+// distances fall again: half of the gradients at the first plate's surface are too short if they
+// are means of both sides.
 TEST(Volume, TellsDistancesInThinWalls) {
   base::Job job(1, {});
-  for (const double thickness : {1.2, 1.7, 2.3, 3.0}) {
-    const openvdb::Vec3d normal(0.36, 0.48, 0.8);
-    const auto plate = [&](const openvdb::Coord& at) {
-      const double wall = std::abs(at.asVec3d().dot(normal)) - thickness / 2;
-      return std::max(wall, at.asVec3d().length() - 20);
-    };
-    const auto grid =
-        test::levelSet<FloatGrid>({openvdb::Coord(-24), openvdb::Coord(24)}, 3, plate, 0.5);
-    EXPECT_TRUE(openVolume(*grid, {}, job).scale.distance) << thickness;
-    const auto halved = [&](const openvdb::Coord& at) { return 0.5 * plate(at); };
-    const auto other =
-        test::levelSet<FloatGrid>({openvdb::Coord(-24), openvdb::Coord(24)}, 3, halved, 0.5);
-    EXPECT_FALSE(openVolume(*other, {}, job).scale.distance) << thickness;
+  for (const openvdb::Vec3d normal : {openvdb::Vec3d(0, 0, 1), openvdb::Vec3d(0.36, 0.48, 0.8)}) {
+    for (const double thickness : {2.0, 1.2, 1.7, 2.3, 3.0}) {
+      const auto plate = [&](const openvdb::Coord& at) {
+        const double wall = std::abs(at.asVec3d().dot(normal) - 0.5) - thickness / 2;
+        return std::max(wall, at.asVec3d().length() - 20);
+      };
+      const openvdb::CoordBBox box(openvdb::Coord(-24), openvdb::Coord(24));
+      const auto grid = test::levelSet<FloatGrid>(box, 3, plate, 0.5);
+      EXPECT_TRUE(openVolume(*grid, {}, job).scale.distance) << normal << ' ' << thickness;
+      const auto halved = [&](const openvdb::Coord& at) { return 0.5 * plate(at); };
+      const auto other = test::levelSet<FloatGrid>(box, 3, halved, 0.5);
+      EXPECT_FALSE(openVolume(*other, {}, job).scale.distance) << normal << ' ' << thickness;
+    }
   }
 }
 
