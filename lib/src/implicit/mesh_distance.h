@@ -14,10 +14,11 @@ namespace tufa::implicit {
 /// inward, and those with parts that have no area.
 [[nodiscard]] FieldPtr makeMeshSolid(const Mesh& mesh);
 
-/// The signed distance at a point that is no farther than `most` from the mesh.
+/// The signed distance from a point to a mesh. `most`: a bound of its size, infinity if none is
+/// known; a small one makes the search for the nearest triangle short.
 using SignedDistance = std::function<double(const Vec3& p, double most)>;
 
-/// That of makeMeshSolid(), for points that are near ones before. Throws the same.
+/// The distance of makeMeshSolid(). Throws the same.
 [[nodiscard]] SignedDistance signedDistanceTo(const Mesh& mesh);
 
 /// What is nearer to a mesh, which may be open, than half the thickness. Throws

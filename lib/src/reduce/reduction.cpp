@@ -59,7 +59,7 @@ constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 0.25f;
 constexpr float kHeldShare = 0.25f;
 constexpr float kLeastHeld = 0.2f;
-// Folds are held so often: one that is left was there before.
+// Attempts after which folds are held: one that is left then was there before, or cannot be helped.
 constexpr int kFoldAttempts = 2;
 
 // The share of the vertices on the lower side of each cut between parts. It differs in all phases,

@@ -17,13 +17,6 @@
 namespace tufa::refine {
 namespace {
 
-void addPairs(const std::vector<intersect::PolygonPair>& pairs, std::vector<Conflict>& conflicts) {
-  conflicts.reserve(conflicts.size() + pairs.size());
-  for (const intersect::PolygonPair& pair : pairs) {
-    conflicts.push_back({Conflict::Kind::Pair, {pair.a, pair.b}, {}});
-  }
-}
-
 // Faces whose normals have a smaller cosine (140 degrees) make a fold.
 constexpr double kFold = -0.766;
 // An edge folded by more than 140 degrees has a face more than 70 degrees off the normal of each
@@ -43,6 +36,13 @@ constexpr double kAcuteSheets = -0.766;
 constexpr double kAsSharp = 0.03;
 // A face within this cosine (45 degrees) of a sheet lies on it.
 constexpr double kOnSheet = 0.7;
+
+void addPairs(const std::vector<intersect::PolygonPair>& pairs, std::vector<Conflict>& conflicts) {
+  conflicts.reserve(conflicts.size() + pairs.size());
+  for (const intersect::PolygonPair& pair : pairs) {
+    conflicts.push_back({Conflict::Kind::Pair, {pair.a, pair.b}, {}});
+  }
+}
 
 }  // namespace
 
