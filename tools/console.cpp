@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -67,14 +68,17 @@ void stopIfAsked() {
   if (interrupted()) throw Error(ErrorCode::Cancelled, "cancelled");
 }
 
+// No call waits for a reader for long: a request to stop that comes just before it would not be
+// heard.
 void writeBytes(int descriptor, std::string_view bytes, const std::string& name) {
+  constexpr std::size_t kAtOnce = PIPE_BUF;  // what a pipe that takes bytes has room for
   while (!bytes.empty()) {
     if (!takesBytes(descriptor)) {
       stopIfAsked();
       continue;
     }
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
+    const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), kAtOnce));
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (written < 0) {
       throw Error(ErrorCode::UnwritableFile, "cannot write " + name + ": " + std::strerror(errno));
     }

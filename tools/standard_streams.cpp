@@ -53,6 +53,22 @@ std::string readAll() {
   }
 }
 
+/// Opens a pipe or a device without blocking, a pipe once it has a reader; below 0 if that fails.
+/// Ctrl-C ends the wait.
+int openForWriting(const std::string& name) {
+  constexpr int kMilliseconds = 50;
+  while (true) {
+    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    const int error = errno;
+    if (descriptor >= 0 || error != ENXIO || !std::filesystem::is_fifo(name)) {
+      errno = error;
+      return descriptor;
+    }
+    stopIfAsked();
+    ::poll(nullptr, 0, kMilliseconds);
+  }
+}
+
 /// Writes to standard output, a pipe or a device at once, and says why where that fails.
 class OutputBuffer final : public std::streambuf {
  public:
@@ -61,7 +77,7 @@ class OutputBuffer final : public std::streambuf {
       name_ = "standard output";
       return;
     }
-    descriptor_ = ::open(name.c_str(), O_WRONLY | O_CLOEXEC);
+    descriptor_ = openForWriting(name);
     if (descriptor_ < 0) {
       throw Error(ErrorCode::UnwritableFile, "cannot write " + name + ": " + std::strerror(errno));
     }
