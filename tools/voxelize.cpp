@@ -41,15 +41,16 @@ int runVoxelize(const VoxelizeArguments& arguments) {
   }
   if (!arguments.quiet) noteOpenMesh(mesh, "the inside");
   openvdb::FloatGrid::Ptr grid;
+  VoxelizedMesh voxelized{mesh.triangleCount()};
   const double seconds = timed([&] {
     ProgressBar bar(arguments.quiet);
     VoxelizeOptions options = arguments.options;
     options.progress = bar.callback();
-    grid = voxelize(mesh, options);
+    grid = voxelize(mesh, options, &voxelized.distances);
   });
   WrittenGrid written;
   written.input = arguments.input;
-  written.triangles = mesh.triangleCount();
+  written.mesh = voxelized;
   written.output = arguments.output;
   written.voxelSize = arguments.options.voxelSize;
   written.makeSeconds = seconds;

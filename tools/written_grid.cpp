@@ -19,7 +19,10 @@ std::string gridText(const WrittenGrid& written) {
   if (!written.input.empty()) json["file"] = written.input;
   json["output"] = written.output;
   json["grid"] = written.grid;
-  if (written.triangles) json["triangles"] = *written.triangles;
+  if (written.mesh) {
+    json["triangles"] = written.mesh->triangles;
+    json["distances"] = written.mesh->distances == MeshDistances::Exact ? "exact" : "openvdb";
+  }
   if (written.scene) {
     json["samples"] = written.scene->samples;
     json["hidden_voxels"] = written.scene->hiddenVoxels;
@@ -38,7 +41,7 @@ std::string describeGrid(const WrittenGrid& written) {
   std::string text = written.filters ? describe(*written.filters) : "";
   text += shownGrid(written.grid) + ": " + formatCount(written.activeVoxels) +
           " active voxels of " + formatNumber(written.voxelSize);
-  if (written.triangles) text += " from " + formatCount(*written.triangles) + " triangles";
+  if (written.mesh) text += " from " + formatCount(written.mesh->triangles) + " triangles";
   if (written.scene) text += " from " + formatCount(written.scene->samples) + " samples";
   return text + " in " + shortNumber(written.makeSeconds) + " s\n" +
          describeWritten({written.output}, written.writeSeconds);

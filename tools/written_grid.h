@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <tufa/voxelize.h>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,6 +10,12 @@
 #include "filter_options.h"
 
 namespace tufa::tools {
+
+/// A mesh that was voxelized.
+struct VoxelizedMesh {
+  std::size_t triangles = 0;
+  MeshDistances distances = MeshDistances::OpenVdb;
+};
 
 /// What sampling a scene took.
 struct SampledScene {
@@ -21,10 +28,10 @@ struct SampledScene {
 struct WrittenGrid {
   std::string input;  ///< the mesh, scene or volume it was made of; empty for a shape
   std::string output;
-  std::string grid;                      ///< its name
-  std::optional<std::size_t> triangles;  ///< of the mesh it was made of
-  std::optional<SampledScene> scene;     ///< if it was made of one
-  std::optional<FilterRun> filters;      ///< if it was made by them
+  std::string grid;                   ///< its name
+  std::optional<VoxelizedMesh> mesh;  ///< if it was made of one
+  std::optional<SampledScene> scene;  ///< if it was made of one
+  std::optional<FilterRun> filters;   ///< if it was made by them
   std::size_t activeVoxels = 0;
   double voxelSize = 0;
   double makeSeconds = 0;

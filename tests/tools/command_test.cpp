@@ -239,6 +239,16 @@ TEST_F(Command, CheckAndVoxelizeTakeEveryFormat) {
   }
 }
 
+TEST_F(Command, TellsWhetherDistancesAreExact) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb --quiet -o m.ply").exitCode, 0);
+  for (const auto& [options, distances] : {std::pair("", "exact"), {" --fast", "openvdb"}}) {
+    const Outcome outcome =
+        run(std::string("voxelize m.ply --voxel 0.1 -o v.vdb --json") + options);
+    EXPECT_EQ(test::parseJson(outcome.out).at("distances"), distances);
+  }
+}
+
 TEST_F(Command, RefusesWrongUsage) {
   makeSphere();
   expectFailure("", 2, "subcommand");

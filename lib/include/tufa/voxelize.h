@@ -28,6 +28,12 @@ struct VoxelizeOptions {
   bool exactDistances = true;
 };
 
+/// What the distances are that voxelize() has given to a mesh.
+enum class MeshDistances {
+  Exact,   ///< signed distances to the solid that it bounds
+  OpenVdb  ///< those of OpenVDB's meshToVolume
+};
+
 /// What voxelize() has done with a field.
 struct VoxelizeReport {
   std::size_t samples = 0;       ///< points where the field was evaluated for the grid
@@ -48,10 +54,11 @@ struct VoxelizeReport {
 /// meshToVolume: beside concave edges the step with which it mends signs makes them too low, of
 /// samples next to the surface too, by up to a voxel. An open mesh gives an unsigned shell that
 /// OpenVDB decides the inside of. Closed parts are filled, whichever way they face, but those that
-/// face inward in others are cavities. Throws Error: InvalidArgument (voxel size, half width, empty
-/// mesh), LimitExceeded (bandVoxels), Cancelled.
+/// face inward in others are cavities. `distances`: is told which they are. Throws Error:
+/// InvalidArgument (voxel size, half width, empty mesh), LimitExceeded (bandVoxels), Cancelled.
 [[nodiscard]] TUFA_API openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh,
-                                                        const VoxelizeOptions& options);
+                                                        const VoxelizeOptions& options,
+                                                        MeshDistances* distances = nullptr);
 
 /// Samples a field as a narrow-band level set, in parallel and only where its bounds cannot leave
 /// the surface out. The values are those of implicit::Field::distance(). Samples that are NaN are

@@ -135,7 +135,8 @@ openvdb::FloatGrid::Ptr combined(const std::vector<voxelize_mesh::ShellLayer>& l
 
 }  // namespace
 
-openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options) {
+openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& options,
+                                 MeshDistances* distances) {
   base::requireVoxelSize(options.voxelSize);
   base::requireHalfWidth(options.halfWidth);
   if (mesh.triangleCount() == 0) {
@@ -163,14 +164,16 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   });
   if (interrupter.cancelled() || interrupter.wasInterrupted(100))
     throw Error(ErrorCode::Cancelled, "cancelled while voxelizing");
+  bool areExact = false;
   if (options.exactDistances) {
     base::Job rest(options.threads, base::partOf(options.progress, kVoxelsEnd, 1));
     rest.beginStage("distances", 1);
     if (boundsSolid) {
-      rest.run([&] { voxelize_mesh::takeExactDistances(*result, mesh, rest); });
+      rest.run([&] { areExact = voxelize_mesh::takeExactDistances(*result, mesh, rest); });
     }
     rest.finish();
   }
+  if (distances != nullptr) *distances = areExact ? MeshDistances::Exact : MeshDistances::OpenVdb;
   result->setGridClass(openvdb::GRID_LEVEL_SET);
   result->setName("surface");
   if (options.fog) base::runWithThreads(options.threads, [&] { voxelize_field::toFog(*result); });

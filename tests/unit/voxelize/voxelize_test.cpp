@@ -85,7 +85,9 @@ double largestErrorOfAngle(bool exact) {
   VoxelizeOptions options;
   options.voxelSize = 0.07;
   options.exactDistances = exact;
-  const auto grid = voxelize(mesh, options);
+  MeshDistances distances{};
+  const auto grid = voxelize(mesh, options, &distances);
+  EXPECT_EQ(distances, exact ? MeshDistances::Exact : MeshDistances::OpenVdb);
   const auto box = [](const Vec3& p, const Vec3& half) {
     return cubeDistance({p[0] / half[0], p[1] / half[1], p[2] / half[2]}) <= 0;
   };
@@ -122,7 +124,9 @@ TEST(Voxelize, FillsSolidsThatOverlap) {
   }
   VoxelizeOptions options;
   options.voxelSize = 0.07;
-  const auto grid = voxelize(mesh, options);
+  MeshDistances distances{};
+  const auto grid = voxelize(mesh, options, &distances);
+  EXPECT_EQ(distances, MeshDistances::OpenVdb);
   for (int x = -13; x < 27; ++x) {
     EXPECT_LT(grid->tree().getValue(openvdb::Coord(x, 0, 2)), 0) << x;
   }
