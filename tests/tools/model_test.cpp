@@ -128,8 +128,26 @@ TEST_F(Model, ReadsMeshesFromFiles) {
     expectFailure("model sub/s.json -o o.vdb", 3, "/objects/0/file: " + part);
   };
   refused(tetrahedron + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 1 3\n", "the mesh has 3 edges of one face");
+  const auto two = [](const std::string& corners, const char* faces) {
+    return "OFF\n8 8 0\n0 0 0\n2 0 0\n0 2 0\n0 0 2\n" + corners +
+           "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n" + faces;
+  };
+  const char* const outward = "3 4 6 5\n3 4 5 7\n3 4 7 6\n3 5 6 7\n";
+  const char* const inward = "3 4 5 6\n3 4 7 5\n3 4 6 7\n3 5 7 6\n";
+  const std::string meeting = "0.2 0.2 0.2\n3 0 0\n0 3 0\n0 0 3\n";
+  const std::string beside = "4 0 0\n5 0 0\n4 1 0\n4 0 1\n";
+  const std::string within = "0.1 0.1 0.1\n0.3 0.1 0.1\n0.1 0.3 0.1\n0.1 0.1 0.3\n";
+  refused(two(meeting, outward), "the mesh has faces that intersect or touch");
+  refused(two(beside, inward), "a part of the mesh faces inward");
+  refused(two(within, outward),
+          "a part of the mesh faces inward without another one around it, or");
   refused(tetrahedron, "cannot read sub/m.off");
   refused("", "cannot read sub/m.off");
+  for (const std::string& bytes : {two(beside, outward), two(within, inward)}) {
+    writeBytes(folder / "sub/m.off", bytes);
+    writeScene("sub/s.json", R"({"type": "mesh", "file": "m.off"})");
+    EXPECT_EQ(run("model sub/s.json -o o.vdb").exitCode, 0);
+  }
   writeScene("sub/s.json", R"({"type": "mesh", "file": "none.off"})");
   expectFailure("model sub/s.json -o o.vdb", 3, "/objects/0/file: cannot read sub/none.off");
   writeScene("sub/s.json", R"({"type": "mesh", "file": "t.off", "thickness": 0})");

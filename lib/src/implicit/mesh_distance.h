@@ -11,7 +11,8 @@ namespace tufa::implicit {
 /// The exact signed distance to a closed mesh that does not intersect itself. Throws
 /// Error(InvalidArgument) for meshes without faces, with vertices that are no numbers, open ones,
 /// such as have edges of more than two faces or of faces that turn both ways, those that face
-/// inward, and those with parts that have no area.
+/// inward, and those with parts that have no area. What requireSolid() asks beyond that is not
+/// asked here.
 [[nodiscard]] FieldPtr makeMeshSolid(const Mesh& mesh);
 
 /// The signed distance from a point to a mesh. `most`: a bound of its size, infinity if none is

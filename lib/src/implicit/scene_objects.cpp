@@ -5,8 +5,10 @@
 #include <cmath>
 #include <map>
 
+#include "base/job.h"
 #include "implicit/mesh_distance.h"
 #include "implicit/scene_skeletons.h"
+#include "implicit/solid_mesh.h"
 
 namespace tufa::implicit {
 namespace {
@@ -142,7 +144,11 @@ FieldPtr readMeshObject(SceneObject& object, const std::filesystem::path& folder
   if (const auto sheet = object.find("thickness")) thickness = sheet->above0();
   const std::filesystem::path path = folder / std::filesystem::path(file.text());
   try {
-    return thickness ? makeMeshSheet(readMesh(path), *thickness) : makeMeshSolid(readMesh(path));
+    const Mesh mesh = readMesh(path);
+    if (thickness) return makeMeshSheet(mesh, *thickness);
+    base::Job job(0, {});
+    job.run([&] { requireSolid(mesh, job); });
+    return makeMeshSolid(mesh);
   } catch (const Error& error) {
     const ErrorCode code = error.code();
     if (code != ErrorCode::UnreadableFile && code != ErrorCode::InvalidArgument) throw;

@@ -18,7 +18,7 @@ void requireUsable(const PictureOptions& options) {
   constexpr int kMostPixels = 65535;
   for (const int side : {options.width, options.height}) {
     if (side >= 1 && side <= kMostPixels) continue;
-    refuse("a picture must have 1 to " + std::to_string(kMostPixels) +
+    refuse(std::string("a picture must have 1 to ") + std::to_string(kMostPixels) +
            " pixels along each side, not " + std::to_string(side));
   }
   constexpr int kMostSamples = 65536;

@@ -10,49 +10,21 @@
 #include <utility>
 #include <vector>
 
-#include "base/bvh.h"
 #include "implicit/mesh_distance.h"
-#include "implicit/mesh_topology.h"
-#include "intersect/surface.h"
+#include "implicit/solid_mesh.h"
 
 namespace tufa::voxelize_mesh {
 namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-// The mesh as its distances are taken, each position once. None if it is not closed.
-std::optional<Mesh> closedMesh(const Mesh& mesh) {
-  Mesh closed;
+// None if it is not closed.
+std::optional<Mesh> closedOf(const Mesh& mesh) {
   try {
-    implicit::TriangleSet set = implicit::trianglesOf(mesh);
-    static_cast<void>(implicit::neighboursIn(set));
-    for (const Vec3& p : set.positions) closed.positions.emplace_back(p[0], p[1], p[2]);
-    for (const auto& t : set.triangles) closed.triangles.emplace_back(t[0], t[1], t[2]);
+    return implicit::closedMesh(mesh);
   } catch (const Error&) {  // says why it is not
     return std::nullopt;
   }
-  return closed;
-}
-
-bool intersectsItself(const Mesh& mesh, base::Job& job) {
-  std::vector<base::Box> boxes(mesh.triangles.size(), base::Box::empty());
-  for (std::size_t t = 0; t < boxes.size(); ++t) {
-    job.pollCancelled(t);
-    for (const VertexIndex v : mesh.triangles[t].vertices) boxes[t].add(Vec3(mesh.positions[v]));
-  }
-  const base::Bvh tree(std::move(boxes), job);
-  std::atomic<bool> found{false};
-  job.forRanges(tree.leafCount(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t leaf = begin; leaf < end && !found; ++leaf) {
-      tree.pairsOfLeaf(leaf, [&](std::uint32_t a, std::uint32_t b) {
-        if (!found && intersect::intersectElsewhere(mesh.positions, mesh.triangles[a].vertices,
-                                                    mesh.triangles[b].vertices, false)) {
-          found = true;
-        }
-      });
-    }
-  });
-  return found;
 }
 
 // Gives the samples of a level set their distances.
@@ -150,8 +122,8 @@ class Distances {
 }  // namespace
 
 bool takeExactDistances(openvdb::FloatGrid& grid, const Mesh& mesh, base::Job& job) {
-  const std::optional<Mesh> closed = closedMesh(mesh);
-  if (!closed || intersectsItself(*closed, job)) return false;
+  const std::optional<Mesh> closed = closedOf(mesh);
+  if (!closed || implicit::intersectsItself(*closed, job)) return false;
   const auto exact = openvdb::gridPtrCast<openvdb::FloatGrid>(grid.deepCopyGrid());
   if (!Distances(*exact, *closed).take(job)) return false;
   grid.setTree(exact->treePtr());

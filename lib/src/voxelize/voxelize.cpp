@@ -18,9 +18,9 @@
 #include "base/require_mesh.h"
 #include "base/vec3.h"
 #include "grid/progress_interrupter.h"
+#include "implicit/shell_layers.h"
 #include "voxelize/exact_distances.h"
 #include "voxelize/fog.h"
-#include "voxelize/shell_layers.h"
 
 namespace tufa {
 namespace {
@@ -115,11 +115,11 @@ openvdb::FloatGrid::Ptr filled(const Mesh& mesh, const VoxelizeOptions& options,
 }
 
 /// Layers of shells, each added to those before or taken from them.
-openvdb::FloatGrid::Ptr combined(const std::vector<voxelize_mesh::ShellLayer>& layers,
+openvdb::FloatGrid::Ptr combined(const std::vector<implicit::ShellLayer>& layers,
                                  const VoxelizeOptions& options,
                                  grid::ProgressInterrupter& interrupter) {
   openvdb::FloatGrid::Ptr all;
-  for (const voxelize_mesh::ShellLayer& layer : layers) {
+  for (const implicit::ShellLayer& layer : layers) {
     const openvdb::FloatGrid::Ptr part = filled(layer.mesh, options, interrupter);
     if (interrupter.cancelled()) return part;
     if (!all) {
@@ -156,8 +156,7 @@ openvdb::FloatGrid::Ptr voxelize(const Mesh& mesh, const VoxelizeOptions& option
   openvdb::FloatGrid::Ptr result;
   bool boundsSolid = false;
   job.run([&] {
-    const voxelize_mesh::Shells shells =
-        voxelize_mesh::findShells(mesh, options.exactDistances, job);
+    const implicit::Shells shells = implicit::findShells(mesh, options.exactDistances, job);
     boundsSolid = shells.boundSolid;
     result = shells.layers.empty() ? filled(mesh, options, interrupter)
                                    : combined(shells.layers, options, interrupter);

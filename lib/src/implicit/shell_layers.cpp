@@ -1,4 +1,4 @@
-#include "voxelize/shell_layers.h"
+#include "implicit/shell_layers.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 #include "base/vec3.h"
 #include "base/vertex_welder.h"
 
-namespace tufa::voxelize_mesh {
+namespace tufa::implicit {
 namespace {
 
 constexpr std::size_t kMostRays = 5;  // odd, so that there is a majority
@@ -188,4 +188,4 @@ Shells findShells(const Mesh& mesh, bool asksForSolid, base::Job& job) {
   return Layering(mesh, job).run(asksForSolid);
 }
 
-}  // namespace tufa::voxelize_mesh
+}  // namespace tufa::implicit

@@ -5,7 +5,7 @@
 
 #include "base/job.h"
 
-namespace tufa::voxelize_mesh {
+namespace tufa::implicit {
 
 /// Connected parts of a mesh that bound solids, or cavities in the layers before.
 struct ShellLayer {
@@ -31,4 +31,4 @@ struct Shells {
 /// `asksForSolid`.
 [[nodiscard]] Shells findShells(const Mesh& mesh, bool asksForSolid, base::Job& job);
 
-}  // namespace tufa::voxelize_mesh
+}  // namespace tufa::implicit
