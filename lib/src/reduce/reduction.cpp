@@ -59,8 +59,6 @@ constexpr float kHeldTolerances = 2;
 constexpr float kHeldVoxels = 0.25f;
 constexpr float kHeldShare = 0.25f;
 constexpr float kLeastHeld = 0.2f;
-// Attempts after which folds are held: one that is left then was there before, or cannot be helped.
-constexpr int kFoldAttempts = 2;
 
 // The share of the vertices on the lower side of each cut between parts. It differs in all phases,
 // so that no two have borders at the same places: multiples of the golden ratio are far apart.
@@ -147,7 +145,7 @@ void Reduction::toTolerance(float tolerance, LineMode lines) {
     std::vector<Index> held = certificate_.beyond;
     if (options_.faults) addFacesNear(options_.faults(mesh()), held);
     if (attempt_ < kFoldAttempts) {
-      const std::vector<Index> folded = facesAtNewFolds(surface_, reference_, tolerance_, job_);
+      const std::vector<Index> folded = newFolds();
       held.insert(held.end(), folded.begin(), folded.end());
     }
     if (held.empty() || attempt_ == options_.attempts) break;
@@ -181,6 +179,11 @@ void Reduction::chooseReference(float tolerance) {
   proxy_->owners = {};
   original_ = std::exchange(reference_, std::move(mesh));
   tolerance_ += error;
+}
+
+// The faces of the reference below folds that it does not have itself.
+std::vector<Index> Reduction::newFolds() const {
+  return facesAtNewFolds(surface_, reference_, tolerance_, job_);
 }
 
 // Less is allowed around some faces of the reference than the tolerance.

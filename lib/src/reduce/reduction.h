@@ -134,6 +134,8 @@ class Reduction {
   /// Voxels. Where a larger tolerance gave little, the shape of triangles is in the way: slivers,
   /// fans and turns are allowed from then on.
   static constexpr float kStuckTolerance = 2;
+  // Attempts after which new folds are held: one that is left then cannot be helped.
+  static constexpr int kFoldAttempts = 2;
 
   struct Meshes {
     Surface surface;
@@ -164,6 +166,7 @@ class Reduction {
   void beginLines();
   void measureWithin(float expected);
   void addFacesNear(const std::vector<Index>& triangles, std::vector<Index>& faces) const;
+  [[nodiscard]] std::vector<Index> newFolds() const;
   void hold(const std::vector<Index>& faces, float tolerance);
   void reduce(float tolerance, Index count, int phases);
   /// Less than a sixteenth of what there was: further phases or tolerances hardly pay.

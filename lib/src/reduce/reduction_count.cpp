@@ -40,8 +40,9 @@ float Reduction::toCount(Index count, float mostTolerance) {
   return (toCountWithin(count, most) + proxyError()) / largestScale_;
 }
 
-// Where the certificate is beyond the tolerance that was found, the mesh is left as it was around
-// there, and the search begins again, as in toTolerance(). The mesh of the least error is taken.
+// Where the certificate is beyond the tolerance that was found, or the mesh has new folds, it is
+// left as it was around there, and the search begins again, as in toTolerance(). Of all meshes one
+// of the fewest folds is taken, and of these that of the least error.
 float Reduction::toCountWithin(Index count, float mostTolerance) {
   if (triangleCount() <= count) {
     measureWithin(tolerance_);
@@ -49,18 +50,22 @@ float Reduction::toCountWithin(Index count, float mostTolerance) {
   }
   const State start = state();
   std::optional<State> best;
+  std::size_t leastFolds = 0;
   Certificate certificate;
   for (attempt_ = 0;; ++attempt_) {
     const bool isReached = findCount(count, mostTolerance);
     if (best && !isReached) break;
     measureWithin(tolerance_);
-    if (!best || certificate_.largest < certificate.largest) {
-      best = state(), certificate = certificate_;
+    const std::vector<Index> folds = newFolds();
+    if (!best || std::pair(folds.size(), certificate_.largest) <
+                     std::pair(leastFolds, certificate.largest)) {
+      best = state(), certificate = certificate_, leastFolds = folds.size();
     }
-    if (!isReached || certificate_.mostOver <= kNearTolerance || attempt_ == options_.attempts) {
-      break;
-    }
-    hold(certificate_.beyond, tolerance_);
+    std::vector<Index> held;
+    if (certificate_.mostOver > kNearTolerance) held = certificate_.beyond;
+    if (attempt_ < kFoldAttempts) held.insert(held.end(), folds.begin(), folds.end());
+    if (!isReached || held.empty() || attempt_ == options_.attempts) break;
+    hold(held, tolerance_);
     restore(start);
   }
   restore(*best);
