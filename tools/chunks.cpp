@@ -64,7 +64,9 @@ void requireWritableFolder(const std::filesystem::path& folder) {
                 "chunks are written to a folder, and " + folder.string() +
                     " is the name of a file; --assemble makes one mesh of a folder of chunks");
   }
-  requireWritable(std::filesystem::is_directory(folder) ? folder / "chunks.json" : folder);
+  // What ends with a slash has no name behind it.
+  const std::filesystem::path named = folder.has_filename() ? folder : folder.parent_path();
+  requireWritable(std::filesystem::is_directory(folder) ? folder / "chunks.json" : named);
 }
 
 std::vector<Attribute> withoutValues(const std::vector<Attribute>& attributes) {
@@ -251,6 +253,8 @@ void addChunksCommand(CLI::App& app, Command& chosen) {
       requireOneTask(*arguments, *chunks);
       if (arguments->assemble.folder.empty()) return runBuild(*arguments);
       AssembleArguments assemble = arguments->assemble;
+      const std::filesystem::path index = assemble.folder;
+      if (index.filename() == "chunks.json") assemble.folder = (index.parent_path() / "").string();
       assemble.output = arguments->output;
       assemble.threads = arguments->chunks.contour.threads;
       assemble.json = arguments->json;

@@ -63,6 +63,29 @@ void addRange(std::string_view part, std::vector<int>& frames) {
   }
 }
 
+/// Calls visit(number, digits, isMeant) for the files that have digits in the place of #: a number
+/// with other zeros in front than the name asks for is not meant.
+template <class Visit>
+void forFrames(const std::string& name, const Visit& visit) {
+  const std::filesystem::path path = name;
+  const std::string file = path.filename().string();
+  const Place place = placeIn(file);
+  const std::string before = file.substr(0, place.begin);
+  const std::string after = file.substr(place.begin + place.length);
+  std::error_code error;
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string found = entry.path().filename().string();
+    if (found.size() <= before.size() + after.size()) continue;
+    if (!found.starts_with(before) || !found.ends_with(after)) continue;
+    const auto digits =
+        std::string_view(found).substr(before.size(), found.size() - before.size() - after.size());
+    const auto number = numberIn<int>(digits);
+    if (!number || *number < 0) continue;
+    visit(*number, digits, frameFile(name, *number) == (path.parent_path() / found));
+  }
+}
+
 void sortOnce(std::vector<int>& frames) {
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
@@ -114,27 +137,25 @@ std::vector<int> readFrames(const std::string& text) {
 }
 
 std::vector<int> findFrames(const std::string& name) {
-  const std::filesystem::path path = name;
-  const std::string file = path.filename().string();
-  const Place place = placeIn(file);
-  const std::string before = file.substr(0, place.begin);
-  const std::string after = file.substr(place.begin + place.length);
   std::vector<int> frames;
-  std::error_code error;
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string found = entry.path().filename().string();
-    if (found.size() <= before.size() + after.size()) continue;
-    if (!found.starts_with(before) || !found.ends_with(after)) continue;
-    const auto number = numberIn<int>(
-        std::string_view(found).substr(before.size(), found.size() - before.size() - after.size()));
-    // Only numbers with as many digits as the name asks for.
-    if (number && *number >= 0 && frameFile(name, *number) == (path.parent_path() / found)) {
-      frames.push_back(*number);
-    }
-  }
+  forFrames(name, [&](int number, std::string_view /*digits*/, bool isMeant) {
+    if (isMeant) frames.push_back(number);
+  });
   sortOnce(frames);
   return frames;
+}
+
+std::string withDigitsOfFiles(const std::string& name) {
+  std::size_t digits = 0;
+  forFrames(name, [&](int /*number*/, std::string_view text, bool isMeant) {
+    if (!isMeant && (digits == 0 || text.size() < digits)) digits = text.size();
+  });
+  if (digits == 0) return "";
+  const std::filesystem::path path = name;
+  std::string file = path.filename().string();
+  const Place place = placeIn(file);
+  file.replace(place.begin, place.length, digits, '#');
+  return (path.parent_path() / file).string();
 }
 
 }  // namespace tufa::tools

@@ -26,6 +26,10 @@ void requireOnePlace(const std::string& name);
 /// with commas between; rising, each once. Throws Error(InvalidArgument).
 [[nodiscard]] std::vector<int> readFrames(const std::string& text);
 
+/// With as many # as the numbers of the files have digits, if there are files of other frames than
+/// the name asks for; else empty.
+[[nodiscard]] std::string withDigitsOfFiles(const std::string& name);
+
 /// The frames of which there are files, rising.
 [[nodiscard]] std::vector<int> findFrames(const std::string& name);
 

@@ -57,7 +57,7 @@ std::filesystem::path withBraces(const std::filesystem::path& path) {
 std::string assetName(const std::string& output) {
   if (isStandard(output)) return "mesh";
   std::string name = std::filesystem::path(output).stem().string();
-  for (const char* part : {"_LOD{}", "{}"}) {
+  for (const char* part : {"_LOD{}", "_lod{}", "_{}", "-{}", ".{}", "{}"}) {
     const std::size_t at = name.find(part);
     if (at != std::string::npos) name.erase(at, std::string(part).size());
   }

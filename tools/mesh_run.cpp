@@ -274,6 +274,11 @@ Labels readLabels(const MeshArguments& arguments) {
   if (!arguments.grids.empty()) name = arguments.grids.front();
   for (const GridInfo& info : describeVolumes(arguments.input)) {
     if (!name && holdsLabels(info)) name = info.name;
+    if (info.name == name && !holdsLabels(info)) {
+      throw Error(ErrorCode::UnsupportedGrid, "grid \"" + *name + "\" in " +
+                                                  shownInput(arguments.input) +
+                                                  " is none of 32- or 64-bit integers");
+    }
   }
   if (!name) {
     throw Error(ErrorCode::UnsupportedGrid,
@@ -379,7 +384,8 @@ MeshRun meshFile(const MeshArguments& arguments) {
   } else if (arguments.join == Join::Union && arguments.grids.empty()) {
     names = chooseGrids(arguments.input, {"*"});
   } else if (!arguments.grids.empty()) {
-    names = chooseGrids(arguments.input, arguments.grids);
+    names = chooseGrids(arguments.input, arguments.grids,
+                        arguments.isFrame ? Lacking::Skip : Lacking::Refuse);
   }
   const bool united = arguments.join == Join::Union;
   const std::vector<std::string> meshes = united ? std::vector<std::string>{kUnionName} : names;

@@ -53,6 +53,7 @@ struct MeshArguments {
   double scale = 1;  ///< metres in a world unit
   GlbCompression compression = GlbCompression::None;
   bool allowEmpty = false;
+  bool isFrame = false;  ///< of a sequence, whose frames need not have all grids
   bool check = false;
   bool json = false;
   bool quiet = false;

@@ -10,6 +10,8 @@
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -128,6 +130,7 @@ MeshArguments argumentsOf(const Frame& frame, const MeshArguments& all,
   arguments.input = frame.input;
   arguments.output = frame.output;
   arguments.allowEmpty = true;
+  arguments.isFrame = true;
   arguments.quiet = true;
   if (arguments.contour.threads == 0) {
     arguments.contour.threads = std::max(1, resolveThreads(0) / sequence.jobs);
@@ -188,10 +191,11 @@ std::vector<Frame> framesOf(const MeshArguments& arguments, const SequenceArgume
   }
   const auto missing = [](const Frame& frame) { return frame.state == FrameState::Missing; };
   if (std::all_of(frames.begin(), frames.end(), missing)) {
-    throw Error(
-        ErrorCode::UnreadableFile,
-        "no file of the sequence " + arguments.input +
-            (sequence.frames ? " is there, of the frames " + *sequence.frames : " is there"));
+    std::string why = "no file of the sequence " + arguments.input + " is there";
+    if (sequence.frames) why += ", of the frames " + *sequence.frames;
+    const std::string other = withDigitsOfFiles(arguments.input);
+    if (!other.empty()) why += "; there are files of " + other;
+    throw Error(ErrorCode::UnreadableFile, why);
   }
   for (const Frame& frame : frames) {
     stopIfAsked();
@@ -267,6 +271,31 @@ class Isovalues {
   std::map<std::string, Range> ranges_;
 };
 
+/// The grids that frames were meshed of.
+class FrameGrids {
+ public:
+  void add(const std::string& file, const Json& frame) {
+    if (frame.contains("grid")) addName(frame);
+    for (const Json& grid : frame.value("grids", Json::array())) addName(grid);
+    if (firstFile_.empty() && !names_.empty()) firstFile_ = file, firstGrid_ = *names_.begin();
+  }
+  /// Says on standard error what is to be said of the choice of grids.
+  void note(const std::vector<std::string>& asked) const {
+    if (asked.empty() && !firstFile_.empty()) noteChoice(firstFile_, firstGrid_);
+    for (const std::string& name : asked) {
+      const bool isPattern = name.find_first_of("*?") != std::string::npos;
+      if (isPattern || names_.empty() || names_.contains(name)) continue;
+      printNote("note: no frame has a grid \"" + name + "\"");
+    }
+  }
+
+ private:
+  void addName(const Json& grid) { names_.insert(grid.value("grid", "")); }
+
+  std::set<std::string> names_;
+  std::string firstFile_, firstGrid_;
+};
+
 /// Tells of all frames in their order.
 class FrameTeller {
  public:
@@ -277,6 +306,7 @@ class FrameTeller {
   bool tell(std::size_t index, Json result) {
     tellUpTo(index);
     isovalues_.add(result);
+    grids_.add(frames_[index].input, result);
     const FrameRow& row = add(std::move(result));
     // What is wrong with the command line is wrong with the first frame; with one behind it, it is
     // what the frame holds that does not fit.
@@ -294,6 +324,7 @@ class FrameTeller {
 
   [[nodiscard]] const FrameTable& table() const { return table_; }
   [[nodiscard]] const Isovalues& isovalues() const { return isovalues_; }
+  [[nodiscard]] const FrameGrids& grids() const { return grids_; }
   /// What is wrong with the command line; empty if nothing is.
   [[nodiscard]] const std::string& wrongUsage() const { return wrongUsage_; }
 
@@ -315,6 +346,7 @@ class FrameTeller {
   bool printsEach_;
   FrameTable table_;
   Isovalues isovalues_;
+  FrameGrids grids_;
   std::size_t told_ = 0;
   bool anyMeshed_ = false;
   std::string wrongUsage_;
@@ -368,6 +400,9 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
   if (sequence.report) writeReport(table, seconds, *sequence.report);
   if (!teller.wrongUsage().empty()) refuse(teller.wrongUsage());
   if (!arguments.isovalue || *arguments.isovalue == "auto") teller.isovalues().note();
+  if (!arguments.quiet && arguments.join != Join::Union && !arguments.labels) {
+    teller.grids().note(arguments.grids);
+  }
   bool isJoined = false;
   const double joinSeconds = timed([&] { isJoined = one && one->join(frames, sequence.fps); });
 

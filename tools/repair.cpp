@@ -45,9 +45,11 @@ Json repairJson(const RepairReport& report) {
           {"after", toJson(report.after)}};
 }
 
-std::string describeRepair(const RepairReport& report) {
+std::string describeRepair(const RepairReport& report, double mergeDistance) {
   if (report.keptInput) {
-    return "no repair makes this mesh better: it was written as it is\n" + describe(report.after);
+    return "no repair makes this mesh better" +
+           std::string(mergeDistance > 0 ? " at this --merge distance: a smaller one may" : "") +
+           "; it was written as it is\n" + describe(report.after);
   }
   return "merged " + formatCount(report.mergedVertices) + " vertices, dropped " +
          formatCount(report.unusedVertices) + " unused ones, " +
@@ -96,7 +98,8 @@ int runRepair(const RepairArguments& arguments) {
     json.update(repairJson(report));
     print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } else if (!arguments.quiet) {
-    print(describeRepair(report) + describeWritten({arguments.output}, seconds));
+    print(describeRepair(report, arguments.options.mergeDistance) +
+          describeWritten({arguments.output}, seconds));
   }
   return report.after.watertight() ? kDone : kPromiseBroken;
 }

@@ -91,6 +91,22 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
   return text;
 }
 
+/// Of "Could not convert: --seed = -5", what the option takes.
+std::string notTaken(const CLI::App& command, const std::string& message) {
+  const std::string_view begin = "Could not convert: ";
+  const std::size_t equals = message.find(" = ");
+  if (!message.starts_with(begin) || equals == std::string::npos) return message;
+  const std::string name = message.substr(begin.size(), equals - begin.size());
+  const std::string value = message.substr(equals + 3);
+  const CLI::Option* const option = command.get_option_no_throw(name);
+  const std::string type = option == nullptr ? "" : option->get_type_name();
+  std::string taken = "a value that it takes";
+  if (type.starts_with("UINT")) taken = "a whole number, 0 or more";
+  if (type.starts_with("INT")) taken = "a whole number";
+  if (type.starts_with("FLOAT")) taken = "a number";
+  return name + ": " + value + " is not " + taken;
+}
+
 class Formatter : public CLI::Formatter {
  public:
   std::string make_option_name(const CLI::Option* option, bool isPositional) const override {
@@ -124,7 +140,8 @@ std::string describeMisuse(const CLI::App& app, const CLI::ParseError& error,
   const bool extra = (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
                       dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) &&
                      !parsed.empty() && !extras.empty();
-  const std::string what = extra ? unexpected(*parsed.front(), extras) : oneLine(error.what());
+  std::string what = extra ? unexpected(*parsed.front(), extras) : oneLine(error.what());
+  if (!parsed.empty()) what = notTaken(*parsed.front(), what);
   return what + " (see tufa" + command + " --help)";
 }
 

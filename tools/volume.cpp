@@ -22,6 +22,18 @@
 namespace tufa::tools {
 namespace {
 
+/// Of a level set, that the samples around the surface end with the band.
+void noteEdgeOfBand(const openvdb::GridBase& grid, double isovalue) {
+  double background = 0;
+  grid.apply<openvdb::RealGridTypes>(
+      [&](const auto& typed) { background = static_cast<double>(typed.background()); });
+  const double toEdge = std::abs(background) - std::abs(isovalue);
+  if (isovalue == 0 || toEdge <= 0 || toEdge >= voxelSizeOf(grid)) return;
+  printNote("note: the surface at isovalue " + formatNumber(isovalue) +
+            " is less than a voxel from the edge of the narrow band of " +
+            shownGrid(grid.getName()) + ", where it has steps; a wider band has none");
+}
+
 /// The promises that a mesh breaks, for a message.
 std::string brokenPromises(const CheckReport& report) {
   std::string text;
@@ -96,6 +108,11 @@ std::vector<GridName> listVolume(const std::string& file) {
 /// Throws Error(InvalidArgument) if a file is not there whose name stands for a sequence.
 void requireVolume(const std::string& file) {
   std::error_code error;
+  if (std::filesystem::exists(std::filesystem::path(file) / "chunks.json", error)) {
+    throw Error(ErrorCode::InvalidArgument,
+                file + " is a folder of chunks: tufa chunks --assemble " + file +
+                    " --lods all:0 -o MESH makes one mesh of them");
+  }
   if (isStandard(file) || std::filesystem::exists(file, error)) return;
   if (namesFrames(file)) {
     throw Error(ErrorCode::InvalidArgument,
@@ -147,16 +164,17 @@ std::optional<double> readIsovalue(const std::optional<std::string>& text,
 
 void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid,
                   double isovalue) {
+  if (isLevelSet(grid)) return noteEdgeOfBand(grid, isovalue);
   if (text && *text != "auto") return;
-  if (isLevelSet(grid)) return;
   printNote("note: isovalue " + formatNumber(isovalue) + " was taken for " +
             shownGrid(grid.getName()) + ", half way between the least and the greatest value");
 }
 
 std::vector<std::string> chooseGrids(const std::string& file,
-                                     const std::vector<std::string>& patterns) {
+                                     const std::vector<std::string>& patterns, Lacking lacking) {
   const std::vector<GridName> grids = listVolume(file);
   std::vector<bool> chosen(grids.size());
+  std::string unknown;
   for (const std::string& pattern : patterns) {
     const bool exact = pattern.find_first_of("*?") == std::string::npos;
     bool found = false;
@@ -169,12 +187,16 @@ std::vector<std::string> chooseGrids(const std::string& file,
       if (!means) continue;
       chosen[i] = found = true;
     }
-    if (found) continue;
-    std::string names;
-    for (const GridName& grid : grids) names += (names.empty() ? "\"" : ", \"") + grid.name + "\"";
-    throw Error(ErrorCode::UnknownGrid,
-                std::string(exact ? "no grid \"" : "no grid that can be meshed is named like \"") +
-                    pattern + "\" in " + shownInput(file) + "; it holds " + names);
+    if (found || !unknown.empty()) continue;
+    unknown = std::string(exact ? "no grid \"" : "no grid that can be meshed is named like \"") +
+              pattern + "\" in " + shownInput(file) + "; it holds ";
+    for (const GridName& grid : grids) {
+      unknown += (&grid == grids.data() ? "\"" : ", \"") + grid.name + "\"";
+    }
+  }
+  const bool isAny = std::find(chosen.begin(), chosen.end(), true) != chosen.end();
+  if (!unknown.empty() && (lacking == Lacking::Refuse || !isAny)) {
+    throw Error(ErrorCode::UnknownGrid, unknown);
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < grids.size(); ++i) {
@@ -249,11 +271,14 @@ void requireSurface(const Mesh& mesh, double isovalue, const openvdb::GridBase& 
   const bool isAbove = reaches(info.minValue, true), isBelow = reaches(info.maxValue, false);
   const bool runsOut =
       (isAbove && info.background < isovalue) || (isBelow && info.background >= isovalue);
+  const bool isFog = isovalue == 0 && isLevelSet(grid) && info.background == 0 && info.minValue &&
+                     *info.minValue >= 0;
   throw Error(ErrorCode::UnsupportedGrid,
               "no surface at isovalue " + formatNumber(isovalue) + ": grid \"" + grid.getName() +
                   "\" in " + shownInput(file) + " " + describeValues(info) +
                   (filters.empty() ? "" : " after" + filters) +
-                  (runsOut ? "; it runs out of the data, where --cap of tufa mesh closes it" : ""));
+                  (runsOut ? "; it runs out of the data, where --cap of tufa mesh closes it" : "") +
+                  (isFog ? "; that is a fog volume, which needs --iso, not a level set" : ""));
 }
 
 std::optional<Length> lengthIn(const std::string& text) {
@@ -301,7 +326,7 @@ void noteBroken(const CheckReport& check, const ContourReport& report, const std
     printNote("note: " + what + " has " + formatCount(check.boundaryEdges) +
               " boundary edges where the data ends");
   } else {
-    const bool isInsideOut = check.closed && check.oriented && !check.outward;
+    const bool isInsideOut = check.closed && check.oriented && !check.outward && check.volume < 0;
     printNote(what + " is not watertight: " + brokenPromises(check) +
               (isInsideOut ? "; --inside says which side of the isovalue is solid" : ""));
   }

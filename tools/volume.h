@@ -59,11 +59,15 @@ CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isoval
 void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid,
                   double isovalue);
 
+/// What to do about a name or pattern that means no grid, where others do.
+enum class Lacking { Refuse, Skip };
+
 /// The grids of a file that some names and patterns mean, in the order of the file; patterns, with
-/// * and ?, mean those that can be meshed only. Throws Error(UnknownGrid) for a name or pattern
-/// that means none.
+/// * and ?, mean those that can be meshed only. Throws Error(UnknownGrid) if there are none, and if
+/// one that is lacking is to be refused.
 [[nodiscard]] std::vector<std::string> chooseGrids(const std::string& file,
-                                                   const std::vector<std::string>& patterns);
+                                                   const std::vector<std::string>& patterns,
+                                                   Lacking lacking = Lacking::Refuse);
 
 /// Says on standard error that a grid was taken because none was named, if there was a choice.
 void noteChoice(const std::string& file, const std::string& grid);

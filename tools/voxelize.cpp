@@ -30,6 +30,14 @@ struct VoxelizeArguments {
   bool quiet = false;
 };
 
+/// Whether there is anything that the surface is around.
+bool hasInside(const openvdb::FloatGrid& grid, bool isFog) {
+  for (auto value = grid.cbeginValueOn(); value; ++value) {
+    if (isFog ? *value > 0 : *value < 0) return true;
+  }
+  return false;
+}
+
 int runVoxelize(const VoxelizeArguments& arguments) {
   keepApart(arguments.output);
   requireVoxelSize("--voxel", arguments.options.voxelSize);
@@ -48,6 +56,10 @@ int runVoxelize(const VoxelizeArguments& arguments) {
     options.progress = bar.callback();
     grid = voxelize(mesh, options, &voxelized.distances);
   });
+  if (!arguments.quiet && !hasInside(*grid, arguments.options.fog)) {
+    printNote("note: no voxel is inside: the mesh is thinner than the voxels of " +
+              formatNumber(arguments.options.voxelSize) + ", or open; there is no surface to mesh");
+  }
   WrittenGrid written;
   written.input = arguments.input;
   written.mesh = voxelized;

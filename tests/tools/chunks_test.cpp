@@ -53,6 +53,15 @@ TEST_F(ChunksCommand, FillsAFolder) {
   EXPECT_EQ(namesIn("d"), expected);
 }
 
+TEST_F(ChunksCommand, TakesFoldersWithASlashBehind) {
+  makeSphere();
+  const Outcome made = run("chunks s.vdb -o new/ --chunk 16 --levels 2");
+  EXPECT_EQ(made.exitCode, 0) << made.err;
+  EXPECT_EQ(run("chunks --assemble new/ --lods all:0 -o a.ply").exitCode, 0);
+  EXPECT_EQ(run("chunks --assemble new/chunks.json --lods all:0 -o b.ply").exitCode, 0);
+  EXPECT_EQ(test::readBytes(folder / "a.ply"), test::readBytes(folder / "b.ply"));
+}
+
 TEST_F(ChunksCommand, GivesTheKeysOfItsReport) {
   ASSERT_EQ(run("make sphere --voxel 0.1 -o v.vdb").exitCode, 0);
   const Outcome outcome = run("chunks v.vdb -o d --chunk 16 --levels 2 --json");

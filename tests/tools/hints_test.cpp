@@ -64,12 +64,66 @@ TEST_F(Hints, ForFilesOfOtherKinds) {
   }
 }
 
+TEST_F(Hints, SayWhatNumbersAnOptionTakes) {
+  expectFailure("make noise -o c.vdb --seed -5", 2, "--seed: -5 is not a whole number, 0 or more");
+  expectFailure("make noise -o c.vdb --voxel abc", 2, "--voxel: abc is not a number");
+  expectFailure("mesh s.vdb -o m.ply --min-cell 1.5", 2, "--min-cell: 1.5 is not a whole number");
+}
+
+TEST_F(Hints, ForFramesOfOtherDigits) {
+  makeSphere();
+  for (const char* frame : {"f.0001.vdb", "f.0002.vdb"}) {
+    std::filesystem::copy_file(folder / "s.vdb", folder / frame);
+  }
+  expectFailure("mesh 'f.##.vdb' -o 'm.##.ply'", 3, "; there are files of f.####.vdb");
+  const Outcome none = run("mesh 'g.##.vdb' -o 'm.##.ply'");
+  EXPECT_EQ(none.err.find("there are files"), std::string::npos) << none.err;
+}
+
+TEST_F(Hints, ForMeshesThinnerThanVoxels) {
+  test::writeBytes(
+      folder / "t.off",
+      "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 0.1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  const Outcome thin = run("voxelize t.off -o t.vdb --voxel 0.3");
+  EXPECT_EQ(thin.exitCode, 0);
+  EXPECT_NE(thin.err.find("thinner than the voxels of 0.3"), std::string::npos) << thin.err;
+  EXPECT_EQ(run("voxelize t.off -o t.vdb --voxel 0.02").err, "");
+}
+
+TEST_F(Hints, ForSurfacesAtTheEdgeOfTheBand) {
+  makeSphere();
+  const auto noteAt = [&](const char* isovalue) {
+    return run("mesh s.vdb -o m.ply --iso " + std::string(isovalue)).err;
+  };
+  EXPECT_NE(noteAt("0.25").find("less than a voxel from the edge"), std::string::npos);
+  EXPECT_NE(noteAt("-0.25").find("less than a voxel from the edge"), std::string::npos);
+  EXPECT_EQ(noteAt("0.1"), "");
+}
+
+TEST_F(Hints, ForFogThatIsCalledALevelSet) {
+  openvdb::initialize();
+  const auto fog = openvdb::FloatGrid::create(0);
+  fog->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(9)), 1);
+  fog->setGridClass(openvdb::GRID_LEVEL_SET);
+  writeGrids({fog}, folder / "fog.vdb");
+  expectFailure("mesh fog.vdb -o m.ply", 3, "a fog volume, which needs --iso");
+}
+
+TEST_F(Hints, ForDistancesThatMergeTooMuch) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o m.stl --quiet").exitCode, 0);
+  EXPECT_NE(run("repair m.stl -o r.ply --merge 10").out.find("a smaller one may"),
+            std::string::npos);
+}
+
 TEST_F(Hints, ForIntegersAndFolders) {
   makeVolume();
   expectFailure("mesh l.vdb -o m.ply", 3, "--labels all");
   EXPECT_NE(run("info l.vdb").out.find("tufa mesh --labels"), std::string::npos);
   ASSERT_EQ(run("chunks s.vdb -o d --levels 1 --quiet").exitCode, 0);
   expectFailure("check d", 2, "tufa chunks --assemble d --lods all:0");
+  expectFailure("mesh d -o m.ply", 2, "tufa chunks --assemble d --lods all:0");
+  expectFailure("mesh v.vdb -o m.ply --labels all --grid first", 3, "is none of 32- or 64-bit");
   expectFailure("import - -o i.vdb --size 1,1,1", 2, "read from files");
   expectFailure("import none.png -o i.vdb", 3, "there is no such file");
 }

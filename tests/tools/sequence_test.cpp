@@ -174,6 +174,33 @@ TEST_F(Sequence, TellsTheFilesOfSeveralGrids) {
   EXPECT_EQ(Json::parse(one.out)["frames"][0]["output"], "m_sphere.0002.ply");
 }
 
+TEST_F(Sequence, GridsThatAFrameDoesNotHaveAreEmptyThere) {
+  const auto first = readGrid(folder / "s.vdb");
+  const auto second = first->deepCopyGrid();
+  second->setName("second");
+  writeGrids({first, second}, folder / "f.0001.vdb");
+  const std::string words = "mesh 'f.####.vdb' --frames 1,2 ";
+  const Outcome all = run(words + "-o all.usda --grid second --grid sphere");
+  EXPECT_EQ(all.exitCode, 0) << all.err;
+  EXPECT_EQ(all.err, "");
+  EXPECT_NE(readBytes(folder / "all.usda").find("2: [],"), std::string::npos);
+  EXPECT_NE(run(words + "-o all.usda --grid sceond --grid sphere").err.find("\"sceond\""),
+            std::string::npos);
+  EXPECT_EQ(run(words + "-o all.usda --grid sceond").exitCode, 1);
+}
+
+TEST_F(Sequence, NamesTheGridThatItTookOnce) {
+  const auto first = readGrid(folder / "s.vdb");
+  const auto second = first->deepCopyGrid();
+  second->setName("second");
+  for (const char* frame : {"f.0001.vdb", "f.0002.vdb"}) {
+    writeGrids({first, second}, folder / frame);
+  }
+  const std::string err = run("mesh 'f.####.vdb' -o 'm.####.ply' --frames 1,2").err;
+  EXPECT_EQ(err,
+            "tufa: note: grid \"sphere\" was taken, one of 2 that can be meshed; --grid chooses\n");
+}
+
 TEST_F(Sequence, IsovaluesThatDifferFromFrameToFrameAreTold) {
   for (const int frame : {1, 2}) {
     auto grid = openvdb::FloatGrid::create(0);  // of no class
