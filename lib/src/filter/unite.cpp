@@ -48,7 +48,7 @@ std::size_t countNonFinite(const GridBase& grid) {
 void requireUnitable(const GridBase& grid) {
   grid::requireMeshable(grid);
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) refuse(grid, "is none");
-  grid::requireFiniteBackground(backgroundOf(grid));
+  grid::requireFiniteBackground(grid.getName(), backgroundOf(grid));
   if (!(backgroundOf(grid) > 0)) {
     refuse(grid, "has the background " + base::numberText(backgroundOf(grid)) +
                      ", which must be the width of its band");

@@ -22,7 +22,7 @@ Blocks::Blocks(std::shared_ptr<const Tree> tree, const IsoChoice& iso, NonFinite
   });
   summary_ = tree_->readSides(iso, inside_, job);
   if (summary_.nonFiniteValues > 0 && nonFinite == NonFinite::Refuse) {
-    refuseNonFinite(summary_.nonFiniteValues, summary_.firstNonFinite);
+    refuseNonFinite(tree_->gridName(), summary_.nonFiniteValues, summary_.firstNonFinite);
   }
   tree_->findPlaces(iso, places_, job);
   addTileBlocks(job);

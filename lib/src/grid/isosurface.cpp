@@ -278,7 +278,7 @@ class VdbIsosurface final : public Isosurface {
  public:
   VdbIsosurface(const GridT& grid, const VoxelFrame& frame, const IsoChoice& iso)
       : grid_(grid), frame_(frame), iso_(iso), dataEnd_(readFieldScale(grid, iso)) {
-    requireFiniteBackground(static_cast<double>(grid.background()));
+    requireFiniteBackground(grid.getName(), static_cast<double>(grid.background()));
   }
 
   [[nodiscard]] std::vector<Vec3> samples(base::Job& job) const override {

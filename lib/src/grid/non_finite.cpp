@@ -60,31 +60,31 @@ std::shared_ptr<openvdb::GridBase> finiteCopyOf(const GridT& grid, const NonFini
 
 }  // namespace
 
-void refuseNonFinite(std::size_t count, const Coord& first) {
+void refuseNonFinite(const std::string& grid, std::size_t count, const Coord& first) {
   throw Error(ErrorCode::NonFiniteValues,
-              "the grid holds " + std::to_string(count) + " NaN or infinite " +
+              "grid \"" + grid + "\" holds " + std::to_string(count) + " NaN or infinite " +
                   (count == 1 ? "value" : "values") + ", the first at index (" +
                   std::to_string(first[0]) + ", " + std::to_string(first[1]) + ", " +
                   std::to_string(first[2]) +
                   "); repair the grid or treat them as outside (NonFinite::Outside)");
 }
 
-void requireFiniteBackground(double background) {
+void requireFiniteBackground(const std::string& grid, double background) {
   if (std::isfinite(background)) return;
-  throw Error(ErrorCode::NonFiniteValues,
-              "the grid's background is not a finite number; set a finite background");
+  throw Error(ErrorCode::NonFiniteValues, "the background of grid \"" + grid +
+                                              "\" is not a finite number; set a finite background");
 }
 
 template <class GridT>
 std::size_t takeAsOutside(GridT& grid, const NonFiniteRule& rule) {
-  requireFiniteBackground(static_cast<double>(grid.background()));
+  requireFiniteBackground(grid.getName(), static_cast<double>(grid.background()));
   std::size_t count = 0;
   Coord first;
   forNonFinite(grid, [&](const openvdb::Coord& place, const auto&) {
     if (count++ == 0) first = fromVdb(place);
   });
   if (count == 0) return 0;
-  if (rule.nonFinite == NonFinite::Refuse) refuseNonFinite(count, first);
+  if (rule.nonFinite == NonFinite::Refuse) refuseNonFinite(grid.getName(), count, first);
   using Value = typename GridT::ValueType;
   const auto outside =
       static_cast<Value>(outsideValue(grid, static_cast<double>(grid.background()), rule));

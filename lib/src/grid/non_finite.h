@@ -5,16 +5,18 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "base/index_box.h"
 
 namespace tufa::grid {
 
-/// Throws Error(NonFiniteValues): so many values that are not finite, and where the first one is.
-[[noreturn]] void refuseNonFinite(std::size_t count, const Coord& first);
+/// Throws Error(NonFiniteValues): so many values of a grid of that name are not finite, and where
+/// the first one is.
+[[noreturn]] void refuseNonFinite(const std::string& grid, std::size_t count, const Coord& first);
 
-/// Throws Error(NonFiniteValues) for a background that is not finite.
-void requireFiniteBackground(double background);
+/// Throws Error(NonFiniteValues) for a background that is not finite, of a grid of that name.
+void requireFiniteBackground(const std::string& grid, double background);
 
 /// How NaN and infinite values are taken, and what is outside.
 struct NonFiniteRule {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/job.h"
@@ -48,6 +49,8 @@ class Tree {
     Coord firstNonFinite;
   };
 
+  /// For messages.
+  [[nodiscard]] virtual const std::string& gridName() const = 0;
   [[nodiscard]] virtual std::size_t leafCount() const = 0;
   [[nodiscard]] virtual Coord leafOrigin(LeafRef leaf) const = 0;
   /// The 512 values of a leaf as double: one of them.

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
+#include <string>
+#include <utility>
 
 #include "base/huge_pages.h"
 #include "grid/node_tiles.h"
@@ -146,7 +148,8 @@ class VdbTree final : public Tree {
   static_assert(Leaf::LOG2DIM == 3 && Node::LOG2DIM == BlockPlaces::kNodeBits);
 
  public:
-  VdbTree(const TreeT& tree, base::Job& job) : tree_(tree) {
+  VdbTree(std::string gridName, const TreeT& tree, base::Job& job)
+      : gridName_(std::move(gridName)), tree_(tree) {
     std::vector<const Leaf*> leaves;
     tree.getNodes(leaves);
     base::resizeLarge(values_, leaves.size(), job);
@@ -159,6 +162,7 @@ class VdbTree final : public Tree {
     });
   }
 
+  [[nodiscard]] const std::string& gridName() const override { return gridName_; }
   [[nodiscard]] std::size_t leafCount() const override { return leaves_.size(); }
   [[nodiscard]] Coord leafOrigin(LeafRef leaf) const override {
     return fromVdb(leaves_[leaf]->origin());
@@ -256,7 +260,7 @@ class VdbTree final : public Tree {
   }
 
   void readTiles(Summary& summary, base::Job& job) const {
-    requireFiniteBackground(static_cast<double>(tree_.background()));
+    requireFiniteBackground(gridName_, static_cast<double>(tree_.background()));
     for (auto tile = tree_.root().cbeginValueAll(); tile; ++tile) {
       if (tile.isValueOn()) summary.activeVoxels += UpperNode::NUM_VOXELS;
       if (std::isfinite(*tile)) continue;
@@ -295,6 +299,7 @@ class VdbTree final : public Tree {
     summary.nonFiniteValues += nonFinite;
   }
 
+  std::string gridName_;
   const TreeT& tree_;
   std::vector<const T*> values_;     ///< the 512 values of each leaf
   std::vector<const Leaf*> leaves_;  ///< in the order of the tree
@@ -305,10 +310,10 @@ class VdbTree final : public Tree {
 std::shared_ptr<const Tree> treeOf(const openvdb::GridBase& grid, base::Job& job) {
   if (grid.isType<openvdb::FloatGrid>()) {
     return std::make_shared<VdbTree<openvdb::FloatTree>>(
-        static_cast<const openvdb::FloatGrid&>(grid).tree(), job);
+        grid.getName(), static_cast<const openvdb::FloatGrid&>(grid).tree(), job);
   }
   return std::make_shared<VdbTree<openvdb::DoubleTree>>(
-      static_cast<const openvdb::DoubleGrid&>(grid).tree(), job);
+      grid.getName(), static_cast<const openvdb::DoubleGrid&>(grid).tree(), job);
 }
 
 }  // namespace tufa::grid

@@ -101,8 +101,9 @@ TYPED_TEST(BlocksOf, NonFiniteSamplesAreOutside) {
   }
 }
 
-TEST(Blocks, RefusalNamesTheCountAndTheFirstCoordinate) {
+TEST(Blocks, RefusalNamesTheGridTheCountAndTheFirstCoordinate) {
   auto grid = tufa::test::noise<FloatGrid>({.size = 16, .first = openvdb::Coord(0)});
+  grid->setName("density");
   grid->tree().setValue(openvdb::Coord(9, 3, 4), std::numeric_limits<float>::quiet_NaN());
   grid->tree().setValue(openvdb::Coord(1, 12, 7), std::numeric_limits<float>::infinity());
   try {
@@ -110,7 +111,8 @@ TEST(Blocks, RefusalNamesTheCountAndTheFirstCoordinate) {
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::NonFiniteValues);
-    EXPECT_NE(std::string(error.what()).find("2 NaN or infinite values"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("grid \"density\" holds 2 NaN or infinite values"),
+              std::string::npos)
         << error.what();
     EXPECT_NE(std::string(error.what()).find("(1, 12, 7)"), std::string::npos) << error.what();
   }

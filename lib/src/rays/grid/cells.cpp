@@ -295,7 +295,7 @@ void requireFiniteValues(const openvdb::GridBase& grid, const RaySurfaceOptions&
   const grid::Tree::Summary summary =
       tree->readSides(grid::chooseIsovalue(grid, options.isovalue, options.inside), sides, job);
   if (summary.nonFiniteValues > 0) {
-    grid::refuseNonFinite(summary.nonFiniteValues, summary.firstNonFinite);
+    grid::refuseNonFinite(grid.getName(), summary.nonFiniteValues, summary.firstNonFinite);
   }
 }
 
