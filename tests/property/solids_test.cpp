@@ -1,5 +1,6 @@
-// Random solids with sharp edges of any angle, at any place and turn, at three tolerances.
-// TUFA_RANDOM_SOLIDS sets how many, TUFA_FIRST_SOLID where to begin; each costs about two seconds.
+// Random solids with sharp edges of any angle, at any place and turn, at three tolerances and
+// numbers of triangles. TUFA_RANDOM_SOLIDS sets how many, TUFA_FIRST_SOLID where to begin; each
+// costs about two seconds.
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -7,6 +8,7 @@
 #include <tufa/check.h>
 #include <tufa/contour.h>
 #include <tufa/implicit.h>
+#include <tufa/lod.h>
 #include <tufa/memory.h>
 #include <tufa/voxelize.h>
 #include <algorithm>
@@ -24,6 +26,20 @@ namespace {
 
 constexpr double kVoxel = 0.03;
 
+void expectKeptPromises(const Mesh& mesh, double certified, const Mesh& uniform) {
+  const CheckReport found = check(mesh);
+  EXPECT_TRUE(found.watertight());
+  EXPECT_EQ(found.selfIntersectingPairs, 0u);
+  EXPECT_EQ(found.eulerCharacteristic, check(uniform).eulerCharacteristic);
+  // A wedge of less than 30 degrees folds its own edges.
+  EXPECT_EQ(test::foldedEdges(mesh, uniform, kVoxel), 0u);
+
+  const double most = 1.005 * certified + 0.0005;  // positions are in single precision
+  const double reach = std::max(3.0, certified + 1) * kVoxel;
+  EXPECT_LE(test::largestDistance(uniform, mesh, reach) / kVoxel, most);
+  EXPECT_LE(test::largestDistance(mesh, uniform, reach) / kVoxel, most);
+}
+
 void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform,
                         const ContourOptions& options) {
   SCOPED_TRACE("tolerance " + std::to_string(options.tolerance) +
@@ -33,18 +49,25 @@ void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform,
   const double certified = report.certificate->maxErrorVoxels;
   EXPECT_LE(certified, options.tolerance);
   EXPECT_EQ(report.intersectionsLeft, 0u);
+  expectKeptPromises(mesh, certified, uniform);
+}
 
-  const CheckReport found = check(mesh);
-  EXPECT_TRUE(found.watertight());
-  EXPECT_EQ(found.selfIntersectingPairs, 0u);
-  EXPECT_EQ(found.eulerCharacteristic, check(uniform).eulerCharacteristic);
-  // A wedge of less than 30 degrees folds its own edges.
-  EXPECT_EQ(test::foldedEdges(mesh, uniform, kVoxel), 0u);
-
-  const double most = 1.005 * certified + 0.0005;  // positions are in single precision
-  const double reach = 3 * kVoxel;
-  EXPECT_LE(test::largestDistance(uniform, mesh, reach) / kVoxel, most);
-  EXPECT_LE(test::largestDistance(mesh, uniform, reach) / kVoxel, most);
+// A chain of numbers of triangles, from what a tenth of a voxel takes.
+void expectKeptPromises(const openvdb::FloatGrid& grid, const Mesh& uniform,
+                        std::size_t triangles) {
+  LodOptions options;
+  for (const std::size_t share : {1, 2, 5}) {
+    if (triangles / share >= 4) options.triangles.push_back(triangles / share);
+  }
+  const LodChain chain = buildLods(grid, options);
+  double before = 0;
+  for (const Lod& level : chain.levels) {
+    SCOPED_TRACE(std::to_string(level.mesh.triangleCount()) + " triangles");
+    const double certified = level.certificate.maxErrorVoxels;
+    EXPECT_GE(certified, before);
+    expectKeptPromises(level.mesh, certified, uniform);
+    before = certified;
+  }
 }
 
 openvdb::FloatGrid::Ptr gridOf(unsigned seed) {
@@ -67,6 +90,7 @@ void expectKeptPromises(unsigned seed) {
       expectKeptPromises(*grid, uniform, asked);
     }
   }
+  expectKeptPromises(*grid, uniform, contour(*grid, {}).triangleCount());
 }
 
 TEST(Solids, KeepTheirPromises) {

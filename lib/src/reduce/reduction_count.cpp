@@ -19,6 +19,8 @@ constexpr float kFound = 1.03f;
 constexpr Index kNearly = 8;
 // A certificate up to so many times the tolerance that was found is left at that.
 constexpr float kNearTolerance = 1.02f;
+// So many halvings without a failure, and the lower bound itself is tried.
+constexpr int kHalvings = 2;
 // Where tolerances remove nothing so often in turn, the topology is in the way.
 constexpr int kMostStuck = 2;
 
@@ -78,14 +80,20 @@ float Reduction::toCountWithin(Index count, float mostTolerance) {
 // by halves, each from the mesh of two tolerances ago: the way that toTolerance() goes, step for
 // step. So the error at the count is about that of the tolerance that gives as many triangles,
 // but where the count rises with the tolerance. Whether the count is reached.
+//
+// On the way up each tolerance has few phases. Where counts hardly fall from one to the next, what
+// they leave costs many times the tolerance: one that is nearly there gets all phases, and where
+// halving does not fail, smaller tolerances are tried too, from the beginning.
 bool Reduction::findCount(Index count, float mostTolerance) {
   keepsShape_ = true;
   const auto isReached = [&] { return triangleCount() <= count; };
+  const auto isNear = [&] { return triangleCount() <= count + count / kNearly; };
   const auto reduceTo = [&](float tolerance, int phases) {
     trees_.clear(), nextTree_ = 0;
     reduce(tolerance, count, phases);
   };
-  State start = state(), last = start;
+  const State first = state();
+  State start = first, last = first;
   float low = tolerance_, high = kFirstStep;
   while (high <= kRampStep * tolerance_) high *= kStep;
   high = std::min(high, mostTolerance);
@@ -98,7 +106,13 @@ bool Reduction::findCount(Index count, float mostTolerance) {
       keepsShape_ = false, stuck = 0;
     }
     const bool isLast = high >= mostTolerance || (stuck == kMostStuck && high > kStuckTolerance);
-    if (isLast) reduceTo(high, kPhases);
+    if (isLast) {
+      reduceTo(high, kPhases);
+    } else if (!isReached() && isNear()) {
+      const State ramp = state();
+      reduceTo(high, kPhases);
+      if (!isReached()) restore(ramp);
+    }
     start = std::move(last), last = std::move(next);
     if (isReached()) break;
     if (isLast) return false;
@@ -106,19 +120,24 @@ bool Reduction::findCount(Index count, float mostTolerance) {
   }
   const float least = high > kFirstStep ? high / (kStep * kReserve) : kLeastTolerance;
   low = std::max({low, start.tolerance, least});
+  const float floor = std::max(first.tolerance, kLeastTolerance);
   State best = state();
-  while (kFound * low < high) {
-    const float middle = std::sqrt(low * high);
+  bool hasFailed = false;
+  for (int tried = 0; hasFailed ? kFound * low < high : floor < high; ++tried) {
+    float next = std::sqrt(low * high);
+    if (!hasFailed && (tried >= kHalvings || !(kFound * low < high))) {
+      if (!(low < high)) low = std::max(low / kStep, floor), start = first;
+      next = low;
+    }
     restore(start);
     trees_.clear(), nextTree_ = 0;
-    descendTo(middle, count);
-    const bool isNear = triangleCount() <= count + count / kNearly;
-    if (!isReached() && isNear) reduceTo(middle, kPhases);
-    if (!isReached()) {
-      low = middle;
-      continue;
+    descendTo(next, count);
+    if (!isReached() && isNear()) reduceTo(next, kPhases);
+    if (isReached()) {
+      best = state(), high = next;
+    } else {
+      low = next, hasFailed = true;
     }
-    best = state(), high = middle;
   }
   restore(best);
   return true;
