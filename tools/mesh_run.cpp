@@ -277,7 +277,7 @@ Labels readLabels(const MeshArguments& arguments) {
     if (info.name == name && !holdsLabels(info)) {
       throw Error(ErrorCode::UnsupportedGrid, "grid \"" + *name + "\" in " +
                                                   shownInput(arguments.input) +
-                                                  " is none of 32- or 64-bit integers");
+                                                  " does not hold 32- or 64-bit integers");
     }
   }
   if (!name) {

@@ -1,6 +1,6 @@
 // Random solids with sharp edges of any angle, at any place and turn, at three tolerances and
 // numbers of triangles. TUFA_RANDOM_SOLIDS sets how many, TUFA_FIRST_SOLID where to begin; each
-// costs about two seconds.
+// costs about four seconds.
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>

@@ -123,7 +123,7 @@ TEST_F(Hints, ForIntegersAndFolders) {
   ASSERT_EQ(run("chunks s.vdb -o d --levels 1 --quiet").exitCode, 0);
   expectFailure("check d", 2, "tufa chunks --assemble d --lods all:0");
   expectFailure("mesh d -o m.ply", 2, "tufa chunks --assemble d --lods all:0");
-  expectFailure("mesh v.vdb -o m.ply --labels all --grid first", 3, "is none of 32- or 64-bit");
+  expectFailure("mesh v.vdb -o m.ply --labels all --grid first", 3, "does not hold 32- or 64-bit");
   expectFailure("import - -o i.vdb --size 1,1,1", 2, "read from files");
   expectFailure("import none.png -o i.vdb", 3, "there is no such file");
 }

@@ -13,9 +13,9 @@ namespace tufa::implicit {
 /// Whether two faces intersect, or touch beyond the corners that they share.
 [[nodiscard]] bool intersectsItself(const Mesh& mesh, base::Job& job);
 
-/// Throws Error(InvalidArgument) for meshes that are not closed, of which parts face inward or
-/// outward where they are no boundary so (see Shells), and for those that intersect themselves:
-/// the normal at the face nearest to a point does not tell its side there.
+/// Throws Error(InvalidArgument) unless a mesh is closed, each of its parts faces outward or is a
+/// cavity (see Shells), and no faces intersect or touch. Only then does the normal at the nearest
+/// face tell on which side of the mesh a point is.
 void requireSolid(const Mesh& mesh, base::Job& job);
 
 }  // namespace tufa::implicit

@@ -127,8 +127,8 @@ TEST(LodChain, SpendsNoMoreErrorOnABudgetThanATolerance) {
   }
 }
 
-// A cube with 48 square tunnels, whose topology needs most triangles at any tolerance: what few
-// phases leave was made up for by a third more error.
+// A cube with 48 square tunnels, whose topology needs most of its triangles at any tolerance. What
+// few phases had left was once made up for by a larger tolerance, with 28% more error.
 TEST(LodChain, SpendsNoMoreErrorOnABudgetWhereCountsHardlyFall) {
   const std::string text =
       R"({"tufa_scene": 1, "objects": [{"type": "difference", "objects": [
