@@ -34,6 +34,15 @@ struct LocalQuadric {
     return *this;
   }
 
+  /// Of the matrix.
+  [[nodiscard]] float determinant() const {
+    return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  }
+  /// The sum of its principal minors of two rows.
+  [[nodiscard]] float minors() const {
+    return xx * yy - xy * xy + yy * zz - yz * yz + zz * xx - xz * xz;
+  }
+
   /// Where it is least, by LDLT. A thousandth of the trace keeps what the planes leave almost free
   /// near the place it is seen from.
   [[nodiscard]] Vec3f minimum() const {

@@ -52,10 +52,11 @@ struct OperationCounts {
 
 /// What a phase may do.
 struct PhaseLimits {
-  float distance = 0.1f;     ///< largest distance from the reference, voxels
-  float errorShare = 1;      ///< edges whose rms plane distance is over this share are not tried
-  float leastSine2 = 0.03f;  ///< squared sine of an angle under which a triangle is a sliver
-  float sliverShare = 0;     ///< of a part's triangles that may become slivers nevertheless
+  float distance = 0.1f;      ///< largest distance from the reference, voxels
+  float errorShare = 1;       ///< edges whose rms plane distance is over this share are not tried
+  float leastSine2 = 0.03f;   ///< squared sine of an angle under which a triangle is a sliver
+  float sliverShare = 0;      ///< of a part's triangles that may become slivers nevertheless
+  float bentSliverShare = 0;  ///< the same where the surface bends both ways, see VertexFlag
   [[nodiscard]] bool keepsAngle() const { return sliverShare == 0; }
   float turnCosine = 0.5f;  ///< least cosine between a triangle's normal before and after
   bool clusters = false;    ///< contracts clusters first

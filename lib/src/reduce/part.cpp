@@ -113,6 +113,7 @@ void Part::loadSamples(const Surface& surface) {
     }
   }
   hasRough_ = false;
+  std::size_t loaded = 0, bent = 0;
   for (Index s = 0; s < sampleIds_.size(); ++s) {
     job_->pollCancelled(s);
     const Index r = sampleIds_[s], t = owners_[s];
@@ -120,8 +121,10 @@ void Part::loadSamples(const Surface& surface) {
     samples_[s] = {reference_->positions()[r], firstSample_[t]};
     isRough_[s] = reference_->isRough(r);
     hasRough_ |= isRough_[s] != 0;
+    ++loaded, bent += reference_->isBent(r) ? 1 : 0;
     firstSample_[t] = s;
   }
+  isBent_ = 4 * bent >= 3 * loaded;
 }
 
 // Of the samples of a surface that is whole, those whose owners are in the part.

@@ -219,6 +219,7 @@ class Part {
   bool windsInFrame();
   bool isSimpleStar(std::span<const Index> merged) const;
   Outcome trianglesGuard(Vec3f a, Vec3f b);
+  [[nodiscard]] bool isStarBent() const;
   template <class Visit>
   void forTurnsAfter(Visit&& visit) const;
   [[nodiscard]] Sharpest sharpestAfter() const;
@@ -319,6 +320,7 @@ class Part {
   std::vector<Taker> takers_;  ///< empty until one is asked for
   std::vector<std::uint8_t> isRough_;
   bool hasRough_ = false;  ///< any of the samples
+  bool isBent_ = false;    ///< three quarters of them, see VertexFlag
   std::span<const Index> sampleIds_;
 
   // The queue: buckets by the leading bits of the cost, first in first out.

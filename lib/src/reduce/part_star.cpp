@@ -93,8 +93,9 @@ bool Part::isSimpleStar(std::span<const Index> merged) const {
 
 // Compares the triangles with those before. None may turn far, unless it was a sliver or folded
 // over. Slivers may be made in the place of as many if the smallest angle of the star does not
-// shrink, or as long as they are few in the part; and in the place of more if it shrinks little:
-// along a crease on which vertices crowd, needles get longer until the last of them goes.
+// shrink, or as long as they are few in the part, and fewer still where part and star bend both
+// ways, so that they follow nothing; and in the place of more if it shrinks little: along a crease
+// on which vertices crowd, needles get longer until the last of them goes.
 Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
   const float limit = limits_.leastSine2;
   float after = 1, before = 1;
@@ -131,9 +132,26 @@ Outcome Part::trianglesGuard(Vec3f a, Vec3f b) {
   if (after >= limit || !isOn(Outcome::Round)) return Outcome::Done;
   if (after >= before && newSlivers_ <= 0) return Outcome::Done;
   if (newSlivers_ < 0 && after >= std::min(kWorstSine2, kSharper2 * before)) return Outcome::Done;
-  const bool isFew = static_cast<float>(sliverCount_ + newSlivers_) <=
-                     limits_.sliverShare * static_cast<float>(alive_);
+  const auto isWithin = [&](float share) {
+    return static_cast<float>(sliverCount_ + newSlivers_) <= share * static_cast<float>(alive_);
+  };
+  const bool isFew = isWithin(limits_.bentSliverShare) ||
+                     (isWithin(limits_.sliverShare) && !(isBent_ && isStarBent()));
   return isFew && after >= kWorstSine2 ? Outcome::Done : Outcome::Round;
+}
+
+// Whether the surface bends both ways at most of the samples below the star, of which the first few
+// of each triangle are asked.
+bool Part::isStarBent() const {
+  constexpr int kMostAsked = 16;
+  int bent = 0;  // less those that are not
+  for (int i = 0; i < size_; ++i) {
+    Index s = firstSample_[at_[i] / 3];
+    for (int asked = 0; s != kNone && asked < kMostAsked; ++asked, s = samples_[s].next) {
+      bent += reference_->isBent(sampleIds_[s]) ? 1 : -1;
+    }
+  }
+  return bent > 0;
 }
 
 // Of the triangle across the edge opposite a corner; not of length 1; 0 if it is not in the part.

@@ -38,8 +38,20 @@ Proxy makeProxy(const Surface& surface, float largest, float mean) {
   return {surface.position, surface.triangles, surface.face, surface.owner, largest, mean};
 }
 
-ReferenceMesh makeReference(const Proxy& proxy, base::Job& job) {
-  return {makeSurface(proxy.positions, proxy.triangles, job), {}, job};
+ReferenceMesh makeReference(const Proxy& proxy, const ReferenceMesh& reference, base::Job& job) {
+  Surface surface = makeSurface(proxy.positions, proxy.triangles, job);
+  std::vector<int> bent(proxy.positions.size(), 0);  // vertices below that are, less the others
+  for (Index r = 0; r < proxy.owners.size(); ++r) {
+    job.pollCancelled(r);
+    if (proxy.owners[r] == kNone) continue;
+    const int one = reference.isBent(r) ? 1 : -1;
+    for (const Index v : proxy.triangles[proxy.owners[r]].vertices) bent[v] += one;
+  }
+  for (Index v = 0; v < bent.size(); ++v) {
+    surface.flags[v] &= static_cast<std::uint8_t>(~kBent);
+    if (bent[v] > 0) surface.flags[v] |= kBent;
+  }
+  return {surface, {}, job};
 }
 
 void handOver(Surface& s, const ReferenceMesh& reference, const Proxy& proxy,

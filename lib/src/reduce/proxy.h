@@ -24,8 +24,10 @@ struct Proxy {
 /// The surface as it is, which is not whole.
 [[nodiscard]] Proxy makeProxy(const Surface& surface, float largest, float mean);
 
-/// The mesh of a proxy as a reference.
-[[nodiscard]] ReferenceMesh makeReference(const Proxy& proxy, base::Job& job);
+/// The mesh of a proxy as a reference. It bends where most of what lies below does: its triangles
+/// are too large to tell.
+[[nodiscard]] ReferenceMesh makeReference(const Proxy& proxy, const ReferenceMesh& reference,
+                                          base::Job& job);
 
 /// Hands a surface over from the reference of a proxy to the proxy: each vertex of the proxy gets
 /// an owner, the nearest of those that the reference's face below it has, and each vertex of the

@@ -86,7 +86,7 @@ Options optionsForAngle(double degrees) {
   Options options;
   if (!(degrees > 0)) return options;
   options.leastAngle = static_cast<float>(degrees);
-  options.sliverShare = 0;
+  options.sliverShare = options.bentSliverShare = 0;
   return options;
 }
 
@@ -174,7 +174,7 @@ void Reduction::chooseReference(float tolerance) {
   if (!proxy_) proxy_ = makeProxy(surface_, certificate_.largest, certificate_.mean);
   const float error = proxy_->largest, now = std::max(tolerance_, certificate_.largest);
   if (tolerance < std::max(kProxyRatio * error, now + 2 * error)) return;
-  ReferenceMesh mesh = makeReference(*proxy_, job_);
+  ReferenceMesh mesh = makeReference(*proxy_, reference_, job_);
   handOver(surface_, reference_, *proxy_, mesh, job_);
   proxy_->owners = {};
   original_ = std::exchange(reference_, std::move(mesh));
@@ -256,6 +256,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   const float sine = std::sin(options_.leastAngle * kRadians);
   limits.leastSine2 = sine * sine;
   limits.sliverShare = options_.sliverShare;
+  limits.bentSliverShare = options_.bentSliverShare;
   limits.turnCosine = std::cos(kMostTurn * kRadians);
   limits.flips = lines_ != LineMode::Alone;
   limits.lines = lines_;
@@ -265,7 +266,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
     limits.mostValence = kMostValenceAtLines;
   }
   if (!keepsShape_ && tolerance > kStuckTolerance) {
-    limits.sliverShare = 1;
+    limits.sliverShare = limits.bentSliverShare = 1;
     limits.mostValence = kMostValenceAtLast;
     limits.turnCosine = std::cos(kMostTurnAtLast * kRadians);
   }

@@ -45,10 +45,12 @@ struct ReducedMesh {
 struct Options {
   PartSize partSize;      ///< the result depends on it
   float leastAngle = 10;  ///< degrees under which a triangle is a sliver
-  /// Of the triangles that may become slivers nevertheless. 0: a collapse makes none but in the
-  /// place of as many. Clusters do, in the first phase; later ones take those away.
+  /// Of the triangles that may become slivers nevertheless, where they follow what bends one way.
+  /// 0: a collapse makes none but in the place of as many. Clusters do, in the first phase; later
+  /// ones take those away.
   float sliverShare = 0.08f;
-  bool clusters = true;  ///< whether clusters are contracted first
+  float bentSliverShare = 0.015f;  ///< where the surface bends both ways
+  bool clusters = true;            ///< whether clusters are contracted first
   /// Triangles of a result to a tolerance that may not be, say as they intersect once they are
   /// written in another precision. Around them less is reduced. Empty: none.
   std::function<std::vector<Index>(const ReducedMesh&)> faults;

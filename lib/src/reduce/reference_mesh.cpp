@@ -9,13 +9,14 @@ ReferenceMesh::ReferenceMesh(const Surface& input, std::vector<float> scales, ba
     : positions_(input.position), faces_(input.triangles), scales_(std::move(scales)) {
   base::resizeLarge(opposite_, faces_.areHalves() ? 2 * faces_.size() : 3 * faces_.size(), job);
   base::resizeLarge(cornerOf_, input.position.size(), job, kNone);
-  base::resizeLarge(rough_, input.position.size(), job);
+  base::resizeLarge(marks_, input.position.size(), job);
   forCornerRanges(positions_.size(), faces_, job, [&](const CornersOfVertices& corners) {
     forOppositeCorners(faces_, corners, corners.begin(), corners.end(),
                        [&](Index c, Index other) { setOpposite(c, other); });
     for (Index v = corners.begin(); v < corners.end(); ++v) {
       if (!corners.of(v).empty()) cornerOf_[v] = corners.of(v).back();
-      rough_[v] = (input.flags[v] & (kSteep | kBorder)) != 0 ? kRough : 0;
+      marks_[v] = (input.flags[v] & (kSteep | kBorder)) != 0 ? kRough : 0;
+      if ((input.flags[v] & kBent) != 0) marks_[v] |= kIsBent;
     }
   });
 }
@@ -61,13 +62,13 @@ void ReferenceMesh::hold(std::span<const Index> faces, float radius, float share
   heldShare_ = share;
   for (std::size_t v = 0; v < isNew.size(); ++v) {
     if (isNew[v] == 0) continue;
-    if (share == 0 || (rough_[v] & kHeld) != 0) rough_[v] |= kFrozen;
-    rough_[v] |= kHeld;
+    if (share == 0 || (marks_[v] & kHeld) != 0) marks_[v] |= kFrozen;
+    marks_[v] |= kHeld;
   }
 }
 
 void ReferenceMesh::releaseAll() {
-  for (std::uint8_t& flags : rough_) flags &= kRough;
+  for (std::uint8_t& marks : marks_) marks &= kRough | kIsBent;
   heldShare_ = 1;
 }
 

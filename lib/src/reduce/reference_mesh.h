@@ -32,8 +32,8 @@ class ReferenceMesh {
   [[nodiscard]] bool isScaled() const { return hasScales() || heldShare_ < 1; }
   /// What the tolerance is multiplied with at a vertex for the guards.
   [[nodiscard]] float scaleAt(Index vertex) const {
-    if ((rough_[vertex] & kFrozen) != 0) return 0;
-    return promisedScaleAt(vertex) * ((rough_[vertex] & kHeld) != 0 ? heldShare_ : 1);
+    if ((marks_[vertex] & kFrozen) != 0) return 0;
+    return promisedScaleAt(vertex) * ((marks_[vertex] & kHeld) != 0 ? heldShare_ : 1);
   }
   /// Whether the tolerance that is promised differs from place to place.
   [[nodiscard]] bool hasScales() const { return !scales_.empty(); }
@@ -49,16 +49,18 @@ class ReferenceMesh {
   /// Whether a vertex of a face is held.
   [[nodiscard]] bool isHeld(Index face) const {
     const auto v = vertices(face);
-    return ((rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) & kHeld) != 0;
+    return ((marks_[v[0]] | marks_[v[1]] | marks_[v[2]]) & kHeld) != 0;
   }
   /// Whether a vertex of a face is rough.
   [[nodiscard]] bool isRoughFace(Index face) const {
     const auto v = vertices(face);
-    return (rough_[v[0]] | rough_[v[1]] | rough_[v[2]]) != 0;
+    return ((marks_[v[0]] | marks_[v[1]] | marks_[v[2]]) & kAnyRough) != 0;
   }
   /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
   /// what is seen along one axis may not be all.
-  [[nodiscard]] bool isRough(Index vertex) const { return rough_[vertex] != 0; }
+  [[nodiscard]] bool isRough(Index vertex) const { return (marks_[vertex] & kAnyRough) != 0; }
+  /// Whether the surface bends both ways at the vertex, see VertexFlag.
+  [[nodiscard]] bool isBent(Index vertex) const { return (marks_[vertex] & kIsBent) != 0; }
   [[nodiscard]] const Vec3f& corner(Index face, std::size_t i) const {
     return positions_[faces_.vertex(face, i)];
   }
@@ -222,13 +224,14 @@ class ReferenceMesh {
 
   static constexpr float kBeside = 1e-4f;  ///< voxels from a section, for an edge along it
   static constexpr int kMostSteps = 2000;
-  static constexpr std::uint8_t kRough = 1, kHeld = 2, kFrozen = 4;
+  static constexpr std::uint8_t kRough = 1, kHeld = 2, kFrozen = 4, kIsBent = 8;
+  static constexpr std::uint8_t kAnyRough = kRough | kHeld | kFrozen;
 
   base::SharedArray<Vec3f> positions_;
   base::TriangleArray faces_;
   std::vector<Index> opposite_;  ///< of each corner, or of four of a quad's, see opposite()
   std::vector<Index> cornerOf_;
-  std::vector<std::uint8_t> rough_;  ///< of kRough, kHeld and kFrozen
+  std::vector<std::uint8_t> marks_;  ///< of kRough, kHeld, kFrozen and kIsBent
   std::vector<float> scales_;
   float heldShare_ = 1;
 };

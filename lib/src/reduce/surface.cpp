@@ -11,6 +11,7 @@
 #include "base/huge_pages.h"
 #include "base/ranked_bits.h"
 #include "base/shrink.h"
+#include "reduce/local_quadric.h"
 #include "reduce/reference_mesh.h"
 #include "reduce/star.h"
 
@@ -23,6 +24,20 @@ constexpr float kFar = std::numeric_limits<float>::max();
 // Vertices are marked from several threads at a time.
 void setFlag(std::uint8_t& flags, VertexFlag flag) {
   std::atomic_ref<std::uint8_t>(flags).fetch_or(flag, std::memory_order_relaxed);
+}
+
+// Whether triangles with these normals turn about two axes, not all about one as on planes,
+// cylinders, cones and straight creases: by the eigenvalues of the sum of their outer products. The
+// first is about the number of normals; then the second and third are the minors' sum and the
+// determinant over it, and one way is where the third is small beside the second.
+bool bendBothWays(const Vec3f* normals, int n) {
+  constexpr float kFlat = 1e-5f;    // second eigenvalue over the first: a fifth of a degree
+  constexpr float kOneWay = 0.02f;  // third over the second
+  LocalQuadric sum;
+  for (int i = 0; i < n; ++i) sum.addPlane(normals[i], 1);
+  const float first = sum.weight, minors = sum.minors();
+  if (minors <= kFlat * first * first) return false;
+  return sum.determinant() * first > kOneWay * minors * minors;
 }
 
 void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
@@ -52,6 +67,7 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
   float leastCosine = -1;
   if (n > 0 && !isTooMany) s.axis[v] = base::Direction(commonAxis(normals, n, leastCosine));
   if (isSteep || leastCosine < kSteepCosine) setFlag(s.flags[v], kSteep);
+  if (bendBothWays(normals, n)) setFlag(s.flags[v], kBent);
   if (leastCosine >= kLeastCosine) return;
   s.axis[v] = {};
   setFlag(s.flags[v], kNarrow);

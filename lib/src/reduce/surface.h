@@ -20,6 +20,7 @@ enum VertexFlag : std::uint8_t {
   kBorder = 2,  ///< on an open border: stays
   /// In the input a triangle turned by more than 49 degrees from the common axis, or had no area.
   kSteep = 4,
+  kBent = 8,  ///< in the input the surface bends both ways, as on a ball or a saddle
 };
 
 class ReferenceMesh;

@@ -169,6 +169,34 @@ TEST_F(ReferenceMeshTest, IsRoughAtEdgesAndCorners) {
   }
 }
 
+TEST_F(ReferenceMeshTest, BendsBothWaysAtCornersOnly) {
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    int sides = 0;
+    for (int i = 0; i < 3; ++i) sides += mesh.positions[v][i] == 0 || mesh.positions[v][i] == 8;
+    EXPECT_EQ(reference.isBent(v), sides == 3);
+  }
+  // Its upper side on a cylinder, and on a ball.
+  constexpr float kRadius = 20;
+  test::FineMesh cylinder = mesh, ball = mesh;
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3f p = mesh.positions[v];
+    const float a = (p.x - 4) / kRadius, b = (p.y - 4) / kRadius, r = kRadius + p.z;
+    cylinder.positions[v] = {r * std::sin(a), p.y, r * std::cos(a)};
+    ball.positions[v] =
+        Vec3f{std::sin(a) * std::cos(b), std::sin(b), std::cos(a) * std::cos(b)} * r;
+  }
+  const ReferenceMesh bent(surfaceOf(cylinder, job), {}, job), round(surfaceOf(ball, job), {}, job);
+  int count = 0;
+  for (Index v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3f p = mesh.positions[v];
+    if (p.z != 8 || p.x == 0 || p.x == 8 || p.y == 0 || p.y == 8) continue;
+    ++count;
+    EXPECT_FALSE(bent.isBent(v)) << v;
+    EXPECT_TRUE(round.isBent(v)) << v;
+  }
+  EXPECT_EQ(count, 15 * 15);
+}
+
 TEST_F(ReferenceMeshTest, HoldsAShareFirstAndAllTheSecondTime) {
   const Vec3f middle(4, 4, 8);
   const Index face = faceAt(middle);

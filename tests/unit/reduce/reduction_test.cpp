@@ -130,6 +130,23 @@ TEST(Reduction, MakesFewSliversAndNoLongFans) {
   EXPECT_LE(*std::max_element(valence.begin(), valence.end()), 12);
 }
 
+// On blobs thin triangles follow nothing, so hardly any are made.
+TEST(Reduction, MakesHardlyAnySliversWhereTheSurfaceBendsBothWays) {
+  const test::FineMesh blobs = test::noiseSolid(64, 16, 1);
+  const auto reducedWith = [&](const Options& options) {
+    base::Job job(1, {});
+    Reduction reduction(blobs.input(), blobs.input(), {}, {}, options, job);
+    reduction.toTolerance(1);
+    return reduction.mesh();
+  };
+  Options any;
+  any.bentSliverShare = any.sliverShare;
+  const ReducedMesh many = reducedWith(any), few = reducedWith({});
+  EXPECT_GT(shareUnder(many, any.leastAngle), 0.03);
+  EXPECT_LT(shareUnder(few, any.leastAngle), 0.02);
+  EXPECT_LT(20 * few.triangles.size(), 21 * many.triangles.size());
+}
+
 // A torus of quads with waves, as quads and as their halves.
 TEST(Reduction, IsTheSameOfQuadsAndOfTheirHalves) {
   constexpr Index kAround = 90, kAcross = 40;
