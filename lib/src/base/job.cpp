@@ -30,6 +30,7 @@ void Job::beginStage(std::string name, double endFraction, Length length) {
   stageStart_ = std::chrono::steady_clock::now();
   stageBegin_ = stageEnd_;
   stageEnd_ = endFraction;
+  beginLoop(0, 1);
   length_ = length;
   report(0, 1);
 }
@@ -51,7 +52,8 @@ void Job::throwIfStopped() {
 
 void Job::report(std::size_t done, std::size_t count) {
   const std::string_view stage = times_.empty() ? std::string_view() : times_.back().stage;
-  tell(stage, static_cast<double>(done) / static_cast<double>(count));
+  const double inLoop = static_cast<double>(done) / static_cast<double>(count);
+  tell(stage, loopBegin_ + (loopEnd_ - loopBegin_) * inLoop);
 }
 
 // The share of a stage of unknown length that is likely done: it comes nearer to 1 for ever. Half

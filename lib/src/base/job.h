@@ -36,6 +36,9 @@ class Job {
   /// Ends the stage before and begins one that reaches to `endFraction` of the whole call.
   void beginStage(std::string name, double endFraction, Length length = Length::Known);
 
+  /// In a stage of several loops, before each: which share of the stage's work it is.
+  void beginLoop(double from, double to) { loopBegin_ = from, loopEnd_ = to; }
+
   /// Ends the last stage, tells that the whole call is done and returns the times of all stages.
   std::vector<StageTime> finish();
 
@@ -91,6 +94,7 @@ class Job {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double stageBegin_ = 0;
   double stageEnd_ = 0;
+  double loopBegin_ = 0, loopEnd_ = 1;  ///< shares of the stage
   double lastFraction_ = 0;
 };
 

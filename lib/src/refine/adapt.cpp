@@ -137,11 +137,33 @@ class Cutter {
 
   void makeNext() {
     const uniform::SurfaceView base = model_.view();
+    made_ = {};
+    takeCut(base.topology);
+    made_ = octree::meshCut(forest_, cut_, base.mesh, base.affine, job_);
+  }
+
+  void takeCut(const uniform::CellTopology& topology) {
     const octree::Cut before = std::move(cut_);
     merged_ = octree::mergeCells(forest_, rule_, forbidden_, job_);
-    cut_ = octree::makeCut(forest_, base.topology, merged_, job_);
+    cut_ = octree::makeCut(forest_, topology, merged_, job_);
     changed_ = changedVertices(before, cut_);
-    made_ = octree::meshCut(forest_, cut_, base.mesh, base.affine, job_);
+    if (unsearched_.empty()) return;
+    for (std::size_t i = 0; i < unsearched_.size(); ++i) {
+      unsearched_[i] |= changed_[cut_.vertexOf[i]];
+    }
+  }
+
+  // The vertices of the cut that have changed since this was asked last.
+  std::vector<std::uint8_t> changedSinceSearch() {
+    if (unsearched_.empty()) {
+      unsearched_.resize(cut_.vertexOf.size());
+      return changedVertices({}, cut_);
+    }
+    std::vector<std::uint8_t> changed(cut_.clusters.size());
+    for (std::size_t i = 0; i < unsearched_.size(); ++i) {
+      changed[cut_.vertexOf[i]] |= std::exchange(unsearched_[i], 0);
+    }
+    return changed;
   }
 
   // Where few cells are too far off, intersections are looked for in the same round. Whether any
@@ -161,8 +183,7 @@ class Cutter {
 
   std::vector<VertexIndex> findMeeting() {
     const std::vector<intersect::PolygonIndex> changed =
-        polygonsAt(made_.mesh, changedVertices(searched_, cut_));
-    searched_ = cut_;
+        polygonsAt(made_.mesh, changedSinceSearch());
     if (changed.size() * kFew < made_.mesh.quads.size() + made_.mesh.triangles.size())
       return meetingVertices(made_.mesh, changed, {}, model_.affine(), job_);
     const std::vector<std::uint8_t> isCandidate = intersect::findCutCandidates(
@@ -210,8 +231,8 @@ class Cutter {
   octree::CellFlags merged_{forest_};
   CutDistance distance_;
   octree::Cut cut_;
-  std::vector<std::uint8_t> changed_;  // of its vertices, since the cut before
-  octree::Cut searched_;               // the one in which pairs were looked for last
+  std::vector<std::uint8_t> changed_;     // of its vertices, since the cut before
+  std::vector<std::uint8_t> unsearched_;  // of uniform vertices: changed since pairs were searched
   octree::CutMesh made_;
   AdaptiveMesh adaptive_;
 };

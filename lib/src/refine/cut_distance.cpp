@@ -136,7 +136,7 @@ class Measure {
         owners_.distance[r] = 0;
         return;
       }
-      const Vec3f p = owners_.points[r];
+      const Vec3f p = owners_.pointOf(static_cast<VertexIndex>(r));
       const float tolerance = owners_.toleranceAt(r);
       Index nearest = reduce::kNone;
       float least = kFarOff;
@@ -282,15 +282,14 @@ Deviation CutDistance::total(const octree::Cut& cut, const Mesh& mesh) const {
 
 Deviation CutDistance::measureWhole(const octree::Cut& cut, const Mesh& mesh,
                                     float expected) const {
-  const reduce::ReferenceMesh reference(
-      reduce::makeSurface(base::SharedArray<Vec3f>(owners_.points), triangulate(owners_.base.mesh),
-                          owners_.job),
-      {}, owners_.job);
-  std::vector<Vec3f> positions(mesh.positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    positions[i] = owners_.frame.toLocal(mesh.positions[i]);
-  reduce::Surface surface =
-      reduce::makeSurface(std::move(positions), triangulate(mesh), owners_.job);
+  const auto surfaceOf = [&](const Mesh& exact) {
+    std::vector<Vec3f> positions(exact.positions.size());
+    forEach(owners_.job, positions.size(),
+            [&](std::size_t i) { positions[i] = owners_.frame.toLocal(exact.positions[i]); });
+    return reduce::makeSurface(std::move(positions), triangulate(exact), owners_.job);
+  };
+  const reduce::ReferenceMesh reference(surfaceOf(owners_.base.mesh), {}, owners_.job);
+  reduce::Surface surface = surfaceOf(mesh);
   reduce::locateAll(surface, reference, cut.vertexOf, owners_.job);
   const reduce::Certificate certificate =
       reduce::certify(surface, reference, expected, owners_.job);

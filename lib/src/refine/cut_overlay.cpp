@@ -133,7 +133,7 @@ reduce::OwnedFace CutOverlay::ownedFace(const Triangle& r) const {
   reduce::OwnedFace owned;
   for (std::size_t i = 0; i < 3; ++i) {
     const VertexIndex v = r.vertices[i];
-    owned.corners[i] = owners_.points[v];
+    owned.corners[i] = owners_.pointOf(v);
     owned.vertices[i] = v;
     owned.owners[i] = localOf(owners_.owner[v]);
   }

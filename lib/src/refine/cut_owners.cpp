@@ -23,10 +23,6 @@ CutOwners::CutOwners(const uniform::SurfaceView& view, const LocalFrame& theFram
       scales(scalesOf(view.mesh, view.affine, rule, theJob)),
       frame(theFrame) {
   const std::size_t count = base.mesh.positions.size();
-  base::resizeLarge(points, count, job);
-  job.forRanges(count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = frame.toLocal(base.mesh.positions[i]);
-  });
   base::resizeLarge(owner, count, job, octree::kNone);
   base::resizeLarge(distance, count, job);
   base::resizeLarge(faceBound, 2 * base.mesh.quads.size(), job);

@@ -31,6 +31,10 @@ struct CutOwners {
     const auto& v = base.mesh.quads[face / 2].vertices;
     return face % 2 == 0 ? Triangle{v[0], v[1], v[2]} : Triangle{v[0], v[2], v[3]};
   }
+  /// A vertex in the frame. To keep them all would take a dozen bytes a vertex, and be no faster.
+  [[nodiscard]] Vec3f pointOf(VertexIndex vertex) const {
+    return frame.toLocal(base.mesh.positions[vertex]);
+  }
   /// How far a face may be.
   [[nodiscard]] float limitOf(const Triangle& face) const;
 
@@ -40,7 +44,6 @@ struct CutOwners {
   int minLevel;               ///< cells up to this level are not split
   std::vector<float> scales;  ///< of the tolerance at each vertex; empty: 1
   const LocalFrame& frame;    ///< of the uniform mesh
-  std::vector<Vec3f> points;  ///< of the vertices, in the frame
   /// For each vertex its owner, twice the uniform quad that its polygon comes from plus its number
   /// in that polygon, and the distance.
   std::vector<std::uint32_t> owner;

@@ -105,7 +105,7 @@ class Finder {
       const VertexIndex seed = seedOf[componentOf[cut_.vertexOf[r.vertices[0]]]];
       if (seed == octree::kNone) return;
       const auto& [a, b, c] = r.vertices;
-      const std::array<Vec3f, 3> p{owners_.points[a], owners_.points[b], owners_.points[c]};
+      const std::array<Vec3f, 3> p{owners_.pointOf(a), owners_.pointOf(b), owners_.pointOf(c)};
       const Vec3f at = owners_.frame.toLocal(made_.mesh.positions[seed]);
       const float limit = owners_.limitOf(r);
       reduce::Box3f box = reduce::boxOf(p.data());

@@ -32,6 +32,28 @@ TEST(JobStages, OfUnknownLengthMoveOnWithoutReachingTheirEnd) {
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
 }
 
+TEST(JobStages, OfSeveralLoopsMoveOnByTheirShares) {
+  std::vector<double> fractions;
+  Job job(1, [&](std::string_view, double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  });
+  job.run([&] {
+    job.beginStage("loops", 0.5);
+    for (int loop = 0; loop < 4; ++loop) {
+      job.beginLoop(0.25 * loop, 0.25 * (loop + 1));
+      EXPECT_DOUBLE_EQ(fractions.back(), 0.125 * loop);
+      job.forRanges(100, 1, [](std::size_t, std::size_t) {});
+    }
+    EXPECT_DOUBLE_EQ(fractions.back(), 0.5);
+    job.beginStage("one loop", 1);
+    job.forRanges(100, 50, [](std::size_t, std::size_t) {});
+    EXPECT_DOUBLE_EQ(fractions.back(), 1);
+    (void)job.finish();
+  });
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+}
+
 TEST(ProgressState, TellsStageFractionAndTheRest) {
   std::vector<bool> estimated;
   const Progress progress = [&](const ProgressState& state) {
