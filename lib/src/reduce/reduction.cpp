@@ -256,7 +256,8 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   const float sine = std::sin(options_.leastAngle * kRadians);
   limits.leastSine2 = sine * sine;
   limits.sliverShare = options_.sliverShare;
-  limits.bentSliverShare = options_.bentSliverShare;
+  limits.bentSliverShare =
+      tolerance > kStuckTolerance ? options_.sliverShare : options_.bentSliverShare;
   limits.turnCosine = std::cos(kMostTurn * kRadians);
   limits.flips = lines_ != LineMode::Alone;
   limits.lines = lines_;

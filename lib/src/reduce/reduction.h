@@ -49,8 +49,9 @@ struct Options {
   /// 0: a collapse makes none but in the place of as many. Clusters do, in the first phase; later
   /// ones take those away.
   float sliverShare = 0.08f;
-  float bentSliverShare = 0.015f;  ///< where the surface bends both ways
-  bool clusters = true;            ///< whether clusters are contracted first
+  /// The same where the surface bends both ways, at tolerances of up to two voxels.
+  float bentSliverShare = 0.015f;
+  bool clusters = true;  ///< whether clusters are contracted first
   /// Triangles of a result to a tolerance that may not be, say as they intersect once they are
   /// written in another precision. Around them less is reduced. Empty: none.
   std::function<std::vector<Index>(const ReducedMesh&)> faults;
