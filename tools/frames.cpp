@@ -32,19 +32,19 @@ Place placeIn(const std::string& file) {
 [[noreturn]] void refuse(std::string_view part) {
   throw Error(
       ErrorCode::InvalidArgument,
-      "--frames takes numbers and ranges such as 1-240 or 1-240x2, with commas between, not "
-      "\"" +
+      "--frames takes numbers and ranges such as 1-240, -10-240 or 1-240x2, with commas between, "
+      "not \"" +
           std::string(part) + "\"");
 }
 
 int readNumber(std::string_view text, std::string_view part) {
   const auto number = numberIn<int>(text);
-  if (!number || *number < 0) refuse(part);
+  if (!number) refuse(part);
   return *number;
 }
 
 void addRange(std::string_view part, std::vector<int>& frames) {
-  const std::size_t dash = part.find('-');
+  const std::size_t dash = part.find('-', 1);  // behind a sign
   if (dash == std::string_view::npos) {
     frames.push_back(readNumber(part, part));
     return;
@@ -53,8 +53,8 @@ void addRange(std::string_view part, std::vector<int>& frames) {
   const int first = readNumber(part.substr(0, dash), part);
   const int last = readNumber(part.substr(dash + 1, times - std::min(times, dash + 1)), part);
   const int step = times == std::string_view::npos ? 1 : readNumber(part.substr(times + 1), part);
-  if (step == 0 || last < first) refuse(part);
-  if ((last - first) / step >= kMostFrames) {
+  if (step < 1 || last < first) refuse(part);
+  if ((static_cast<long long>(last) - first) / step >= kMostFrames) {
     throw Error(ErrorCode::InvalidArgument,
                 "--frames " + std::string(part) + " has more than a million frames");
   }
@@ -63,8 +63,8 @@ void addRange(std::string_view part, std::vector<int>& frames) {
   }
 }
 
-/// Calls visit(number, digits, isMeant) for the files that have digits in the place of #: a number
-/// with other zeros in front than the name asks for is not meant.
+/// Calls visit(number, digits, isMeant) for the files that have digits in the place of #, or a sign
+/// and digits: a number with other zeros in front than the name asks for is not meant.
 template <class Visit>
 void forFrames(const std::string& name, const Visit& visit) {
   const std::filesystem::path path = name;
@@ -81,7 +81,7 @@ void forFrames(const std::string& name, const Visit& visit) {
     const auto digits =
         std::string_view(found).substr(before.size(), found.size() - before.size() - after.size());
     const auto number = numberIn<int>(digits);
-    if (!number || *number < 0) continue;
+    if (!number) continue;
     visit(*number, digits, frameFile(name, *number) == (path.parent_path() / found));
   }
 }
@@ -111,7 +111,8 @@ std::string frameFile(const std::string& name, int frame) {
   std::string file = path.filename().string();
   const Place place = placeIn(file);
   std::string digits = std::to_string(frame);
-  if (digits.size() < place.length) digits.insert(0, place.length - digits.size(), '0');
+  const std::size_t sign = frame < 0 ? 1 : 0;  // as of printf's %04d
+  if (digits.size() < place.length) digits.insert(sign, place.length - digits.size(), '0');
   file.replace(place.begin, place.length, digits);
   return (path.parent_path() / file).string();
 }
@@ -147,8 +148,8 @@ std::vector<int> findFrames(const std::string& name) {
 
 std::string withDigitsOfFiles(const std::string& name) {
   std::size_t digits = 0;
-  forFrames(name, [&](int /*number*/, std::string_view text, bool isMeant) {
-    if (!isMeant && (digits == 0 || text.size() < digits)) digits = text.size();
+  forFrames(name, [&](int number, std::string_view text, bool isMeant) {
+    if (!isMeant && number >= 0 && (digits == 0 || text.size() < digits)) digits = text.size();
   });
   if (digits == 0) return "";
   const std::filesystem::path path = name;

@@ -7,7 +7,7 @@
 namespace tufa::tools {
 
 // The names of the files of a sequence: #### stands for the frame's number, with zeros in front to
-// as many digits.
+// as many digits, a sign among them: -001.
 
 /// Whether a name has a place for a frame's number in its last part.
 [[nodiscard]] bool namesFrames(const std::string& name);
@@ -22,8 +22,8 @@ void requireOnePlace(const std::string& name);
 /// The file of a frame.
 [[nodiscard]] std::string frameFile(const std::string& name, int frame);
 
-/// The frames that text means: "7", "1-240", "1-240x2" for every second one, and several of these
-/// with commas between; rising, each once. Throws Error(InvalidArgument).
+/// The frames that text means: "7", "1-240", "-10-240", "1-240x2" for every second one, and several
+/// of these with commas between; rising, each once. Throws Error(InvalidArgument).
 [[nodiscard]] std::vector<int> readFrames(const std::string& text);
 
 /// With as many # as the numbers of the files have digits, if there are files of other frames than

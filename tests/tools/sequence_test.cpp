@@ -82,6 +82,28 @@ TEST_F(Sequence, FramesAreRangesStepsAndLists) {
   EXPECT_EQ(numbers(""), (std::vector{1, 2, 12345}));
 }
 
+TEST_F(Sequence, FramesMayBeNegative) {
+  std::filesystem::rename(folder / "f.0004.vdb", folder / "f.-002.vdb");
+  std::filesystem::copy_file(folder / "f.0001.vdb", folder / "f.-010.vdb");
+  writeBytes(folder / "f.-0003.vdb", "of another width");
+  const auto numbers = [&](const std::string& frames) {
+    const Outcome outcome = run("mesh 'f.####.vdb' -o 'm.####.ply' --json" + frames);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find("#####"), std::string::npos) << outcome.err;
+    std::vector<int> found;
+    const Json json = test::parseJson(outcome.out);
+    for (const Json& frame : json.at("frames")) found.push_back(frame.at("frame"));
+    return found;
+  };
+  EXPECT_EQ(numbers(""), (std::vector{-10, -2, 1, 2}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "m.-010.ply"));
+  EXPECT_EQ(numbers(" --frames -10--2x8"), (std::vector{-10, -2}));
+  EXPECT_EQ(numbers(" --frames=-2"), (std::vector{-2}));
+  EXPECT_EQ(numbers(" --frames 2,-2"), (std::vector{-2, 2}));
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --frames -1--4", 2, "--frames");
+  expectFailure("mesh 'f.####.vdb' -o 'm.####.ply' --frames 1-4x-1", 2, "--frames");
+}
+
 TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
   const std::string bytes = readBytes(folder / "s.vdb");
   writeBytes(folder / "f.0002.vdb", bytes.substr(0, bytes.size() / 2));
