@@ -27,12 +27,12 @@ void setFlag(std::uint8_t& flags, VertexFlag flag) {
 }
 
 // Whether triangles with these normals turn about two axes, not all about one as on planes,
-// cylinders, cones and straight creases: by the eigenvalues of the sum of their outer products. The
-// first is about the number of normals; then the second and third are the minors' sum and the
-// determinant over it, and one way is where the third is small beside the second.
+// cylinders, cones and straight creases. By the eigenvalues a > b > c of the sum of n n^T: a is
+// about the number of normals, so the principal minors add up to about a (b + c), and the
+// determinant times a over their square is b c / (b + c)^2, about c / b where that is small.
 bool bendBothWays(const Vec3f* normals, int n) {
-  constexpr float kFlat = 1e-5f;    // second eigenvalue over the first: a fifth of a degree
-  constexpr float kOneWay = 0.02f;  // third over the second
+  constexpr float kFlat = 1e-5f;    // b / a: a fifth of a degree
+  constexpr float kOneWay = 0.02f;  // c / b
   LocalQuadric sum;
   for (int i = 0; i < n; ++i) sum.addPlane(normals[i], 1);
   const float first = sum.weight, minors = sum.minors();
