@@ -53,9 +53,7 @@ LocalFrame::LocalFrame(const std::vector<Position>& positions, double voxelSize,
 
 double LocalFrame::within(double tolerance) const {
   if (isTooLarge_) return 0;
-  const bool hasVoids = std::any_of(voids_.begin(), voids_.end(),
-                                    [](const auto& alongAxis) { return !alongAxis.empty(); });
-  const double most = hasVoids ? std::min(tolerance, kLargestAmongVoids) : tolerance;
+  const double most = hasVoids_ ? std::min(tolerance, kLargestAmongVoids) : tolerance;
   return std::max(0.0, most - rounding_);
 }
 
@@ -95,6 +93,7 @@ void LocalFrame::findVoids(const std::vector<Position>& positions, int axis, dou
     const double left = static_cast<double>(kLeftCells) * cell;
     const double end = lower + static_cast<double>(cells[i]) * cell;
     by += static_cast<double>(empty - kLeftCells) * cell;
+    hasVoids_ = true;
     voids_[axis].push_back({end - left / 2, by});
     closedVoids_[axis].push_back({end - by - left / 2, by});
   }

@@ -22,7 +22,7 @@ class LocalFrame {
   LocalFrame(const std::vector<Position>& positions, double voxelSize, base::Job& job);
 
   [[nodiscard]] base::Vec3f toLocal(const Position& p) const {
-    return base::Vec3f(moved(Vec3(p), voids_, -1) * perVoxel_);
+    return base::Vec3f((hasVoids_ ? moved(Vec3(p), voids_, -1) : Vec3(p) - middle_) * perVoxel_);
   }
   [[nodiscard]] Position toExact(const base::Vec3f& local) const {
     const Vec3 p = moved(middle_ + Vec3(local) * voxelSize_, closedVoids_, 1);
@@ -53,6 +53,7 @@ class LocalFrame {
   double size_ = 0;
   double rounding_ = 0;
   bool isTooLarge_ = false;
+  bool hasVoids_ = false;
   Voids voids_;        ///< rising; their places in the mesh
   Voids closedVoids_;  ///< and once they are taken out
 };
