@@ -159,11 +159,11 @@ void requireOneTask(const ChunksArguments& arguments, const CLI::App& command) {
   }
   const std::vector<const char*> others =
       assembling
-          ? std::vector<const char*>{"--grid",      "--chunk",    "--levels",    "--tolerance",
-                                     "--min-angle", "--factor",   "--format",    "--only",
-                                     "--iso",       "--crease",   "--up",        "--scale",
-                                     "--quantize",  "--compress", "--attribute", "--velocity",
-                                     "--shutter"}
+          ? std::vector<const char*>{"--grid",      "--chunk",     "--levels",   "--slab-voxels",
+                                     "--tolerance", "--min-angle", "--factor",   "--format",
+                                     "--only",      "--iso",       "--crease",   "--up",
+                                     "--scale",     "--quantize",  "--compress", "--attribute",
+                                     "--velocity",  "--shutter"}
           : std::vector<const char*>{"--lods", "--pixel-error", "--check"};
   for (const char* option : others) {
     if (command.count(option) == 0) continue;
@@ -194,6 +194,11 @@ void addBuildOptions(CLI::App& app, ChunksArguments& arguments) {
       ->capture_default_str();
   app.add_option("--levels", options.levels, "levels of each chunk")
       ->check(wholeNumberIn(1, 16))
+      ->capture_default_str();
+  app.add_option("--slab-voxels", options.slabVoxels,
+                 "active voxels of a slab: level 0 of larger volumes is made slab by slab, in less "
+                 "memory")
+      ->check(above0())
       ->capture_default_str();
   app.add_option("--tolerance", arguments.tolerance,
                  "largest distance of level 0 to the uniform mesh, in voxels, or with the suffix w "

@@ -8,120 +8,23 @@
 #include <tufa/shapes.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <random>
 #include <set>
 
 #include "base/vec3.h"
+#include "support/chunk_mixtures.h"
 #include "support/expect_error.h"
-#include "support/mesh_oracle.h"
 #include "support/print.h"
 #include "support/shape.h"
-#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
 
-struct Made {
-  ChunkIndex index;
-  std::vector<Chunk> chunks;  ///< as in the index
-};
-
-Made makeChunks(const openvdb::GridBase& grid, const ChunkOptions& options) {
-  Made made;
-  std::map<Coord, Chunk> chunks;
-  made.index = buildChunks(grid, options, [&](const ChunkIndex&, Chunk&& chunk) {
-    const Coord at = chunk.index;
-    EXPECT_TRUE(chunks.emplace(at, std::move(chunk)).second) << at;
-  });
-  for (auto& [at, chunk] : chunks) made.chunks.push_back(std::move(chunk));
-  EXPECT_EQ(made.index.chunks.size(), made.chunks.size());
-  for (std::size_t i = 0; i < made.chunks.size(); ++i) {
-    EXPECT_EQ(made.index.chunks[i].index, made.chunks[i].index);
-  }
-  return made;
-}
-
-/// Meshes put together as an engine would: vertices at the same bits become one. Counts vertices
-/// that have other normals at the same place.
-class Welder {
- public:
-  void add(const Mesh& mesh) {
-    std::vector<VertexIndex> places;
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-      const Position& p = mesh.positions[i];
-      const auto [found, isNew] = vertices_.emplace(
-          std::array{p.x, p.y, p.z}, static_cast<VertexIndex>(welded.positions.size()));
-      places.push_back(found->second);
-      if (isNew) {
-        welded.positions.push_back(p);
-        welded.normals.push_back(mesh.normals[i]);
-      } else if (!(welded.normals[found->second] == mesh.normals[i])) {
-        ++otherNormals;
-      }
-    }
-    for (const Triangle& t : mesh.triangles) {
-      welded.triangles.emplace_back(places[t.vertices[0]], places[t.vertices[1]],
-                                    places[t.vertices[2]]);
-    }
-  }
-
-  Mesh welded;
-  std::size_t otherNormals = 0;
-
- private:
-  std::map<std::array<double, 3>, VertexIndex> vertices_;
-};
-
-std::vector<std::size_t> randomLods(const Made& made, std::mt19937& random) {
-  // A few fine chunks among coarse ones, or as many of each: both kinds of mixtures occur.
-  const bool coarse = random() % 2 == 0;
-  std::vector<std::size_t> lods;
-  for (const Chunk& chunk : made.chunks) {
-    const std::size_t levels = chunk.levels.size();
-    lods.push_back(coarse && random() % 4 != 0 ? levels - 1 : random() % levels);
-  }
-  return lods;
-}
-
-void expectWhole(const Mesh& mesh, const test::MeshTopology& uniform, const std::string& what) {
-  const test::MeshTopology found = test::inspect(mesh);
-  EXPECT_TRUE(found.manifold() && found.closed()) << what << found;
-  EXPECT_EQ(found.euler(), uniform.euler()) << what << found;
-  EXPECT_EQ(found.components, uniform.components) << what << found;
-}
-
-/// Draws `rounds` mixtures of levels, and as many that are not restricted; if TUFA_MIXTURES is set,
-/// so many. Gives the masks drawn.
-std::set<unsigned> expectMixturesToClose(const openvdb::GridBase& grid, ChunkOptions options,
-                                         int rounds) {
-  if (const char* most = std::getenv("TUFA_MIXTURES")) rounds = std::max(1, std::atoi(most));
-  options.creaseAngle = 180;  // one normal a vertex, and the same for all that meet in it
-  const Made made = makeChunks(grid, options);
-  const test::MeshTopology uniform = test::inspect(test::uniformMesh(grid));
-  std::set<unsigned> masks;
-  std::mt19937 random(11);
-  for (int round = 0; round < rounds; ++round) {
-    const std::string what =
-        "chunks of " + std::to_string(options.chunkSize) + ", round " + std::to_string(round);
-    std::vector<std::size_t> lods = randomLods(made, random);
-    expectWhole(assembleChunks(made.chunks, lods), uniform, what + ", not restricted");
-    restrictLods(made.index, lods);
-    Welder welder;
-    for (std::size_t i = 0; i < lods.size(); ++i) {
-      const unsigned mask = transitionMask(made.index, i, lods);
-      masks.insert(mask);
-      welder.add(meshForMask(made.chunks[i], lods[i], mask));
-    }
-    expectWhole(welder.welded, uniform, what);
-    EXPECT_EQ(welder.otherNormals, 0u) << what;
-    EXPECT_EQ(assembleChunks(made.chunks, lods).triangles.size(), welder.welded.triangles.size());
-    if (::testing::Test::HasFailure()) break;
-  }
-  ::testing::Test::RecordProperty("mixtures", rounds);
-  return masks;
-}
+using test::expectMixturesToClose;
+using test::Made;
+using test::makeChunks;
+using test::randomLods;
 
 // With creases through the chunks' faces, and thin ridges beside them.
 TEST(ChunkPairs, NoneAreLeft) {

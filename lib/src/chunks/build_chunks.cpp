@@ -10,6 +10,7 @@
 
 #include "base/box.h"
 #include "base/checksum.h"
+#include "base/index_box.h"
 #include "base/job.h"
 #include "base/known_enum.h"
 #include "base/run_call.h"
@@ -19,23 +20,32 @@
 #include "chunks/chain/mixed_forms.h"
 #include "chunks/chain/shaded_level.h"
 #include "chunks/chain/split_level.h"
-#include "chunks/cut/cut_mesh.h"
-#include "chunks/cut/separate_rounded.h"
+#include "chunks/cut/cut_volume.h"
+#include "chunks/slabs/reduce_slabs.h"
+#include "chunks/slabs/split_into_slabs.h"
 #include "grid/blocks.h"
 #include "grid/field.h"
 #include "intersect/surface.h"
 #include "octree/cut_rule.h"
 #include "refine/rounding.h"
-#include "refine/surface_model.h"
+#include "uniform/cell_topology.h"
 
 namespace tufa {
 namespace {
 
 // Shares of the time that stages took on the sample volumes.
-constexpr uniform::StageEnds kEnds = {0.01, 0.02, 0.06, 0.07, 0.08, 0.12};
-constexpr double kCutEnd = 0.14;
+constexpr chunks::CutEnds kEnds = {{0.01, 0.02, 0.06, 0.07, 0.08, 0.12}, 0.14};
 constexpr double kFirstLevelEnd = 0.75;
 constexpr double kLevelsEnd = 0.95;
+
+chunks::CutEnds scaled(chunks::CutEnds ends, double by) {
+  for (double* end :
+       {&ends.uniform.blocks, &ends.uniform.topology, &ends.uniform.vertices,
+        &ends.uniform.polygons, &ends.uniform.creases, &ends.uniform.repair, &ends.cut}) {
+    *end *= by;
+  }
+  return ends;
+}
 
 void requireOptions(const ChunkOptions& options) {
   const auto refuse = [](const std::string& message) {
@@ -181,18 +191,26 @@ class ChunkBuilder {
   }
 
   ChunkIndex build() {
-    ContourOptions contour = options_.contour;
+    chunks::CutOptions cutting;
+    ContourOptions& contour = cutting.contour = options_.contour;
     contour.uniform = false;
     contour.normals = Normals::Gradient;
     // Vertices at one place, where the surface touches itself, would be one to what joins chunks by
     // positions; and what is separated later only, costs errors, triangles and time.
     contour.repair = true;
     const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_));
-    ChunkIndex index;
-    Ground ground = makeGround(contour, index);
-    if (ground.uniform.positions.empty()) return index;
-    const chunks::CutMesh cut =
-        makeLevels(cutUniform(ground, index), ground, rule, index.tolerances);
+    job_.beginStage("blocks", kEnds.uniform.blocks);
+    grid::Volume volume = grid::openVolume(grid_, contour, job_);
+    ChunkIndex index = describe(volume, options_);
+    index.grid = grid::nameOf(grid_);
+    cutting.chunkSize = options_.chunkSize;
+    cutting.singlePrecision = fitsSinglePrecision(volume.blocks, volume.transform);
+    cutting.latticeStep = index.step;
+    if (!cutting.singlePrecision) index.origin = middleOf(volume.blocks, volume.transform);
+    const grid::Affine affine = volume.affine;
+    chunks::CutMesh cut = cutOrReduce(std::move(volume), rule, cutting);
+    if (cut.mesh.positions.empty()) return index;
+    cut = makeLevels(std::move(cut), affine, rule, cutting.singlePrecision, index.tolerances);
     job_.beginStage("chunks", 1);
     if (index.step > 0 && !chunks::moveToLattice(levels_, index.step, job_)) {
       index.step = 0;
@@ -204,47 +222,31 @@ class ChunkBuilder {
   }
 
  private:
-  // What LODs are made from.
-  struct Ground {
-    Mesh uniform;  ///< without self-intersections
-    grid::Affine affine;
-    bool isSingle;  ///< positions are written in single precision
-  };
-
-  // The model, which takes more memory than its mesh, is gone after that.
-  Ground makeGround(const ContourOptions& contour, ChunkIndex& index) {
-    job_.beginStage("blocks", kEnds.blocks);
-    refine::SurfaceModel model(grid::openVolume(grid_, contour, job_), contour, kEnds, job_);
-    report_ = model.report();
-    const grid::Volume& volume = model.surface().volume;
-    index = describe(volume, options_);
-    index.grid = grid::nameOf(grid_);
-    const bool isSingle = fitsSinglePrecision(volume.blocks, volume.transform);
-    if (!isSingle) index.origin = middleOf(volume.blocks, volume.transform);
-    return {model.takeMesh(), model.affine(), isSingle};
-  }
-
-  // Leaves the ground without its mesh.
-  chunks::CutMesh cutUniform(Ground& ground, const ChunkIndex& index) {
-    job_.beginStage("cut", kCutEnd);
-    chunks::CutMesh cut = chunks::cutAtChunks(std::move(ground.uniform), ground.affine,
-                                              options_.chunkSize, ground.isSingle, job_);
-    if (std::exchange(report_.intersectionsLeft, 0) > 0) {
-      cut.isNew.assign(cut.isNew.size(), 1);  // triangles of the uniform mesh intersect
-      cut.isSeparated = false;
+  // The uniform mesh, cut; of a large volume LOD 0, made of slabs. A scale is known at the vertices
+  // of the uniform mesh only.
+  chunks::CutMesh cutOrReduce(grid::Volume volume, const octree::CutRule& rule,
+                              const chunks::CutOptions& cutting) {
+    std::vector<grid::Slab> slabs;
+    if (!rule.scale) {
+      slabs = chunks::splitIntoSlabs(volume.blocks, options_.chunkSize, options_.slabVoxels,
+                                     chunks::kLeastSlab, job_);
     }
-    chunks::separateRounded(cut, ground.affine, ground.isSingle, job_);
-    chunks::keepApart(cut, ground.affine, ground.isSingle, job_);
-    // The farthest that a vertex moves to the lattice.
-    cut.moved += 0.5 * std::sqrt(3.0) * index.step / index.voxelSize;
-    return cut;
+    if (slabs.size() <= 1) {
+      return chunks::cutVolume(std::move(volume), cutting, kEnds, report_, job_);
+    }
+    report_ = uniform::reportOf(
+        volume, uniform::buildCellTopology(volume.blocks, volume.scale, cutting.contour.ambiguity,
+                                           cutting.contour.cap, job_));
+    return chunks::reduceSlabs(volume, std::move(slabs), rule, cutting,
+                               scaled(kEnds, 1 / kFirstLevelEnd), kFirstLevelEnd, report_, job_);
   }
 
   // Returns the cut mesh without its triangles and normals.
-  chunks::CutMesh makeLevels(chunks::CutMesh cut, const Ground& ground, const octree::CutRule& rule,
+  chunks::CutMesh makeLevels(chunks::CutMesh cut, const grid::Affine& affine,
+                             const octree::CutRule& rule, bool singlePrecision,
                              const std::vector<double>& tolerances) {
-    chunks::ChunkChain chain(std::move(cut), ground.affine, rule, options_.chunkSize,
-                             ground.isSingle, job_);
+    chunks::ChunkChain chain(std::move(cut), affine, rule, options_.chunkSize, singlePrecision,
+                             job_);
     for (std::size_t i = 0; i < tolerances.size(); ++i) {
       const double share = static_cast<double>(i + 1) / static_cast<double>(tolerances.size());
       job_.beginStage("level " + std::to_string(i),

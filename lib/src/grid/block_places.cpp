@@ -17,22 +17,6 @@ void BlockPlaces::setNodes(const std::vector<Coord>& origins, base::Job& job) {
   base::resizeLarge(places_, origins.size() * kNodePlaces, job);
 }
 
-void BlockPlaces::buildBox(const base::IndexBox& box,
-                           const std::function<BlockRef(const Coord&)>& find) {
-  box_ = box;
-  const Coord size = box.size();
-  places_.resize(static_cast<std::size_t>(size[0] / kBlockSize) *
-                 static_cast<std::size_t>(size[1] / kBlockSize) *
-                 static_cast<std::size_t>(size[2] / kBlockSize));
-  for (int x = box.min[0]; x <= box.max[0]; x += kBlockSize) {
-    for (int y = box.min[1]; y <= box.max[1]; y += kBlockSize) {
-      for (int z = box.min[2]; z <= box.max[2]; z += kBlockSize) {
-        places_[boxIndex({x, y, z})] = find({x, y, z});
-      }
-    }
-  }
-}
-
 void BlockPlaces::addTileBlocks(const std::vector<Coord>& origins, BlockRef first) {
   std::vector<Coord> looseOrigins;
   for (std::size_t i = 0; i < origins.size(); ++i) {
@@ -45,6 +29,17 @@ void BlockPlaces::addTileBlocks(const std::vector<Coord>& origins, BlockRef firs
     }
   }
   number(looseOrigins, looseTable_);
+}
+
+void BlockPlaces::renumber(const std::vector<BlockRef>& numbers, base::Job& job) {
+  const auto renumberAll = [&](std::vector<BlockRef>& blocks) {
+    job.forRanges(blocks.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (blocks[i] >= 0) blocks[i] = numbers[static_cast<std::size_t>(blocks[i])];
+      }
+    });
+  };
+  renumberAll(places_), renumberAll(looseBlocks_);
 }
 
 }  // namespace tufa::grid

@@ -3,11 +3,9 @@
 #include <tufa/coord.h>
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "base/coord_table.h"
-#include "base/index_box.h"
 #include "base/job.h"
 #include "grid/block_bits.h"
 
@@ -37,16 +35,14 @@ class BlockPlaces {
   /// The places of a node, by x, then y, then z.
   [[nodiscard]] BlockRef* node(std::size_t index) { return &places_[index * kNodePlaces]; }
 
-  /// Blocks in a box alone, each at its place; `find` gives the blocks' indices, or the sides of
-  /// tiles. All else is kUnknown.
-  void buildBox(const base::IndexBox& box, const std::function<BlockRef(const Coord&)>& find);
   /// Puts blocks, numbered from `first` on, where there are tiles.
   void addTileBlocks(const std::vector<Coord>& origins, BlockRef first);
+  /// Gives each block another number, which may be kMissingBlock.
+  void renumber(const std::vector<BlockRef>& numbers, base::Job& job);
 
   /// The block at these coordinates or the side of the tile; kUnknown where a whole node or more is
   /// one tile.
   [[nodiscard]] BlockRef find(const Coord& origin) const {
-    if (!box_.isEmpty()) return box_.contains(origin) ? places_[boxIndex(origin)] : kUnknown;
     const BlockRef* node = nodeAt(origin);
     if (node != nullptr) return node[placeInNode(origin)];
     const std::uint32_t loose = looseTable_.find(origin);
@@ -57,7 +53,6 @@ class BlockPlaces {
   /// (dx + 1) * 9 + (dy + 1) * 3 + dz + 1, if all of them lie in one node; else returns false.
   template <class Take>
   bool forNear(const Coord& origin, const Take& take) const {
-    if (!box_.isEmpty()) return false;
     constexpr int kLast = (1 << kNodeBits) - 1;
     for (int axis = 0; axis < 3; ++axis) {
       const int local = (origin[axis] / kBlockSize) & kLast;
@@ -86,13 +81,6 @@ class BlockPlaces {
     return node == base::CoordTable::kNone ? nullptr : &places_[node * kNodePlaces];
   }
 
-  [[nodiscard]] std::size_t boxIndex(const Coord& origin) const {
-    const Coord size = box_.size(), at = origin - box_.min;
-    const auto places = [](int voxels) { return static_cast<std::size_t>(voxels / kBlockSize); };
-    return (places(at[0]) * places(size[1]) + places(at[1])) * places(size[2]) + places(at[2]);
-  }
-
-  base::IndexBox box_;  // if not empty, places_ holds all places in it
   base::CoordTable nodeTable_;
   std::vector<BlockRef> places_;  // kNodePlaces for each node
   base::CoordTable looseTable_;   // of the blocks in no node

@@ -1,5 +1,6 @@
 #include "grid/blocks.h"
 
+#include <limits>
 #include <mutex>
 
 #include "base/huge_pages.h"
@@ -28,19 +29,23 @@ Blocks::Blocks(std::shared_ptr<const Tree> tree, const IsoChoice& iso, NonFinite
   addTileBlocks(job);
 }
 
-Blocks::Blocks(const Blocks& whole, const base::IndexBox& box)
-    : tree_(whole.tree_), iso_(whole.iso_), part_(true) {
+Blocks::Blocks(const Blocks& whole, const Slab& slab, base::Job& job)
+    : tree_(whole.tree_), iso_(whole.iso_), slab_(slab), places_(whole.places_) {
   summary_.nonFiniteValues = whole.summary_.nonFiniteValues;
-  const auto accessor = whole.accessor();
-  places_.buildBox(box.grownBy(kBlockSize), [&](const Coord& origin) {
-    const BlockRef block = whole.find(origin, *accessor);
-    if (block < 0) return block;
-    if (!box.contains(origin)) return kMissingBlock;
-    origins_.push_back(origin);
-    leaves_.push_back(whole.leaves_[block]);
-    inside_.push_back(whole.inside_[block]);
-    return static_cast<BlockRef>(origins_.size() - 1);
-  });
+  std::vector<BlockRef> numbers(whole.count(), kMissingBlock);
+  for (std::size_t i = 0; i < whole.count(); ++i) {
+    job.pollCancelled(i);
+    if (!slab.contains(whole.origins_[i])) continue;
+    numbers[i] = static_cast<BlockRef>(origins_.size());
+    origins_.push_back(whole.origins_[i]);
+    leaves_.push_back(whole.leaves_[i]);
+    inside_.push_back(whole.inside_[i]);
+  }
+  places_.renumber(numbers, job);
+}
+
+bool Blocks::isInsideOutermost() const {
+  return isInside(accessor()->value(Coord(std::numeric_limits<std::int32_t>::max())), iso_);
 }
 
 std::uint64_t Blocks::active(BlockRef block, int x, Accessor& accessor) const {

@@ -5,13 +5,14 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "base/index_box.h"
 #include "base/job.h"
 #include "grid/block_bits.h"
 #include "grid/block_places.h"
 #include "grid/isovalue.h"
+#include "grid/slab.h"
 #include "grid/tree.h"
 
 namespace tufa::grid {
@@ -31,9 +32,9 @@ class Blocks {
   Blocks(std::shared_ptr<const Tree> tree, const IsoChoice& iso, NonFinite nonFinite,
          base::Job& job);
 
-  /// The blocks of `whole` in a box of whole blocks. The surface ends at the border of the box: the
-  /// outermost layer of cells is not as it is in `whole`.
-  Blocks(const Blocks& whole, const base::IndexBox& box);
+  /// The blocks of `whole` in a slab of whole blocks. The surface ends at both ends of the slab:
+  /// the outermost layer of cells is not as it is in `whole`.
+  Blocks(const Blocks& whole, const Slab& slab, base::Job& job);
 
   [[nodiscard]] std::size_t count() const { return origins_.size(); }
   [[nodiscard]] const Coord& origin(BlockRef block) const { return origins_[block]; }
@@ -54,8 +55,12 @@ class Blocks {
   [[nodiscard]] CornerWords cornerWords(const Neighbours& neighbours) const;
   [[nodiscard]] const IsoChoice& iso() const { return iso_; }
   /// Whether blocks may be missing.
-  [[nodiscard]] bool isPart() const { return part_; }
+  [[nodiscard]] bool isPart() const { return slab_.has_value(); }
+  /// The slab that the blocks of a part lie in.
+  [[nodiscard]] const Slab& slab() const { return *slab_; }
   [[nodiscard]] std::size_t nonFiniteValues() const { return summary_.nonFiniteValues; }
+  /// Whether what lies beyond all blocks is inside.
+  [[nodiscard]] bool isInsideOutermost() const;
   /// Active voxels of the grid, those of tiles included.
   [[nodiscard]] std::size_t activeVoxels() const { return summary_.activeVoxels; }
 
@@ -67,7 +72,7 @@ class Blocks {
 
   std::shared_ptr<const Tree> tree_;
   IsoChoice iso_;
-  bool part_ = false;
+  std::optional<Slab> slab_;  ///< of a part
   Tree::Summary summary_;
   std::vector<Coord> origins_;
   std::vector<LeafRef> leaves_;

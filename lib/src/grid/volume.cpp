@@ -111,8 +111,8 @@ Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options, 
   return {std::move(blocks), scale, transform, affine};
 }
 
-Volume partOf(const Volume& whole, const base::IndexBox& box) {
-  return {Blocks(whole.blocks, box), whole.scale, whole.transform, whole.affine};
+Volume partOf(const Volume& whole, const Slab& slab, base::Job& job) {
+  return {Blocks(whole.blocks, slab, job), whole.scale, whole.transform, whole.affine};
 }
 
 }  // namespace tufa::grid

@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "base/index_box.h"
 #include "base/job.h"
 #include "grid/affine.h"
 #include "grid/blocks.h"
@@ -34,7 +33,7 @@ void requireMeshable(const openvdb::GridBase& grid);
 [[nodiscard]] Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options,
                                 base::Job& job);
 
-/// The blocks of a box alone, see Blocks. Positions are counted from the same point for every box.
-[[nodiscard]] Volume partOf(const Volume& whole, const base::IndexBox& box);
+/// The blocks of a slab alone, see Blocks. Positions are counted from the same point as in `whole`.
+[[nodiscard]] Volume partOf(const Volume& whole, const Slab& slab, base::Job& job);
 
 }  // namespace tufa::grid

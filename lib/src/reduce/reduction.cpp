@@ -217,6 +217,13 @@ void Reduction::setRegions(std::function<Regions()> regions) {
   reduce::setRegions(surface_, regions_(), job_);
 }
 
+void Reduction::replaceParts(std::span<const ReplacedPart> parts,
+                             const std::vector<std::uint8_t>& isHeld) {
+  reduce::replaceParts(surface_, reference_, parts, job_);
+  holdRegions(surface_, isHeld, job_);
+  isReference_ = false;
+}
+
 // Names all vertices, and forgets what went where in the step before.
 void Reduction::beginLines() {
   const auto count = static_cast<Index>(surface_.lineKind.size());

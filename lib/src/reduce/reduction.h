@@ -15,6 +15,7 @@
 #include "reduce/partition.h"
 #include "reduce/proxy.h"
 #include "reduce/reference_mesh.h"
+#include "reduce/replace_parts.h"
 #include "reduce/surface.h"
 
 namespace tufa::reduce {
@@ -93,6 +94,10 @@ class Reduction {
   /// are asked for again where the input is.
   void setRegions(std::function<Regions()> regions);
 
+  /// Replaces parts of the input, and then has all triangles of some regions stay where they are.
+  /// `isHeld`: for each region. To be called behind setRegions().
+  void replaceParts(std::span<const ReplacedPart> parts, const std::vector<std::uint8_t>& isHeld);
+
   /// As few triangles as can be found within `tolerance` voxels of the reference. Below
   /// kLeastTolerance nothing is done but to measure a mesh that is not the reference.
   void toTolerance(float tolerance, LineMode lines = LineMode::Free);
@@ -123,6 +128,8 @@ class Reduction {
   [[nodiscard]] const std::vector<Index>& wentFor() const { return surface_.intoPlane; }
   /// The state between two steps.
   [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// The same, at the end.
+  [[nodiscard]] Surface takeSurface() { return std::move(surface_); }
   /// What was tried and made since the beginning.
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }
 

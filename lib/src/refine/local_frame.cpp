@@ -29,7 +29,8 @@ double lastDigitOf(double x) {
 
 }  // namespace
 
-LocalFrame::LocalFrame(const std::vector<Position>& positions, double voxelSize, base::Job& job)
+LocalFrame::LocalFrame(const std::vector<Position>& positions, double voxelSize, base::Job& job,
+                       const base::TriangleView& longTriangles)
     : voxelSize_(voxelSize), perVoxel_(1 / voxelSize) {
   base::Box box = base::Box::empty();
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -40,7 +41,7 @@ LocalFrame::LocalFrame(const std::vector<Position>& positions, double voxelSize,
   size_ = box.size().length() * perVoxel_;
   for (int axis = 0; axis < 3; ++axis) {
     if (box.size()[axis] * perVoxel_ <= 2 * kNear) continue;
-    findVoids(positions, axis, box.lower[axis], job);
+    findVoids(positions, longTriangles, axis, box.lower[axis], job);
     if (!voids_[axis].empty()) box.upper[axis] -= voids_[axis].back().by;
   }
   middle_ = box.centre();
@@ -70,20 +71,32 @@ Vec3 LocalFrame::moved(Vec3 p, const Voids& voids, double direction) const {
   return p;
 }
 
-void LocalFrame::findVoids(const std::vector<Position>& positions, int axis, double lower,
+void LocalFrame::findVoids(const std::vector<Position>& positions,
+                           const base::TriangleView& longTriangles, int axis, double lower,
                            base::Job& job) {
   constexpr std::size_t kEnough = std::size_t{1} << 20;
   const double cell = kCell * voxelSize_;
   std::vector<std::int64_t> cells;  // that hold something
   std::size_t sorted = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    job.pollCancelled(i);
-    const auto at = static_cast<std::int64_t>((Vec3(positions[i])[axis] - lower) / cell);
-    if (!cells.empty() && cells.back() == at) continue;
+  const auto cellOf = [&](VertexIndex v) {
+    return static_cast<std::int64_t>((Vec3(positions[v])[axis] - lower) / cell);
+  };
+  const auto add = [&](std::int64_t at) {
+    if (!cells.empty() && cells.back() == at) return;
     cells.push_back(at);
-    if (cells.size() < 2 * sorted + kEnough) continue;
+    if (cells.size() < 2 * sorted + kEnough) return;
     base::sortUnique(cells);
     sorted = cells.size();
+  };
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    job.pollCancelled(i);
+    add(cellOf(static_cast<VertexIndex>(i)));
+  }
+  for (std::size_t t = 0; t < longTriangles.size(); ++t) {
+    job.pollCancelled(t);
+    const auto v = longTriangles[t].vertices;
+    const auto [low, high] = std::minmax({cellOf(v[0]), cellOf(v[1]), cellOf(v[2])});
+    for (std::int64_t at = low; at <= high; ++at) add(at);
   }
   base::sortUnique(cells);
   double by = 0;

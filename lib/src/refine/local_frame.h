@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/job.h"
+#include "base/triangle_array.h"
 #include "base/vec3.h"
 #include "base/vec3f.h"
 
@@ -17,9 +18,10 @@ namespace tufa::refine {
 class LocalFrame {
  public:
   LocalFrame() = default;
-  /// Of a mesh without edges longer than some voxels. Cost: a pass over the positions, and one more
-  /// if they reach farther than 8192 voxels.
-  LocalFrame(const std::vector<Position>& positions, double voxelSize, base::Job& job);
+  /// Of a mesh whose edges longer than some voxels are all of these triangles. Cost: a pass over
+  /// the positions, and one more and one over the triangles if they reach farther than 8192 voxels.
+  LocalFrame(const std::vector<Position>& positions, double voxelSize, base::Job& job,
+             const base::TriangleView& longTriangles = {});
 
   [[nodiscard]] base::Vec3f toLocal(const Position& p) const {
     return base::Vec3f((hasVoids_ ? moved(Vec3(p), voids_, -1) : Vec3(p) - middle_) * perVoxel_);
@@ -46,7 +48,8 @@ class LocalFrame {
   using Voids = std::array<std::vector<Void>, 3>;
 
   [[nodiscard]] Vec3 moved(Vec3 p, const Voids& voids, double direction) const;
-  void findVoids(const std::vector<Position>& positions, int axis, double lower, base::Job& job);
+  void findVoids(const std::vector<Position>& positions, const base::TriangleView& longTriangles,
+                 int axis, double lower, base::Job& job);
 
   Vec3 middle_{0.0};  ///< once voids are out
   double voxelSize_ = 1, perVoxel_ = 1;

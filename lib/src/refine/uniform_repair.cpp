@@ -1,6 +1,7 @@
 #include "refine/uniform_repair.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "refine/lone_samples.h"
 #include "refine/order_along_creases.h"
@@ -20,6 +21,9 @@ constexpr int kMostPutBack = 3;
 // voxels; what they can pass as a whole lies in seven cells along each axis, of up to four vertices
 // each.
 constexpr std::size_t kMostSmall = 1400;
+// Voxels from the end of a part of a grid to components that may go on behind it. Vertices stay
+// nearer to their cells than that.
+constexpr double kNearEnd = 8;
 
 class UniformRepair {
  public:
@@ -69,12 +73,11 @@ class UniformRepair {
   // and components that rounding may turn over, to their mass points. Returns the vertices that
   // moved, sorted.
   std::vector<VertexIndex> putBackComponents() {
-    if (surface_.sheets.sharpCount() == 0 || surface_.topology.openEdges > 0 ||
-        surface_.volume.blocks.isPart()) {
-      return {};
-    }
+    const uniform::CellTopology& cells = surface_.topology;
+    if (surface_.sheets.sharpCount() == 0 || cells.openEdges > cells.missingEdges) return {};
+    const std::optional<topology::OpenMesh> open = openMesh();
     const std::vector<VertexIndex> misplaced =
-        topology::findMisplaced(mesh_, job_, kMostSmall, margin_);
+        topology::findMisplaced(mesh_, job_, kMostSmall, margin_, open ? &*open : nullptr);
     if (misplaced.empty()) return {};
     const std::vector<Position> fallbacks = sourceOf(surface_, job_).massPoints(misplaced);
     std::vector<VertexIndex> moved;
@@ -86,6 +89,18 @@ class UniformRepair {
     }
     report_.movedVertices += moved.size();
     return moved;
+  }
+
+  // What is known of the mesh of a part of a grid.
+  [[nodiscard]] std::optional<topology::OpenMesh> openMesh() const {
+    const grid::Blocks& blocks = surface_.volume.blocks;
+    if (!blocks.isPart()) return std::nullopt;
+    const grid::Slab slab = blocks.slab();
+    return topology::OpenMesh{
+        slab.axis, blocks.isInsideOutermost(), [this, slab](const Position& p) {
+          const double at = surface_.affine().latticePoint(p, Coord(0))[slab.axis];
+          return at < double(slab.first) + kNearEnd || at > double(slab.last) + 1 - kNearEnd;
+        }};
   }
 
   // Looks for the pairs of quads, sorted, that have changed; all others are as before.

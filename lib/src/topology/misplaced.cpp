@@ -18,25 +18,29 @@ namespace tufa::topology {
 namespace {
 
 // On which side of the line from a to b, seen from above, a point lies; 0 if the line is vertical.
-// A point on the line is taken as moved by an infinitesimal along x and a smaller one along y
-// (simulation of simplicity, Edelsbrunner and Muecke 1990). So a ray never passes a vertex or an
-// edge, and crosses each closed surface a well-defined number of times.
-int sideFromAbove(const Position& a, const Position& b, const Position& point) {
-  const int side = intersect::orientationAcross(2, a, b, point);
+// Up is along `axis`. A point on the line is taken as moved by an infinitesimal along the next axis
+// and a smaller one along the third (simulation of simplicity, Edelsbrunner and Muecke 1990). So a
+// ray never passes a vertex or an edge, and crosses each closed surface a well-defined number of
+// times.
+int sideFromAbove(int axis, const Position& a, const Position& b, const Position& point) {
+  const int side = intersect::orientationAcross(axis, a, b, point);
   if (side != 0) return side;
-  if (a.y != b.y) return a.y > b.y ? 1 : -1;
-  return a.x == b.x ? 0 : (a.x < b.x ? 1 : -1);
+  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+  const Vec3 p(a), q(b);
+  if (p[y] != q[y]) return p[y] > q[y] ? 1 : -1;
+  return p[x] == q[x] ? 0 : (p[x] < q[x] ? 1 : -1);
 }
 
 // Whether the ray up from a point passes through a triangle. A point in the plane of the triangle
 // does not count.
-bool isAbove(const std::vector<Position>& positions, const Triangle& triangle,
+bool isAbove(int axis, const std::vector<Position>& positions, const Triangle& triangle,
              const Position& from) {
   const Position& a = positions[triangle.vertices[0]];
   const Position& b = positions[triangle.vertices[1]];
   const Position& c = positions[triangle.vertices[2]];
-  const int side = sideFromAbove(a, b, from);
-  if (side == 0 || side != sideFromAbove(b, c, from) || side != sideFromAbove(c, a, from)) {
+  const int side = sideFromAbove(axis, a, b, from);
+  if (side == 0 || side != sideFromAbove(axis, b, c, from) ||
+      side != sideFromAbove(axis, c, a, from)) {
     return false;
   }
   return side * intersect::orientation(a, b, c, from) < 0;
@@ -46,8 +50,8 @@ bool isAbove(const std::vector<Position>& positions, const Triangle& triangle,
 // too, so runs of consecutive polygons have small boxes.
 class Pieces {
  public:
-  Pieces(const Mesh& mesh, base::Job& job)
-      : mesh_(mesh), job_(job), componentOf_(connectedComponentsOf(mesh)) {
+  Pieces(const Mesh& mesh, int up, base::Job& job)
+      : mesh_(mesh), up_(up), job_(job), componentOf_(connectedComponentsOf(mesh)) {
     for (VertexIndex i = 0; i < componentOf_.size(); ++i) {
       job.pollCancelled(i);
       if (componentOf_[i] == i) {
@@ -99,12 +103,13 @@ class Pieces {
     job_.forRanges(runCount(), 256, [&](std::size_t from, std::size_t to) {
       for (std::size_t run = from; run < to; ++run) {
         base::Box column = boxOf(run);
-        column.lower[2] = -std::numeric_limits<double>::infinity();
+        column.lower[up_] = -std::numeric_limits<double>::infinity();
         tree.itemsMeeting(column, [&](std::uint32_t i, const base::Box&) {
           bool isOdd = false;
           forTrianglesOf(run, [&](const Triangle& triangle) {
             if (componentOf_[triangle.vertices[0]] == componentOf_[vertices[i]]) return;
-            if (isAbove(mesh_.positions, triangle, mesh_.positions[vertices[i]])) isOdd = !isOdd;
+            if (isAbove(up_, mesh_.positions, triangle, mesh_.positions[vertices[i]]))
+              isOdd = !isOdd;
           });
           if (!isOdd) return;
           std::atomic_ref<std::uint8_t>(inside[i]).fetch_xor(1, std::memory_order_relaxed);
@@ -199,6 +204,7 @@ class Pieces {
   }
 
   const Mesh& mesh_;
+  int up_;  // axis of rays
   base::Job& job_;
   std::vector<std::uint32_t> componentOf_;  // of each vertex
   std::vector<VertexIndex> first_;          // of each component, its lowest vertex
@@ -217,22 +223,26 @@ std::vector<VertexIndex> verticesOf(const Pieces& pieces, std::size_t vertices, 
   return found;
 }
 
+// Whether what lies in no other component of a closed mesh faces inward. That of the largest volume
+// does not.
+bool isHoleOutermost(const std::vector<double>& volumes) {
+  const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return *std::max_element(volumes.begin(), volumes.end(), isSmaller) < 0;
+}
+
 // The vertices of misplaced components, of those with these first vertices, and the vertices of the
 // triangles of others nearest to them.
 std::vector<VertexIndex> findWrong(const Pieces& pieces, const std::vector<double>& volumes,
-                                   std::size_t allVertices, std::vector<VertexIndex> small,
-                                   base::Job& job) {
-  // Vertices that no polygon uses are components without volume. The component of the largest
-  // volume lies in no other one.
-  const auto isSmaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  const double outermost = *std::max_element(volumes.begin(), volumes.end(), isSmaller);
+                                   bool isOutermostHole, std::size_t allVertices,
+                                   std::vector<VertexIndex> small, base::Job& job) {
+  // Vertices that no polygon uses are components without volume.
   // Leaves of some vertices those on the wrong side.
   const auto keepWrong = [&](std::vector<VertexIndex>& vertices) {
     const std::vector<std::uint8_t> inside = pieces.areInside(vertices);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const double volume = volumes[pieces.componentOf(vertices[i])];
-      const bool isHole = (volume < 0) != (outermost < 0);
+      const bool isHole = (volume < 0) != isOutermostHole;
       if (volume != 0 && (inside[i] != 0) != isHole) vertices[kept++] = vertices[i];
     }
     vertices.resize(kept);
@@ -270,22 +280,30 @@ std::vector<VertexIndex> connectedComponentsOf(const Mesh& mesh) {
 }
 
 std::vector<VertexIndex> findMisplaced(const Mesh& mesh, base::Job& job, std::size_t mostVertices,
-                                       double thinnest) {
-  const Pieces pieces(mesh, job);
+                                       double thinnest, const OpenMesh* open) {
+  // Across the axis of an open mesh all is there that a ray may pass.
+  const Pieces pieces(mesh, open != nullptr && open->axis == 2 ? 0 : 2, job);
   if (pieces.count() <= 1) return {};
+  const std::size_t all = mesh.positions.size();
+  std::vector<std::uint8_t> isSmall(pieces.count());
+  for (std::size_t i = 0; i < pieces.count(); ++i) isSmall[i] = pieces.size(i) <= mostVertices;
+  for (VertexIndex v = 0; open != nullptr && v < all; ++v) {
+    job.pollCancelled(v);
+    if (open->isNearEnd(mesh.positions[v])) isSmall[pieces.componentOf(v)] = 0;
+  }
   std::vector<VertexIndex> small;  // the first vertex of each component that is
   for (std::size_t i = 0; i < pieces.count(); ++i) {
-    if (pieces.size(i) <= mostVertices) small.push_back(pieces.first(i));
+    if (isSmall[i] != 0) small.push_back(pieces.first(i));
   }
   if (small.empty()) return {};
   const std::vector<double> volumes = pieces.volumes();
-  const std::size_t all = mesh.positions.size();
-  std::vector<VertexIndex> found = findWrong(pieces, volumes, all, std::move(small), job);
+  const bool isHole = open != nullptr ? open->isHoleOutermost : isHoleOutermost(volumes);
+  std::vector<VertexIndex> found = findWrong(pieces, volumes, isHole, all, std::move(small), job);
   if (thinnest > 0) {
     // A plate of area 2A is as thick as its volume V over A; here are 6 V and 4 A.
     const std::vector<double> areas = pieces.areas(mostVertices);
     const std::vector<VertexIndex> thin = verticesOf(pieces, all, job, [&](std::uint32_t i) {
-      return areas[i] > 0 && std::abs(volumes[i]) <= 1.5 * thinnest * areas[i];
+      return isSmall[i] != 0 && areas[i] > 0 && std::abs(volumes[i]) <= 1.5 * thinnest * areas[i];
     });
     found.insert(found.end(), thin.begin(), thin.end());
   }

@@ -1,5 +1,6 @@
 // Finds the surface cells of all blocks and decides how their components go on through faces.
 
+#include <atomic>
 #include <memory>
 
 #include "base/bits.h"
@@ -96,17 +97,23 @@ class CellTopologyBuilder {
     std::vector<std::unique_ptr<Cuts>> cuts(cut ? count : 0);  // most blocks have none
     std::vector<std::uint8_t> special(count, 0);
     std::vector<std::uint8_t> hasCut(cut ? count : 0, 0);
+    std::atomic<std::size_t> missing{0};
     forBlocks([&](SurfaceBlock& block, std::size_t i, Accessor& accessor) {
       const CornerWords corners = blocks_.cornerWords(block.neighbours);
       block.quadCount = countCrossedEdges(corners);
       special[i] = mayHaveSeveralComponents(corners) ? 1 : 0;
       Cuts own{};
       bool any = dataEnds && findOpenEdges(block, corners, accessor, own);
-      any |= blocksEnd && cutAtMissing(block, corners, own);
+      const std::size_t ofData = any ? countAll(own) : 0;
+      if (blocksEnd && cutAtMissing(block, corners, own)) {
+        any = true;
+        missing += countAll(own) - ofData;
+      }
       if (!any) return;
       hasCut[i] = 1;
       cuts[i] = std::make_unique<Cuts>(own);
     });
+    topology_.missingEdges = missing;
     for (std::size_t i = 0; i < count; ++i) {
       job_.pollCancelled(i);
       SurfaceBlock& block = topology_.blocks[i];
@@ -132,6 +139,9 @@ class CellTopologyBuilder {
     for (const std::uint64_t slab : bits.slabs)
       sum += static_cast<std::size_t>(base::countBits(slab));
     return sum;
+  }
+  static std::size_t countAll(const Cuts& cuts) {
+    return countAll(cuts[0]) + countAll(cuts[1]) + countAll(cuts[2]);
   }
 
   // A face alternates if its diagonal corners are equal and its neighbouring ones are not.

@@ -59,6 +59,7 @@ struct CellTopology {
   std::size_t cellCount = 0;
   std::size_t faceFlips = 0;
   std::size_t openEdges = 0;
+  std::size_t missingEdges = 0;  ///< of these, those in whose place blocks are missing
 
   /// The surface block at an offset of -1..1 blocks, or kNoSurfaceBlock.
   [[nodiscard]] SurfaceBlockIndex neighbour(const SurfaceBlock& from, int dx, int dy,

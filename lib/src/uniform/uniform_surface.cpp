@@ -85,7 +85,7 @@ ContourReport reportOf(const grid::Volume& volume, const CellTopology& topology)
   report.nonFiniteValues = blocks.nonFiniteValues();
   report.surfaceCells = topology.cellCount;
   report.faceFlips = topology.faceFlips;
-  report.openEdges = topology.openEdges;
+  report.openEdges = topology.openEdges - topology.missingEdges;
   return report;
 }
 

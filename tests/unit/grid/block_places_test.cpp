@@ -82,23 +82,19 @@ TEST(BlockPlaces, TakeTileBlocksInNodesAndElsewhere) {
   EXPECT_EQ(nodes.places.find(Coord(-16, 0, 0)), BlockPlaces::kUnknown);
 }
 
-TEST(BlockPlaces, OfABoxAskOnceForEachPlaceInIt) {
-  BlockPlaces places;
-  const base::IndexBox box{Coord(-8, 0, 16), Coord(15, 7, 39)};
-  std::map<Coord, int> asked;
-  const auto number = [](const Coord& at) { return at[0] * 10000 + at[1] * 100 + at[2]; };
-  places.buildBox(box, [&](const Coord& at) {
-    ++asked[at];
-    return number(at);
-  });
-  EXPECT_EQ(asked.size(), 3U * 1 * 3);
-  for (const auto& [at, times] : asked) {
-    EXPECT_EQ(times, 1) << at;
-    EXPECT_EQ(places.find(at), number(at)) << at;
-  }
-  EXPECT_EQ(places.find(Coord(-16, 0, 16)), BlockPlaces::kUnknown);
-  EXPECT_EQ(places.find(Coord(16, 0, 16)), BlockPlaces::kUnknown);
-  EXPECT_FALSE(places.forNear(Coord(0, 0, 24), [](int, BlockRef) {}));
+TEST(BlockPlaces, GiveBlocksOtherNumbers) {
+  base::Job job(1, {});
+  Nodes nodes({Coord(0)});
+  nodes.places.addTileBlocks({Coord(kNode, 5 * kNode, 0)}, 4096);
+  std::vector<BlockRef> numbers(4097);
+  for (BlockRef i = 0; i < 4097; ++i) numbers[i] = i % 2 == 0 ? kMissingBlock : 5000 + i;
+  numbers[4096] = 7;
+  const BlockRef first = nodes.places.find(Coord(0)), second = nodes.places.find(Coord(0, 0, 8));
+  nodes.places.renumber(numbers, job);
+  EXPECT_EQ(nodes.places.find(Coord(0)), numbers[first]);
+  EXPECT_EQ(nodes.places.find(Coord(0, 0, 8)), numbers[second]);
+  EXPECT_EQ(nodes.places.find(Coord(kNode, 5 * kNode, 0)), 7);
+  EXPECT_EQ(nodes.places.find(Coord(-16, 0, 0)), BlockPlaces::kUnknown);
 }
 
 }  // namespace

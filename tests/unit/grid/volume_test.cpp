@@ -99,27 +99,28 @@ TEST(Volume, TellsDistancesInThinWalls) {
   }
 }
 
-TEST(Volume, OfABoxHasTheBlocksInItAndCountsFromTheSamePoint) {
+TEST(Volume, OfASlabHasTheBlocksInItAndCountsFromTheSamePoint) {
   base::Job job(1, {});
   const auto grid = ball(20.3, openvdb::Coord(0));
   const Volume whole = openVolume(*grid, {}, job);
-  const base::IndexBox box{Coord(-8, -32, 0), Coord(23, 7, 31)};
-  const Volume part = partOf(whole, box);
+  const Slab slab{1, -16, 7};
+  const Volume part = partOf(whole, slab, job);
   EXPECT_TRUE(part.blocks.isPart());
   EXPECT_FALSE(whole.blocks.isPart());
   EXPECT_EQ(part.affine.origin(), whole.affine.origin());
   std::size_t inside = 0;
   for (std::size_t i = 0; i < whole.blocks.count(); ++i) {
-    inside += box.contains(whole.blocks.origin(static_cast<BlockRef>(i))) ? 1 : 0;
+    inside += slab.contains(whole.blocks.origin(static_cast<BlockRef>(i))) ? 1 : 0;
   }
   ASSERT_GT(inside, 0U);
   ASSERT_LT(inside, whole.blocks.count());
   ASSERT_EQ(part.blocks.count(), inside);
+  EXPECT_FALSE(part.blocks.isInsideOutermost());
   const auto accessor = whole.blocks.accessor(), own = part.blocks.accessor();
   for (std::size_t i = 0; i < part.blocks.count(); ++i) {
     const auto block = static_cast<BlockRef>(i);
     const Coord& origin = part.blocks.origin(block);
-    EXPECT_TRUE(box.contains(origin)) << origin;
+    EXPECT_TRUE(slab.contains(origin)) << origin;
     EXPECT_EQ(part.blocks.find(origin, *own), block);
     const BlockRef there = whole.blocks.find(origin, *accessor);
     ASSERT_GE(there, 0) << origin;

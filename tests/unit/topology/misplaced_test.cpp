@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace tufa::topology {
 namespace {
@@ -105,6 +107,51 @@ TEST(Misplaced, AreFoundWhereRaysPassThroughVertices) {
   addTetrahedron(mesh, {0.25, 0.25, 0.25}, 0.125);
   addTetrahedron(mesh, {0.25, 0.25, 3.25}, 0.125);
   EXPECT_EQ(misplaced(mesh).size(), 2u * (4 + 3));
+}
+
+// A tube that is cut off at both ends, and pieces in it and beside it. Rays go across its axis.
+TEST(Misplaced, AreFoundInAPartOfAMesh) {
+  for (const int axis : {0, 1, 2}) {
+    Mesh mesh;
+    for (const double x : {-20.0, 20.0}) {
+      for (const auto& [y, z] : {std::pair(0, 0), {10, 0}, {10, 10}, {0, 10}}) {
+        mesh.positions.emplace_back(x, y, z);
+      }
+    }
+    for (VertexIndex a = 0; a < 4; ++a) {
+      const VertexIndex b = (a + 1) % 4;
+      mesh.triangles.emplace_back(a, 4 + b, 4 + a);
+      mesh.triangles.emplace_back(a, b, 4 + b);
+    }
+    addTetrahedron(mesh, {5, 5, 5}, 1);          // 8: wrong
+    addTetrahedron(mesh, {-5, 5, 5}, 1, false);  // 12
+    addTetrahedron(mesh, {-10, 5, -4}, 1);       // 16
+    addTetrahedron(mesh, {5, 5, -3}, 1, false);  // 20: wrong
+    addTetrahedron(mesh, {-18.5, 5, 5}, 1);      // 24: near an end
+    for (Position& p : mesh.positions) {
+      const double at[] = {p.x, p.y, p.z};
+      p = {at[(3 - axis) % 3], at[(4 - axis) % 3], at[(5 - axis) % 3]};
+    }
+    const auto isNearEnd = [axis](const Position& p) {
+      return std::abs(axis == 0 ? p.x : axis == 1 ? p.y : p.z) > 18;
+    };
+    OpenMesh open{axis, false, isNearEnd};
+    base::Job job(1, {});
+    const auto areFound = [&](const std::vector<VertexIndex>& pieces) {
+      const Vertices found = findMisplaced(mesh, job, 4, 0, &open);
+      for (VertexIndex piece = 8; piece < 28; piece += 4) {
+        const bool isWanted = std::count(pieces.begin(), pieces.end(), piece) > 0;
+        EXPECT_EQ(std::binary_search(found.begin(), found.end(), piece), isWanted)
+            << axis << ' ' << piece;
+      }
+    };
+    areFound({8, 20});
+    open.isHoleOutermost = true;
+    areFound({12, 16});
+    open.isHoleOutermost = false;
+    open.isNearEnd = [](const Position&) { return false; };
+    areFound({8, 20, 24});
+  }
 }
 
 // Over several parts that are summed up by themselves, whichever threads do it.

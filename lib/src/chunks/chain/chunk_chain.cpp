@@ -30,7 +30,8 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
       chunkSize_(chunkSize),
       singlePrecision_(singlePrecision),
       job_(job),
-      frame_(cut_.mesh.positions, affine.voxelSize(), job),
+      frame_(cut_.mesh.positions, affine.voxelSize(), job,
+             cut_.errors.empty() ? base::TriangleView() : faces_),
       curveVertices_(static_cast<VertexIndex>(cut_.mesh.positions.size())) {
   const auto localsOf = [&](const std::vector<Position>& from) {
     std::vector<Vec3f> local;
@@ -91,8 +92,18 @@ reduce::Regions ChunkChain::regionsOf() const {
   return regions;
 }
 
+// What is left of a tolerance.
+float ChunkChain::toleranceOf(double tolerance) const {
+  return static_cast<float>(frame_.within(std::max(0.0, tolerance - cut_.moved)));
+}
+
 ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
-  const float kept = static_cast<float>(frame_.within(std::max(0.0, tolerance - cut_.moved)));
+  const float kept = toleranceOf(tolerance);
+  if (before == nullptr && !cut_.errors.empty()) {
+    ChainLevel level = extract(before);
+    level.errors = cut_.errors;
+    return level;
+  }
   if (before != nullptr) {
     reduction_->toTolerance(kept, reduce::LineMode::Alone);
     setInto(*before);
@@ -103,6 +114,55 @@ ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
   ChainLevel level = extract(before);
   level.errors = errorsOf(reduction_->certificate());
   return level;
+}
+
+void ChunkChain::replace(std::vector<ReducedBand> bands, const std::vector<std::uint8_t>& isHeld) {
+  std::vector<reduce::ReplacedPart> parts;
+  for (ReducedBand& band : bands) {
+    std::vector<Vec3f> positions;
+    for (std::size_t v = 0; v < band.placed.size(); ++v) {
+      positions.push_back(frame_.toLocal(band.placed[v].at));
+      const reduce::Index source = band.surface.sourceOf(static_cast<reduce::Index>(v));
+      if (source != reduce::kNone) placed_.emplace(band.vertices[source], band.placed[v]);
+    }
+    parts.push_back({std::move(band.surface), std::move(positions), std::move(band.vertices),
+                     std::move(band.triangles)});
+  }
+  reduction_->replaceParts(parts, isHeld);
+}
+
+ReducedBand ChunkChain::reduceBand(double tolerance) {
+  reduction_->toTolerance(toleranceOf(tolerance));
+  const reduce::ReducedMesh reduced = reduction_->mesh();
+  ReducedBand band;
+  for (VertexIndex v = 0; v < reduced.positions.size(); ++v) {
+    job_.pollCancelled(v);
+    band.placed.push_back(place(reduced, v));
+  }
+  band.surface = reduction_->takeSurface();
+  return band;
+}
+
+CutMesh ChunkChain::reduceAlone(double tolerance) {
+  reduction_->toTolerance(toleranceOf(tolerance));
+  reduce::ReducedMesh reduced = reduction_->mesh();
+  CutMesh cut;
+  for (VertexIndex v = 0; v < reduced.positions.size(); ++v) {
+    job_.pollCancelled(v);
+    const auto [at, normal] = place(reduced, v);
+    cut.mesh.positions.push_back(at);
+    cut.mesh.normals.push_back(normal);
+    const reduce::Index source = reduced.sources[v];
+    if (source == reduce::kNone || cut_.planesAt(source)[0] == ChunkPlane::kNone) continue;
+    cut.onPlanes.push_back(v);
+    cut.planesOf.push_back(cut_.planesAt(source));
+  }
+  cut.mesh.triangles = std::move(reduced.triangles);
+  cut.chunkOf = std::move(reduced.regions);
+  cut.chunks = cut_.chunks;
+  cut.planes = cut_.planes;
+  cut.errors = errorsOf(reduction_->certificate());
+  return cut;
 }
 
 // What each vertex has gone into at last. One that went for a plane and into none has moved: its
@@ -147,20 +207,26 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
   const reduce::LineKind kind = source == reduce::kNone ? reduce::LineKind::Off : kinds_[source];
   level.cutVertex.push_back(kind == reduce::LineKind::Off ? ChainLevel::kNone : source);
   level.isEnd.push_back(kind == reduce::LineKind::End ? 1 : 0);
-  Position p;
-  if (source != reduce::kNone &&
-      frame_.toLocal(cut_.mesh.positions[source]) == reduced.positions[v]) {
-    p = cut_.mesh.positions[source];
-    level.normals.push_back(normals_[source]);
-  } else {
-    p = frame_.toExact(reduced.positions[v]);
-    const auto [a, b, c] = faces_[reduced.faces[v]].vertices;
-    const std::vector<Position>& at = cut_.mesh.positions;
-    level.normals.push_back(base::interpolatedNormal(
-        {Vec3(at[a]), Vec3(at[b]), Vec3(at[c])}, {normals_[a], normals_[b], normals_[c]}, Vec3(p)));
-  }
-  p = affine_.toWorld(p);
+  const auto [at, normal] = place(reduced, v);
+  level.normals.push_back(normal);
+  const Position p = affine_.toWorld(at);
   level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);
+}
+
+ChunkChain::Placed ChunkChain::place(const reduce::ReducedMesh& reduced, VertexIndex v) const {
+  const std::vector<Position>& at = cut_.mesh.positions;
+  const reduce::Index source = reduced.sources[v];
+  if (source != reduce::kNone && frame_.toLocal(at[source]) == reduced.positions[v]) {
+    return {at[source], normals_[source]};
+  }
+  const auto placed = placed_.find(source);
+  if (placed != placed_.end() && frame_.toLocal(placed->second.at) == reduced.positions[v]) {
+    return placed->second;
+  }
+  const Position p = frame_.toExact(reduced.positions[v]);
+  const auto [a, b, c] = faces_[reduced.faces[v]].vertices;
+  return {p, base::interpolatedNormal({Vec3(at[a]), Vec3(at[b]), Vec3(at[c])},
+                                      {normals_[a], normals_[b], normals_[c]}, Vec3(p))};
 }
 
 ChainLevel ChunkChain::extract(const ChainLevel* before) const {

@@ -3,6 +3,7 @@
 #include <tufa/mesh.h>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -41,6 +42,18 @@ struct ChainLevel {
   static constexpr VertexIndex kNone = ~VertexIndex{0};
 };
 
+/// Some triangles of a cut mesh that were reduced by themselves.
+struct ReducedBand {
+  struct Placed {
+    Position at;  ///< counted from Affine::origin()
+    Normal normal;
+  };
+  reduce::Surface surface;
+  std::vector<Placed> placed;            ///< its vertices
+  std::vector<VertexIndex> vertices;     ///< of the mesh: those of its triangles, rising
+  std::vector<std::uint32_t> triangles;  ///< of the mesh, rising
+};
+
 /// LODs of a cut mesh. Each is reduced from the one before in two steps: its curves on planes
 /// first, whose vertices may move in their plane, and then all else, with the curves as they are.
 ///
@@ -50,19 +63,32 @@ struct ChainLevel {
 /// in another plane: reduction guards that too.
 class ChunkChain {
  public:
-  /// The other arguments must outlive this.
+  /// The other arguments must outlive this. A cut mesh with errors is LOD 0, whatever its
+  /// tolerance.
   ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::CutRule& rule, int chunkSize,
              bool singlePrecision, base::Job& job);
 
   /// Makes the next LOD, and completes the one before with what stands for its vertices.
   [[nodiscard]] ChainLevel next(double tolerance, ChainLevel* before);
+  /// Puts bands in the place of their triangles, and has all triangles of some chunks stay, which
+  /// are marked by a number other than 0. Curves of bands beside such chunks keep all their bits.
+  /// To be called first.
+  void replace(std::vector<ReducedBand> bands, const std::vector<std::uint8_t>& isHeld);
+  /// LOD 0 alone, as a cut mesh again. To be called in place of next().
+  [[nodiscard]] CutMesh reduceAlone(double tolerance);
+  /// LOD 0 of a band, without what it was made of. To be called in place of next(), at the end.
+  [[nodiscard]] ReducedBand reduceBand(double tolerance);
   /// The cut mesh, without triangles and normals.
   [[nodiscard]] const CutMesh& cut() const { return cut_; }
   /// The same, when all LODs are made.
   [[nodiscard]] CutMesh takeCut() { return std::move(cut_); }
 
  private:
+  using Placed = ReducedBand::Placed;
+
   [[nodiscard]] reduce::Regions regionsOf() const;
+  [[nodiscard]] float toleranceOf(double tolerance) const;
+  [[nodiscard]] Placed place(const reduce::ReducedMesh& reduced, VertexIndex v) const;
   [[nodiscard]] ChainLevel extract(const ChainLevel* before) const;
   void add(ChainLevel& level, const reduce::ReducedMesh& reduced, VertexIndex v) const;
   void setInto(ChainLevel& level);
@@ -75,9 +101,10 @@ class ChunkChain {
   int chunkSize_;
   bool singlePrecision_;
   base::Job& job_;
-  refine::LocalFrame frame_;             ///< of the cut mesh
-  std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
-  VertexIndex curveVertices_;            ///< numbers in use, see ChainLevel::curveVertex
+  refine::LocalFrame frame_;              ///< of the cut mesh
+  std::vector<reduce::LineKind> kinds_;   ///< of each vertex of the cut mesh
+  std::map<VertexIndex, Placed> placed_;  ///< of the cut mesh, where bands have placed them
+  VertexIndex curveVertices_;             ///< numbers in use, see ChainLevel::curveVertex
   std::optional<reduce::Reduction> reduction_;
 };
 

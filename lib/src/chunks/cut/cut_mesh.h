@@ -18,9 +18,11 @@ struct ChunkPlane {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   int axis = 0;         ///< it stands across
   std::int32_t at = 0;  ///< in chunks: between those of index at - 1 and at
+
+  friend bool operator==(const ChunkPlane&, const ChunkPlane&) = default;
 };
 
-/// The uniform mesh, divided where it passes the planes between chunks.
+/// The uniform mesh, divided where it passes the planes between chunks; or LOD 0 in its place.
 ///
 /// Each triangle lies in one chunk, its boundary included. What lies in a plane belongs to the
 /// chunk on the solid's side.
@@ -40,7 +42,10 @@ struct CutMesh {
   /// Whether a search has shown that no triangle with a new vertex intersects another one once
   /// positions are rounded.
   bool isSeparated = false;
-  double moved = 0;  ///< how far vertices were moved at most: to planes, and apart; voxels
+  /// How far it is from the uniform mesh at most, as vertices were moved to planes, and apart;
+  /// voxels.
+  double moved = 0;
+  std::vector<double> errors;  ///< of LOD 0: the same for each chunk
 
   /// The planes of a vertex, kNone where there are fewer than three.
   [[nodiscard]] std::array<std::uint32_t, 3> planesAt(VertexIndex v) const {
