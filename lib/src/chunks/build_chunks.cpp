@@ -79,9 +79,8 @@ void requireOptions(const ChunkOptions& options) {
 }
 
 // Whether all positions of the grid may be rounded to floats.
-bool fitsSinglePrecision(const grid::Blocks& blocks, const grid::Transform& transform) {
-  return refine::largestRounding(blocks, transform) <=
-         refine::kMostRounding * grid::Affine(transform).leastHeight();
+bool fitsSinglePrecision(const grid::Volume& volume) {
+  return refine::largestRounding(volume) <= refine::kMostRounding * volume.affine.leastHeight();
 }
 
 // The middle of all blocks, in world space and in whole floats, if positions need one.
@@ -147,9 +146,9 @@ std::string checksumOf(const std::vector<chunks::ChainLevel>& levels) {
 }
 
 // For each chunk the pairs of triangles of a level that intersect, as they are, beside the next
-// level, or on some faces beside it.
+// level, or on some faces beside it. `isMoved`: the level's vertices have moved since it was made.
 std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::ChainLevel& level,
-                                    base::Job& job) {
+                                    bool isMoved, base::Job& job) {
   std::vector<std::size_t> counts(cut.chunks.size(), 0);
   const auto count = [&](bool isChanged) {
     Mesh mesh;
@@ -166,13 +165,14 @@ std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::Ch
       mesh.triangles.push_back(isChanged ? other : level.triangles[t]);
       chunkOf.push_back(level.chunkOf[t]);
     }
+    if (candidates.empty()) return;
     const intersect::Surface surface(mesh, job);
     for (const intersect::PolygonPair& pair : intersect::findPairs(surface, candidates, job)) {
       ++counts[chunkOf[pair.a]];
     }
   };
-  count(false);
-  count(true);
+  if (isMoved || !level.isSearched) count(false);
+  if (isMoved || !level.isChangedSearched) count(true);
   for (const auto& [t, other] : chunks::findMixedForms(level, job)) ++counts[level.chunkOf[t]];
   return counts;
 }
@@ -204,7 +204,7 @@ class ChunkBuilder {
     ChunkIndex index = describe(volume, options_);
     index.grid = grid::nameOf(grid_);
     cutting.chunkSize = options_.chunkSize;
-    cutting.singlePrecision = fitsSinglePrecision(volume.blocks, volume.transform);
+    cutting.singlePrecision = fitsSinglePrecision(volume);
     cutting.latticeStep = index.step;
     if (!cutting.singlePrecision) index.origin = middleOf(volume.blocks, volume.transform);
     const grid::Affine affine = volume.affine;
@@ -267,7 +267,7 @@ class ChunkBuilder {
     for (std::size_t i = levels_.size(); i-- > 0;) {  // each takes normals from the next one
       auto shaded = chunks::shade(levels_[i], curves, options_.creaseAngle, beyond, job_);
       levels[i] = chunks::splitLevel(cut, levels_[i], shaded, job_);
-      pairs[i] = countPairs(cut, levels_[i], job_);
+      pairs[i] = countPairs(cut, levels_[i], index.step > 0, job_);
       beyond = std::move(shaded.sides);
       levels_[i] = {};
     }

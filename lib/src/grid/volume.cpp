@@ -4,6 +4,8 @@
 
 #include <tufa/error.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -90,6 +92,19 @@ Coord lowestOrigin(const Blocks& blocks) {
   return lowest;
 }
 
+double largestCoordinate(const Blocks& blocks, const Transform& transform) {
+  double largest = 0;
+  for (std::size_t i = 0; i < blocks.count(); ++i) {
+    const Vec3 corner(blocks.origin(static_cast<BlockRef>(i)));
+    for (int c = 0; c < 8; ++c) {
+      const Vec3 step((c & 4) * 2.0, (c & 2) * 4.0, (c & 1) * 8.0);
+      const Vec3 world = transform.indexToWorld(corner + step);
+      largest = std::max({largest, std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 void requireMeshable(const openvdb::GridBase& grid) {
@@ -108,11 +123,12 @@ Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options, 
   const FieldScale scale = readFieldScale(grid, iso);
   const Transform transform = transformOf(grid);
   const Affine affine(transform, lowestOrigin(blocks));
-  return {std::move(blocks), scale, transform, affine};
+  const double reach = largestCoordinate(blocks, transform);
+  return {std::move(blocks), scale, transform, affine, reach};
 }
 
 Volume partOf(const Volume& whole, const Slab& slab, base::Job& job) {
-  return {Blocks(whole.blocks, slab, job), whole.scale, whole.transform, whole.affine};
+  return {Blocks(whole.blocks, slab, job), whole.scale, whole.transform, whole.affine, whole.reach};
 }
 
 }  // namespace tufa::grid

@@ -18,7 +18,8 @@ struct Volume {
   Blocks blocks;
   FieldScale scale;
   Transform transform;
-  Affine affine;  ///< positions are counted from the lowest corner of all blocks of the grid
+  Affine affine;     ///< positions are counted from the lowest corner of all blocks of the grid
+  double reach = 0;  ///< largest world coordinate of a corner of a block, of the whole grid
 };
 
 /// Throws Error(UnsupportedGrid) unless the grid is a float or double grid with a linear transform

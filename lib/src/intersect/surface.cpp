@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 #include "base/sort_unique.h"
@@ -121,6 +122,13 @@ void Surface::update(PolygonIndex polygon) {
 void Surface::finish() {
   if (!fanned_) return;
   std::erase_if(mesh_.quads, [](const Quad& q) { return q.vertices[0] == q.vertices[1]; });
+}
+
+std::vector<PolygonIndex> findIntersecting(Mesh& mesh, base::Job& job) {
+  const Surface surface(mesh, job);
+  std::vector<PolygonIndex> all(surface.size());
+  std::iota(all.begin(), all.end(), 0);
+  return polygonsOf(findPairs(surface, all, job));
 }
 
 }  // namespace tufa::intersect

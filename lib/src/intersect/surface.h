@@ -141,4 +141,7 @@ void renewPairsOf(const std::vector<PolygonIndex>& changed, const ClosePairs& fo
     const Surface& surface, const std::vector<PolygonIndex>& candidates, base::Job& job,
     const std::function<bool(PolygonIndex, PolygonIndex)>& matters = nullptr);
 
+/// The polygons of a mesh that intersect another one, rising.
+[[nodiscard]] std::vector<PolygonIndex> findIntersecting(Mesh& mesh, base::Job& job);
+
 }  // namespace tufa::intersect

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "reduce/component_size.h"
 #include "reduce/part.h"
 
 namespace tufa::reduce {
@@ -167,21 +168,23 @@ bool Part::flipIntersects(const Index* v) {
   return intersects(made, false);
 }
 
-// As sideGuard(). Seen from v[0] both new triangles and one of the old ones are flat.
+// As sideGuard().
 bool Part::flipKeepsSide(const Index* v) const {
   std::array<Index, kSmallComponent> room;
   const std::span<const Index> component = smallComponent(flip_[0] / 3, room);
   if (component.empty()) return true;
   const Vec3f from = position_[v[0]];
-  float before = 0, lost = 0;
+  const auto seen = [&](Index vertex) { return position_[vertex] - from; };
+  ComponentSize before, after;
   for (const Index t : component) {
     Vec3f p[3];
     triangleAt(t, p);
-    const float volume = dot(p[0] - from, cross(p[1] - from, p[2] - from));
-    before += volume;
-    if (t == flip_[1] / 3) lost = volume;
+    before.add(p[0] - from, p[1] - from, p[2] - from);
+    if (t == flip_[0] / 3 || t == flip_[1] / 3) continue;
+    after.add(p[0] - from, p[1] - from, p[2] - from);
   }
-  return before > 0 ? before > lost : before < lost;
+  after.add(seen(v[0]), seen(v[1]), seen(v[3])), after.add(seen(v[3]), seen(v[2]), seen(v[0]));
+  return keepsInside(before, after);
 }
 
 // As passesOver(): whether a component lies between the old triangles and the new ones.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reduce/component_size.h"
 #include "reduce/part.h"
 
 namespace tufa::reduce {
@@ -349,15 +350,15 @@ std::span<const Index> Part::smallComponent(Index triangle, std::span<Index> roo
   return room.first(count);
 }
 
-// Small components keep their inside. Larger ones cannot be turned inside out without an
-// intersection on the way; in one of few triangles all may share a vertex with the star, so that
-// there is no pair to test.
+// Small components keep their inside, and a thickness. Larger ones cannot be turned inside out
+// without an intersection on the way; in one of few triangles all may share a vertex with the star,
+// so that there is no pair to test.
 bool Part::sideGuard() const {
   if (size_ > kSmallComponent / 2) return true;
   std::array<Index, kSmallComponent> room;
   const std::span<const Index> component = smallComponent(at_[0] / 3, room);
   if (component.empty()) return true;
-  float before = 0, after = 0;
+  ComponentSize before, after;
   for (const Index t : component) {
     Vec3f p[3], q[3];
     for (Index i = 0; i < 3; ++i) {
@@ -365,10 +366,9 @@ bool Part::sideGuard() const {
       p[i] = position_[v] - place_;
       q[i] = isMerged(v) ? Vec3f() : p[i];
     }
-    before += dot(p[0], cross(p[1], p[2]));
-    after += dot(q[0], cross(q[1], q[2]));
+    before.add(p[0], p[1], p[2]), after.add(q[0], q[1], q[2]);
   }
-  return before > 0 ? after > 0 : after < 0;
+  return keepsInside(before, after);
 }
 
 }  // namespace tufa::reduce

@@ -8,22 +8,12 @@
 
 namespace tufa::refine {
 
-double largestRounding(const grid::Blocks& blocks, const grid::Transform& transform) {
-  double largest = 0;
-  for (std::size_t i = 0; i < blocks.count(); ++i) {
-    const Vec3 corner(blocks.origin(static_cast<grid::BlockRef>(i)));
-    for (int c = 0; c < 8; ++c) {
-      const Vec3 step((c & 4) * 2.0, (c & 2) * 4.0, (c & 1) * 8.0);
-      const Vec3 world = transform.indexToWorld(corner + step);
-      largest = std::max({largest, std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
-    }
-  }
-  return 0.5 * std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * largest;
+double largestRounding(const grid::Volume& volume) {
+  return 0.5 * std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * volume.reach;
 }
 
 double roundingMargin(const grid::Volume& volume) {
-  return 2 * std::min(kMostRounding * volume.affine.leastHeight(),
-                      largestRounding(volume.blocks, volume.transform));
+  return 2 * std::min(kMostRounding * volume.affine.leastHeight(), largestRounding(volume));
 }
 
 bool isWrittenInSingle(const std::vector<Position>& positions, const grid::Affine& affine,

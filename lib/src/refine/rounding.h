@@ -12,15 +12,15 @@ namespace tufa::refine {
 /// The farthest that the rounding of world positions to single precision may move them, in voxels.
 inline constexpr double kMostRounding = 5e-4;
 
-/// The farthest that rounding to single precision can move a point near the surface of a volume, in
-/// world units: by its largest coordinate.
-double largestRounding(const grid::Blocks& blocks, const grid::Transform& transform);
+/// The farthest that rounding to single precision can move a point near the surface of a volume, or
+/// of the volume that it is a part of, in world units: by its largest coordinate.
+[[nodiscard]] double largestRounding(const grid::Volume& volume);
 
 /// The margin for searches of intersections whose result is to hold once the mesh is rounded:
 /// rounding may move both polygons of a pair. Flat faces on lattice planes lie a thousandth of a
 /// voxel off their samples, so a larger margin than is needed would make all their polygons
 /// candidates.
-double roundingMargin(const grid::Volume& volume);
+[[nodiscard]] double roundingMargin(const grid::Volume& volume);
 
 /// Whether takeToWorld() rounds a mesh with these positions.
 [[nodiscard]] bool isWrittenInSingle(const std::vector<Position>& positions,

@@ -83,12 +83,9 @@ std::vector<reduce::Index> SurfaceReduction::findIntersecting(const reduce::Redu
   });
   (void)takeToWorld(mesh, model_.affine(), job_);
   mesh.triangles = reduced.triangles;
-  std::vector<intersect::PolygonIndex> all(mesh.triangles.size());
-  std::iota(all.begin(), all.end(), 0);
-  const std::vector<intersect::PolygonIndex> found =
-      intersect::polygonsOf(intersect::findPairs(intersect::Surface(mesh, job_), all, job_));
+  std::vector<intersect::PolygonIndex> found = intersect::findIntersecting(mesh, job_);
   isSearched_ = found.empty();
-  return {found.begin(), found.end()};
+  return found;
 }
 
 AdaptiveMesh SurfaceReduction::toTolerance(double tolerance, bool drops) {

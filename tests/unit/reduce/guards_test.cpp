@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "reduce/reduction.h"
@@ -146,6 +147,37 @@ TEST(Guards, KeepSmallComponentsOutsideOutWhereEdgesAreFlipped) {
   EXPECT_GT(kept.counts.flips[static_cast<std::size_t>(Outcome::Side)], 0U);
   EXPECT_GT(test::volume(kept.mesh), 0);
   EXPECT_LT(test::volume(reduced(shallow, 0.02f, Outcome::Side).mesh), 0);
+}
+
+// Boxes a few thousandths of a voxel wide. A tetrahedron of four of their corners may have hardly a
+// volume, which is another one once places are rounded.
+TEST(Guards, KeepSmallComponentsAsThickAsRoundingAsksFor) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> width(0.002f, 0.05f);
+  const auto thinnest = [](const Result& result) {
+    return 2 * std::abs(test::volume(result.mesh)) / test::area(result.mesh);
+  };
+  int thin = 0;
+  for (int round = 0; round < 100; ++round) {
+    test::FineMesh box;
+    const Vec3f size(width(random), width(random), width(random));
+    for (int i = 0; i < 8; ++i) {
+      box.positions.emplace_back(size.x * float(i >> 2), size.y * float((i >> 1) & 1),
+                                 size.z * float(i & 1));
+    }
+    const Index quads[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
+                               {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+    for (const auto& q : quads) {
+      box.triangles.emplace_back(q[0], q[1], q[2]);
+      box.triangles.emplace_back(q[0], q[2], q[3]);
+    }
+    const Result kept = reduced(box, 1);
+    EXPECT_LT(kept.mesh.triangles.size(), 12U);
+    EXPECT_GT(test::volume(kept.mesh), 0);
+    EXPECT_GE(thinnest(kept), 0.999e-3) << round;
+    thin += thinnest(reduced(box, 1, Outcome::Side)) < 0.5e-3 ? 1 : 0;
+  }
+  EXPECT_GT(thin, 5) << "what the guard is for";
 }
 
 // A speck between the ridge and the place where it would be after a flip: it would come out of the

@@ -8,6 +8,7 @@
 #include "base/huge_pages.h"
 #include "base/interpolated_normal.h"
 #include "base/single_precision.h"
+#include "intersect/surface.h"
 #include "refine/surface_reduction.h"
 #include "refine/tolerance_scales.h"
 
@@ -45,9 +46,10 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
   const reduce::InputMesh reference{localsOf(cut_.reference), input.triangles};
   std::vector<reduce::Index> same(cut_.reference.size());
   std::iota(same.begin(), same.end(), 0);
+  reduce::Options options = reduce::optionsForAngle(rule.minAngle);
+  options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
   reduction_.emplace(input, same.empty() ? input : reference, same,
-                     refine::scalesOf(cut_.mesh, affine, rule, job),
-                     reduce::optionsForAngle(rule.minAngle), job);
+                     refine::scalesOf(cut_.mesh, affine, rule, job), std::move(options), job);
   reduction_->setRegions([this] { return regionsOf(); });
   kinds_ = reduction_->surface().lineKind;
 }
@@ -97,21 +99,47 @@ float ChunkChain::toleranceOf(double tolerance) const {
   return static_cast<float>(frame_.within(std::max(0.0, tolerance - cut_.moved)));
 }
 
+void ChunkChain::reduce(double tolerance, reduce::LineMode lines) {
+  isSearched_ = false;
+  reduction_->toTolerance(toleranceOf(tolerance), lines);
+}
+
+// The triangles that intersect once positions are rounded as they are written. Guards in single
+// precision may take a crumb, or a star of slivers along a crease, for one that has a volume.
+std::vector<reduce::Index> ChunkChain::findIntersecting(const reduce::ReducedMesh& reduced) {
+  Mesh mesh;
+  mesh.positions.resize(reduced.positions.size());
+  job_.forRanges(mesh.positions.size(), [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<VertexIndex>(begin); v < end; ++v) {
+      mesh.positions[v] = written(place(reduced, v).at);
+    }
+  });
+  mesh.triangles = reduced.triangles;
+  std::vector<intersect::PolygonIndex> found = intersect::findIntersecting(mesh, job_);
+  isSearched_ = found.empty();
+  return found;
+}
+
+Position ChunkChain::written(const Position& p) const {
+  const Position world = affine_.toWorld(p);
+  return singlePrecision_ ? base::toSingle(world) : world;
+}
+
 ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
-  const float kept = toleranceOf(tolerance);
   if (before == nullptr && !cut_.errors.empty()) {
     ChainLevel level = extract(before);
     level.errors = cut_.errors;
     return level;
   }
   if (before != nullptr) {
-    reduction_->toTolerance(kept, reduce::LineMode::Alone);
+    reduce(tolerance, reduce::LineMode::Alone);
     setInto(*before);
+    before->isChangedSearched = isSearched_;
     before->transitionErrors = errorsOf(reduction_->certificate());
   }
-  reduction_->toTolerance(kept,
-                          before == nullptr ? reduce::LineMode::Free : reduce::LineMode::Held);
+  reduce(tolerance, before == nullptr ? reduce::LineMode::Free : reduce::LineMode::Held);
   ChainLevel level = extract(before);
+  level.isSearched = isSearched_;
   level.errors = errorsOf(reduction_->certificate());
   return level;
 }
@@ -120,10 +148,10 @@ void ChunkChain::replace(std::vector<ReducedBand> bands, const std::vector<std::
   std::vector<reduce::ReplacedPart> parts;
   for (ReducedBand& band : bands) {
     std::vector<Vec3f> positions;
-    for (std::size_t v = 0; v < band.placed.size(); ++v) {
-      positions.push_back(frame_.toLocal(band.placed[v].at));
-      const reduce::Index source = band.surface.sourceOf(static_cast<reduce::Index>(v));
-      if (source != reduce::kNone) placed_.emplace(band.vertices[source], band.placed[v]);
+    for (const Placed& placed : band.placed) {
+      const Vec3f local = frame_.toLocal(placed.at);
+      positions.push_back(local);
+      placed_.emplace(std::array{local.x, local.y, local.z}, placed);
     }
     parts.push_back({std::move(band.surface), std::move(positions), std::move(band.vertices),
                      std::move(band.triangles)});
@@ -132,7 +160,7 @@ void ChunkChain::replace(std::vector<ReducedBand> bands, const std::vector<std::
 }
 
 ReducedBand ChunkChain::reduceBand(double tolerance) {
-  reduction_->toTolerance(toleranceOf(tolerance));
+  reduce(tolerance, reduce::LineMode::Free);
   const reduce::ReducedMesh reduced = reduction_->mesh();
   ReducedBand band;
   for (VertexIndex v = 0; v < reduced.positions.size(); ++v) {
@@ -144,7 +172,7 @@ ReducedBand ChunkChain::reduceBand(double tolerance) {
 }
 
 CutMesh ChunkChain::reduceAlone(double tolerance) {
-  reduction_->toTolerance(toleranceOf(tolerance));
+  reduce(tolerance, reduce::LineMode::Free);
   reduce::ReducedMesh reduced = reduction_->mesh();
   CutMesh cut;
   for (VertexIndex v = 0; v < reduced.positions.size(); ++v) {
@@ -209,8 +237,7 @@ void ChunkChain::add(ChainLevel& level, const reduce::ReducedMesh& reduced, Vert
   level.isEnd.push_back(kind == reduce::LineKind::End ? 1 : 0);
   const auto [at, normal] = place(reduced, v);
   level.normals.push_back(normal);
-  const Position p = affine_.toWorld(at);
-  level.positions.push_back(singlePrecision_ ? base::toSingle(p) : p);
+  level.positions.push_back(written(at));
 }
 
 ChunkChain::Placed ChunkChain::place(const reduce::ReducedMesh& reduced, VertexIndex v) const {
@@ -219,10 +246,9 @@ ChunkChain::Placed ChunkChain::place(const reduce::ReducedMesh& reduced, VertexI
   if (source != reduce::kNone && frame_.toLocal(at[source]) == reduced.positions[v]) {
     return {at[source], normals_[source]};
   }
-  const auto placed = placed_.find(source);
-  if (placed != placed_.end() && frame_.toLocal(placed->second.at) == reduced.positions[v]) {
-    return placed->second;
-  }
+  const Vec3f& local = reduced.positions[v];
+  const auto placed = placed_.find({local.x, local.y, local.z});
+  if (placed != placed_.end()) return placed->second;
   const Position p = frame_.toExact(reduced.positions[v]);
   const auto [a, b, c] = faces_[reduced.faces[v]].vertices;
   return {p, base::interpolatedNormal({Vec3(at[a]), Vec3(at[b]), Vec3(at[c])},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tufa/mesh.h>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -39,6 +40,9 @@ struct ChainLevel {
   std::vector<std::uint32_t> intoPlane;  ///< where that is another one, the plane it is for
   std::vector<double> errors;            ///< of each chunk, voxels
   std::vector<double> transitionErrors;  ///< with all curves as the next LOD has them
+  /// Whether a search has found no triangles that intersect, of the LOD itself, and of it with all
+  /// curves as the next LOD has them.
+  bool isSearched = false, isChangedSearched = false;
   static constexpr VertexIndex kNone = ~VertexIndex{0};
 };
 
@@ -88,6 +92,9 @@ class ChunkChain {
 
   [[nodiscard]] reduce::Regions regionsOf() const;
   [[nodiscard]] float toleranceOf(double tolerance) const;
+  void reduce(double tolerance, reduce::LineMode lines);
+  [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
+  [[nodiscard]] Position written(const Position& p) const;
   [[nodiscard]] Placed place(const reduce::ReducedMesh& reduced, VertexIndex v) const;
   [[nodiscard]] ChainLevel extract(const ChainLevel* before) const;
   void add(ChainLevel& level, const reduce::ReducedMesh& reduced, VertexIndex v) const;
@@ -101,11 +108,13 @@ class ChunkChain {
   int chunkSize_;
   bool singlePrecision_;
   base::Job& job_;
-  refine::LocalFrame frame_;              ///< of the cut mesh
-  std::vector<reduce::LineKind> kinds_;   ///< of each vertex of the cut mesh
-  std::map<VertexIndex, Placed> placed_;  ///< of the cut mesh, where bands have placed them
-  VertexIndex curveVertices_;             ///< numbers in use, see ChainLevel::curveVertex
+  refine::LocalFrame frame_;             ///< of the cut mesh
+  std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
+  std::map<std::array<float, 3>, Placed>
+      placed_;                 ///< what bands have placed, by places in the frame
+  VertexIndex curveVertices_;  ///< numbers in use, see ChainLevel::curveVertex
   std::optional<reduce::Reduction> reduction_;
+  bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
 };
 
 }  // namespace tufa::chunks
