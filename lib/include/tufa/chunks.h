@@ -36,7 +36,7 @@ struct ChunkOptions {
   /// Of a volume of more active voxels, at least twice as many, LOD 0 is made in slabs of chunks
   /// one after another, so that memory holds the uniform mesh of no more than one: see
   /// docs/stages/chunks.md. Volumes whose tolerance is scaled from place to place are not.
-  std::size_t slabVoxels = 4'000'000;
+  std::size_t slabVoxels = 8'000'000;
   /// The chunks to make; empty: all. A chunk has the same bytes whichever are made with it.
   std::vector<Coord> only;
 };
@@ -51,8 +51,9 @@ using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
 /// normals. See contour() for what is kept and for the errors thrown; throws Error(InvalidArgument)
 /// for options out of their range too.
 ///
-/// Memory holds the grid, its whole uniform mesh and all LODs; which chunks are asked for does not
-/// change that.
+/// Memory holds the grid, the uniform mesh of a slab (see ChunkOptions::slabVoxels) and all LODs;
+/// which chunks are asked for does not change that. Of a volume in slabs the report's counts of
+/// creases and repairs are too high by what lies near a plane between two of them.
 TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                                 const ChunkSink& sink, ContourReport* report = nullptr);
 

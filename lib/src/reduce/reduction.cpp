@@ -219,9 +219,11 @@ void Reduction::setRegions(std::function<Regions()> regions) {
 
 void Reduction::replaceParts(std::span<const ReplacedPart> parts,
                              const std::vector<std::uint8_t>& isHeld) {
-  reduce::replaceParts(surface_, reference_, parts, job_);
+  if (!parts.empty()) {
+    reduce::replaceParts(surface_, reference_, parts, job_);
+    isReference_ = false;
+  }
   holdRegions(surface_, isHeld, job_);
-  isReference_ = false;
 }
 
 // Names all vertices, and forgets what went where in the step before.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -243,6 +244,66 @@ TEST(Lines, NeverVanishWithTheirRegion) {
     const std::vector<Index> left = reduction.mesh().regions;
     EXPECT_EQ(std::set<Index>(left.begin(), left.end()).size(), 2U) << tolerance;
   }
+}
+
+// A band around the line is reduced by itself, and takes the place of its triangles; one side then
+// stays as it is, the line included, while the other one is reduced.
+TEST(ReplacedParts, StayWhereTheirRegionIsHeld) {
+  Reducer whole(wavingBox(0.2f));
+  ReplacedPart part;
+  test::FineMesh band;
+  std::map<Index, Index> numbers;
+  for (Index t = 0; t < whole.input.triangles.size(); ++t) {
+    const auto& v = whole.input.triangles[t].vertices;
+    if (std::any_of(v.begin(), v.end(), [&](Index corner) {
+          return std::abs(whole.input.positions[corner].x - kMiddle) > 4;
+        })) {
+      continue;
+    }
+    part.faces.push_back(t);
+    for (const Index corner : v) numbers.emplace(corner, 0);
+  }
+  for (auto& [vertex, number] : numbers) {
+    number = static_cast<Index>(part.vertices.size());
+    part.vertices.push_back(vertex);
+    band.positions.push_back(whole.input.positions[vertex]);
+  }
+  for (const Index t : part.faces) {
+    const auto& v = whole.input.triangles[t].vertices;
+    band.triangles.emplace_back(numbers[v[0]], numbers[v[1]], numbers[v[2]]);
+  }
+  Reducer alone(band);
+  alone.reduction.toTolerance(0.3f);
+  EXPECT_LT(alone.reduction.triangleCount(), band.triangles.size() / 2);
+  part.surface = alone.reduction.takeSurface();
+  part.positions.assign(part.surface.position.begin(), part.surface.position.end());
+  const std::size_t lines =
+      std::count(part.surface.lineKind.begin(), part.surface.lineKind.end(), LineKind::On);
+  const auto isRight = [](Index region) { return region == 1; };
+  const std::size_t before = static_cast<std::size_t>(
+      std::count_if(part.surface.region.begin(), part.surface.region.end(), isRight));
+  std::size_t right = before;
+  for (Index t = 0; t < whole.input.triangles.size(); ++t) {
+    const bool isReplaced = std::binary_search(part.faces.begin(), part.faces.end(), t);
+    right += !isReplaced && isRight(whole.reduction.surface().region[t]) ? 1 : 0;
+  }
+  const std::vector<ReplacedPart> parts{part};
+  whole.reduction.replaceParts(parts, {0, 1});
+  expectWhole(whole.reduction.mesh());
+  whole.reduction.toTolerance(0.3f);
+  const ReducedMesh mesh = whole.reduction.mesh();
+  expectWhole(mesh);
+  expectApart(whole);
+  EXPECT_GT(whole.reduction.certificate().largest, 0);
+  EXPECT_LE(whole.reduction.certificate().largest, 0.3f);
+  EXPECT_LE(test::sampledDistance(test::toMesh(whole.input.positions, whole.input.triangles),
+                                  test::toMesh(mesh.positions, mesh.triangles), 5000),
+            0.301);
+  EXPECT_EQ(std::count_if(mesh.regions.begin(), mesh.regions.end(), isRight), right);
+  EXPECT_LT(mesh.triangles.size() - right, right / 4);
+  EXPECT_EQ(std::count(whole.reduction.surface().lineKind.begin(),
+                       whole.reduction.surface().lineKind.end(), LineKind::On),
+            lines);
 }
 
 }  // namespace

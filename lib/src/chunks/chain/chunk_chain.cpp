@@ -147,6 +147,7 @@ ChainLevel ChunkChain::next(double tolerance, ChainLevel* before) {
 void ChunkChain::replace(std::vector<ReducedBand> bands, const std::vector<std::uint8_t>& isHeld) {
   std::vector<reduce::ReplacedPart> parts;
   for (ReducedBand& band : bands) {
+    if (band.surface.isWhole) continue;
     std::vector<Vec3f> positions;
     for (const Placed& placed : band.placed) {
       const Vec3f local = frame_.toLocal(placed.at);
