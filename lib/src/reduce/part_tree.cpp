@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <utility>
@@ -14,6 +15,9 @@ namespace {
 
 // Vertices of which a cut asks for its quantile. Parts then differ in size by a few percent.
 constexpr std::size_t kAsked = 1024;
+// Voxels on both sides of a plane that count as flat, if one in so many of those asked lies there.
+constexpr float kFlat = 0.01f;
+constexpr std::size_t kFewOfFlat = 16;
 // Vertices that a thread sorts to the two sides of a cut at a time.
 constexpr Index kBlock = 16384;
 // A part of the tree from which on its two sides are split at the same time.
@@ -82,6 +86,7 @@ class Splitter {
   void splitAlong(PartTree& tree, Index node, const Some& some, const Box3f& box);
   [[nodiscard]] bool isPart(const Some& some) const;
   [[nodiscard]] float quantile(const Some& some, int axis) const;
+  [[nodiscard]] static float besideFlat(float at, const std::vector<float>& coordinates);
   [[nodiscard]] float leastAbove(const Some& some, int axis) const;
   std::array<Some, 2> sides(const Some& some, int axis, float plane);
   std::array<Some, 2> sidesOfBlock(const Some& block, int axis, float plane);
@@ -122,7 +127,21 @@ float Splitter::quantile(const Some& some, int axis) const {
   const auto middle =
       coordinates.begin() + static_cast<std::ptrdiff_t>(static_cast<float>(asked) * share_);
   std::nth_element(coordinates.begin(), middle, coordinates.end());
-  return *middle;
+  return besideFlat(*middle, coordinates);
+}
+
+// A coordinate, or one beside it if a flat face lies there whose vertices rounding has moved off
+// their plane: a cut between them would part the face, and none of its vertices could move.
+float Splitter::besideFlat(float at, const std::vector<float>& coordinates) {
+  std::size_t near = 0, same = 0;
+  bool isLowest = true, isHighest = true;
+  for (const float x : coordinates) {
+    near += std::abs(x - at) <= kFlat ? 1 : 0;
+    same += x == at ? 1 : 0;
+    isLowest &= x >= at - kFlat, isHighest &= x <= at + kFlat;
+  }
+  if (near == same || near * kFewOfFlat < coordinates.size() || (isLowest && isHighest)) return at;
+  return isLowest ? at + kFlat : at - kFlat;
 }
 
 // The least coordinate that is not the least of all.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <utility>
 
 #include "chunks/cut/cut_mesh.h"
@@ -135,6 +136,27 @@ TEST(SubMesh, HasTheTrianglesAskedFor) {
       EXPECT_EQ(sub.cut.planesAt(own), cut.mesh.planesAt(v));
     }
   }
+}
+
+// Of marks made by chance most vertices have several fans.
+TEST(SubMesh, IsMadeManifold) {
+  Torus cut;
+  const std::size_t count = cut.mesh.mesh.triangles.size();
+  std::mt19937 random(3);
+  std::vector<std::uint8_t> marks(count);
+  for (std::uint8_t& mark : marks) mark = random() % 20 != 0 ? 1 : 0;
+  const std::vector<std::uint8_t> before = marks;
+  const auto topologyOf = [&] {
+    return test::inspect(subMesh(cut.mesh, marks, cut.model.job()).cut.mesh);
+  };
+  EXPECT_GT(topologyOf().nonManifoldVertices, 10U);
+  keepManifold(cut.mesh, marks, cut.model.job());
+  EXPECT_EQ(topologyOf().nonManifoldVertices, 0U);
+  EXPECT_GT(std::count(marks.begin(), marks.end(), 1), static_cast<std::ptrdiff_t>(count / 10));
+  for (std::size_t t = 0; t < count; ++t) EXPECT_LE(marks[t], before[t]);
+  marks.assign(count, 1);
+  keepManifold(cut.mesh, marks, cut.model.job());
+  EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace

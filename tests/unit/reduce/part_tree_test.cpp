@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
+#include <utility>
 
 #include "reduce/part_tree.h"
 
@@ -40,6 +42,31 @@ void expectParts(const PartTree& tree, const std::vector<Vec3f>& points) {
     }
   }
   EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ssize(points));
+}
+
+// A floor, or a ceiling, or both, whose heights rounding has changed by its last digits: vertices
+// on a cut through it could not move.
+TEST(PartTree, CutsNoFlatFaces) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (const auto& [floor, ceiling] : {std::pair(0.6, 0.0), {0.0, 0.6}, {0.5, 0.5}, {0.3, 0.4}}) {
+    std::vector<Vec3f> points;
+    for (int i = 0; i < 100000; ++i) {
+      const float x = uniform(random), y = uniform(random), z = uniform(random);
+      const double kind = uniform(random);
+      const float height = kind < floor ? 0 : kind > 1 - ceiling ? 10 : 0.1f + 9.8f * z;
+      points.emplace_back(x, y, height + 1e-5f * uniform(random));
+    }
+    for (const float share : {0.3f, 0.4f, 0.5f, 0.6f, 0.7f}) {
+      const PartTree tree = treeOf(points, {4000}, share);
+      expectParts(tree, points);
+      for (const PartTree::Node& node : tree.nodes) {
+        if (node.axis != 2) continue;
+        EXPECT_GT(std::abs(node.at), 0.004f) << floor << ' ' << share;
+        EXPECT_GT(std::abs(node.at - 10), 0.004f) << floor << ' ' << share;
+      }
+    }
+  }
 }
 
 TEST(PartTree, CutsAtTheShareThatIsAskedFor) {

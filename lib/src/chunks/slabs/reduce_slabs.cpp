@@ -101,7 +101,7 @@ class SlabReducer {
     return bands;
   }
 
-  // Marks the triangles that lie in a band as a whole.
+  // Marks the triangles that lie in a band as a whole, but for some at its borders.
   [[nodiscard]] std::vector<std::uint8_t> trianglesOf(const CutMesh& cut, const Band& band,
                                                       base::Job& job) const {
     std::vector<std::uint8_t> isInside(cut.mesh.positions.size());
@@ -119,6 +119,7 @@ class SlabReducer {
         marks[t] = isInside[v[0]] & isInside[v[1]] & isInside[v[2]];
       }
     });
+    keepManifold(cut, marks, job);
     return marks;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -67,9 +68,13 @@ std::vector<grid::Slab> splitIntoSlabs(const grid::Blocks& blocks, int chunkSize
   const auto isThick = [&](std::int32_t from, std::int32_t to) {
     return (std::int64_t{to} - from) * chunkSize >= thickness;
   };
-  for (const auto& [row, count] : rows) {
-    before += count;
-    const bool isFull = before * most >= total * (slabs.size() + 1);
+  for (auto at = rows.begin(); at != rows.end(); ++at) {
+    const std::int32_t row = at->first;
+    before += at->second;
+    // As near to its share as whole rows allow.
+    const auto next = std::next(at);
+    const std::size_t half = next == rows.end() ? 0 : next->second / 2;
+    const bool isFull = (before + half) * most >= total * (slabs.size() + 1);
     if (!isFull || !isThick(first, row + 1) || !isThick(row + 1, end)) continue;
     slabs.push_back({axis, first, row});
     first = row + 1;

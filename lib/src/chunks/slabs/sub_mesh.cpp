@@ -1,11 +1,57 @@
 #include "chunks/slabs/sub_mesh.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "base/huge_pages.h"
+#include "base/parallel_sort.h"
 #include "base/ranked_bits.h"
 
 namespace tufa::chunks {
+namespace {
+
+// The vertices at which several borders of the marked triangles begin, sorted.
+std::vector<VertexIndex> pinchedVertices(const CutMesh& mesh,
+                                         const std::vector<std::uint8_t>& marks, base::Job& job) {
+  const auto keyOf = [](VertexIndex a, VertexIndex b) { return std::uint64_t{a} << 32 | b; };
+  std::vector<std::uint64_t> edges;
+  for (std::size_t t = 0; t < marks.size(); ++t) {
+    job.pollCancelled(t);
+    if (marks[t] == 0) continue;
+    const auto& v = mesh.mesh.triangles[t].vertices;
+    for (std::size_t i = 0; i < 3; ++i) edges.push_back(keyOf(v[i], v[(i + 1) % 3]));
+  }
+  base::parallelSort(edges.begin(), edges.end(), std::less<>());
+  std::vector<VertexIndex> begins, pinched;  // of edges of one triangle, in the order of vertices
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    job.pollCancelled(i);
+    const auto a = static_cast<VertexIndex>(edges[i] >> 32);
+    const auto b = static_cast<VertexIndex>(edges[i]);
+    if (!std::binary_search(edges.begin(), edges.end(), keyOf(b, a))) begins.push_back(a);
+  }
+  for (std::size_t i = 1; i < begins.size(); ++i) {
+    if (begins[i] == begins[i - 1]) pinched.push_back(begins[i]);
+  }
+  return pinched;
+}
+
+}  // namespace
+
+void keepManifold(const CutMesh& mesh, std::vector<std::uint8_t>& marks, base::Job& job) {
+  for (;;) {
+    const std::vector<VertexIndex> pinched = pinchedVertices(mesh, marks, job);
+    if (pinched.empty()) return;
+    for (std::size_t t = 0; t < marks.size(); ++t) {
+      job.pollCancelled(t);
+      if (marks[t] == 0) continue;
+      const auto& v = mesh.mesh.triangles[t].vertices;
+      const bool isPinched = std::any_of(v.begin(), v.end(), [&](VertexIndex corner) {
+        return std::binary_search(pinched.begin(), pinched.end(), corner);
+      });
+      if (isPinched) marks[t] = 0;
+    }
+  }
+}
 
 SubMesh subMesh(const CutMesh& mesh, const std::vector<std::uint8_t>& isWanted, base::Job& job) {
   SubMesh sub;
