@@ -33,8 +33,8 @@ struct ChunkOptions {
   GlbCompression compression = GlbCompression::None;
   UpAxis up = UpAxis::Y;  ///< .glb: of the volume
   double scale = 1;       ///< .glb: metres in a world unit; above 0
-  /// Of a volume of more active voxels, at least twice as many, LOD 0 is made in slabs of chunks
-  /// one after another, so that memory holds the uniform mesh of no more than one: see
+  /// Active voxels of a slab, or more. Of volumes of twice as many and more LOD 0 is made in slabs
+  /// of chunks one after another, so that memory holds the uniform mesh of one: see
   /// docs/stages/chunks.md. Volumes whose tolerance is scaled from place to place are not.
   std::size_t slabVoxels = 8'000'000;
   /// The chunks to make; empty: all. A chunk has the same bytes whichever are made with it.
