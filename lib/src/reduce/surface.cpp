@@ -46,11 +46,14 @@ void makeVertex(Surface& s, const CornersOfVertices& corners, Index v) {
   const auto vertexAt = [&](Index c) { return s.triangles.corner(c); };
   int n = 0;
   bool isSteep = false, isTooMany = false;
-  Index sum = 0;  // each neighbour once as start and once as end of the link, unless it is open
+  // Each neighbour once as start and once as end of the link, unless it is open. Their bits are
+  // mixed: the ends of two fans may well have the same sum.
+  Index sum = 0;
+  const auto mixed = [](Index x) { return (x * 0x9e3779b1u) ^ ((x * 0x9e3779b1u) >> 16); };
   const Vec3f p = s.position[v];
   for (const Index c : corners.of(v)) {
     const Index a = vertexAt(nextCorner(c)), b = vertexAt(previousCorner(c));
-    sum += a - b;
+    sum += mixed(a) - mixed(b);
     const Vec3f normal = cross(s.position[a] - p, s.position[b] - p);
     const float l = length(normal);
     if (!(l > 0)) {

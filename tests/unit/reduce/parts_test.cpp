@@ -572,5 +572,18 @@ TEST(Sections, StartAtAVertexInWhateverFaceIsGiven) {
   }
 }
 
+// Of two fans whose ends have the same sum.
+TEST(Surface, IsOpenAtPinchedVertices) {
+  test::FineMesh fans;
+  for (const Vec3f& p :
+       {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(1, 1, 0), Vec3f(-1, 0, 0), Vec3f(-1, 1, 0)}) {
+    fans.positions.push_back(p);
+  }
+  fans.triangles = {Triangle(0, 1, 2), Triangle(0, 4, 3)};
+  base::Job job(1, {});
+  const Surface surface = test::surfaceOf(fans, job);
+  for (const std::uint8_t flags : surface.flags) EXPECT_NE(flags & kBorder, 0);
+}
+
 }  // namespace
 }  // namespace tufa::reduce

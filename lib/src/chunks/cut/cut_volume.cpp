@@ -19,6 +19,10 @@ Mesh uniformMesh(grid::Volume volume, const ContourOptions& options, const unifo
 
 }  // namespace
 
+double latticeMove(const CutOptions& options, const grid::Affine& affine) {
+  return 0.5 * std::sqrt(3.0) * options.latticeStep / affine.voxelSize();
+}
+
 CutMesh cutVolume(grid::Volume volume, const CutOptions& options, const CutEnds& ends,
                   ContourReport& report, base::Job& job) {
   const grid::Affine affine = volume.affine;
@@ -32,8 +36,7 @@ CutMesh cutVolume(grid::Volume volume, const CutOptions& options, const CutEnds&
   }
   separateRounded(cut, affine, options.singlePrecision, job);
   keepApart(cut, affine, options.singlePrecision, job);
-  // The farthest that a vertex moves to the lattice.
-  cut.moved += 0.5 * std::sqrt(3.0) * options.latticeStep / affine.voxelSize();
+  cut.moved += latticeMove(options, affine);
   return cut;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/job.h"
 #include "chunks/cut/cut_mesh.h"
+#include "grid/affine.h"
 #include "grid/volume.h"
 #include "uniform/uniform_surface.h"
 
@@ -17,6 +18,9 @@ struct CutOptions {
   bool singlePrecision = true;
   double latticeStep = 0;  ///< of the lattice that positions will be moved to, world units; 0: none
 };
+
+/// The farthest that a vertex moves to the lattice, voxels.
+[[nodiscard]] double latticeMove(const CutOptions& options, const grid::Affine& affine);
 
 /// The share of a call's progress that is reached at the end of each stage.
 struct CutEnds {

@@ -19,6 +19,7 @@ static_assert(kLeastSlab > 2 * kBand, "bands do not touch");
 // Voxels beyond a slab that its uniform mesh is made of: a band, and what that depends on. A place
 // at a crease depends on cells a few voxels around, a repair on what lies near a pair.
 constexpr int kMargin = kBand + 24;
+static_assert(kMargin % grid::kBlockSize == 0);
 // Voxels by which a cut may move the surface: a band must not depend on how far it did elsewhere.
 constexpr double kMostMoved = 0.02;
 
@@ -63,26 +64,32 @@ class SlabReducer {
   CutSlab reduce(const grid::Slab& slab, base::Job& job) {
     job.beginStage("blocks", ends_.uniform.blocks);
     const grid::Slab samples = samplesOf(slab, slabs_, options_.chunkSize, kMargin);
-    CutMesh window = cutVolume(grid::partOf(volume_, samples, job), options_, ends_, report_, job);
-    const std::vector<Band> bands = bandsOf(slab);
-    window = subMesh(window, trianglesOf(window, slab, bands, job), job).cut;
+    CutMesh cut = cutVolume(grid::partOf(volume_, samples, job), options_, ends_, report_, job);
+    std::vector<Marks> inBands;
+    for (const Band& band : bandsOf(slab)) inBands.push_back(trianglesOf(cut, band, job));
+    SubMesh window = subMesh(cut, trianglesOf(cut, slab, inBands, job), job);
+    cut = {};
     job.beginStage("level 0", 1, base::Length::Unknown);
     std::vector<ReducedBand> reduced;
-    for (const Band& band : bands) {
-      SubMesh sub = subMesh(window, trianglesOf(window, band, job), job);
-      if (sub.triangles.empty()) continue;
-      sub.cut.moved = std::max(sub.cut.moved, kMostMoved);
-      reduced.push_back(chainOf(std::move(sub.cut), job).reduceBand(rule_.tolerance));
-      reduced.back().vertices = std::move(sub.vertices);
-      reduced.back().triangles = std::move(sub.triangles);
+    for (const Marks& inBand : inBands) {
+      Marks marks;
+      for (const std::uint32_t t : window.triangles) marks.push_back(inBand[t]);
+      SubMesh band = subMesh(window.cut, marks, job);
+      if (band.triangles.empty()) continue;
+      band.cut.moved = std::max(band.cut.moved, kMostMoved + latticeMove(options_, volume_.affine));
+      reduced.push_back(chainOf(std::move(band.cut), job).reduceBand(rule_.tolerance));
+      reduced.back().vertices = std::move(band.vertices);
+      reduced.back().triangles = std::move(band.triangles);
     }
-    if (window.mesh.triangles.empty()) return {};
+    if (window.triangles.empty()) return {};
     std::vector<std::uint8_t> isBeyond;  // the slab, of each chunk
-    for (const Coord& chunk : window.chunks) isBeyond.push_back(slab.contains(chunk) ? 0 : 1);
-    ChunkChain chain = chainOf(std::move(window), job);
+    for (const Coord& chunk : window.cut.chunks) isBeyond.push_back(slab.contains(chunk) ? 0 : 1);
+    ChunkChain chain = chainOf(std::move(window.cut), job);
     if (!reduced.empty()) chain.replace(std::move(reduced), isBeyond);
     return takeSlab(chain.reduceAlone(rule_.tolerance), slab, job);
   }
+
+  using Marks = std::vector<std::uint8_t>;  ///< of triangles
 
   // Lattice coordinates across the slabs.
   struct Band {
@@ -102,8 +109,7 @@ class SlabReducer {
   }
 
   // Marks the triangles that lie in a band as a whole, but for some at its borders.
-  [[nodiscard]] std::vector<std::uint8_t> trianglesOf(const CutMesh& cut, const Band& band,
-                                                      base::Job& job) const {
+  [[nodiscard]] Marks trianglesOf(const CutMesh& cut, const Band& band, base::Job& job) const {
     std::vector<std::uint8_t> isInside(cut.mesh.positions.size());
     job.forRanges(isInside.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
@@ -112,7 +118,7 @@ class SlabReducer {
         isInside[v] = band.lower <= at && at <= band.upper ? 1 : 0;
       }
     });
-    std::vector<std::uint8_t> marks(cut.mesh.triangles.size());
+    Marks marks(cut.mesh.triangles.size());
     job.forRanges(marks.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto& v = cut.mesh.triangles[t].vertices;
@@ -124,17 +130,15 @@ class SlabReducer {
   }
 
   // Marks the triangles of a slab, and those of bands.
-  [[nodiscard]] std::vector<std::uint8_t> trianglesOf(const CutMesh& cut, const grid::Slab& slab,
-                                                      const std::vector<Band>& bands,
-                                                      base::Job& job) const {
-    std::vector<std::uint8_t> marks(cut.mesh.triangles.size());
+  [[nodiscard]] static Marks trianglesOf(const CutMesh& cut, const grid::Slab& slab,
+                                         const std::vector<Marks>& inBands, base::Job& job) {
+    Marks marks(cut.mesh.triangles.size());
     for (std::size_t t = 0; t < marks.size(); ++t) {
       job.pollCancelled(t);
       marks[t] = slab.contains(cut.chunks[cut.chunkOf[t]]) ? 1 : 0;
     }
-    for (const Band& band : bands) {
-      const std::vector<std::uint8_t> more = trianglesOf(cut, band, job);
-      for (std::size_t t = 0; t < marks.size(); ++t) marks[t] |= more[t];
+    for (const Marks& inBand : inBands) {
+      for (std::size_t t = 0; t < marks.size(); ++t) marks[t] |= inBand[t];
     }
     return marks;
   }
