@@ -11,6 +11,7 @@
 #include <random>
 
 #include "support/chunk_mixtures.h"
+#include "support/expect_error.h"
 #include "support/shape.h"
 #include "support/uniform_mesh.h"
 
@@ -136,6 +137,22 @@ TEST(ChunkSlabThreads, GiveTheSameBytes) {
       EXPECT_EQ(a.transition, b.transition);
       EXPECT_EQ(a.maxErrorVoxels, b.maxErrorVoxels);
     }
+  }
+}
+
+TEST(ChunkSlabsThatAreCancelled, EndAtOnce) {
+  const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Terrain, 0.015);
+  ChunkOptions options = inSlabs(32);
+  for (const double most : {0.02, 0.3, 0.6, 0.9}) {
+    bool isCancelled = false;
+    options.contour.progress = [&](std::string_view, double fraction) {
+      EXPECT_FALSE(isCancelled);
+      isCancelled = fraction > most;
+      return !isCancelled;
+    };
+    test::expectError(ErrorCode::Cancelled, "cancelled",
+                      [&] { (void)test::makeChunks(*grid, options); });
+    EXPECT_TRUE(isCancelled);
   }
 }
 
