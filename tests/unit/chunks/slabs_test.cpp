@@ -9,6 +9,7 @@
 #include "chunks/cut/cut_mesh.h"
 #include "chunks/slabs/cut_slab.h"
 #include "chunks/slabs/join_slabs.h"
+#include "chunks/slabs/reduce_slabs.h"
 #include "chunks/slabs/split_into_slabs.h"
 #include "chunks/slabs/sub_mesh.h"
 #include "support/mesh_oracle.h"
@@ -116,6 +117,35 @@ TEST(Slabs, AreWhatTheyWereOnceTheyAreJoined) {
     return all;
   };
   EXPECT_EQ(planesAt(joined), planesAt(cut.mesh));
+}
+
+// Between two slabs with a gap borders are in different planes.
+TEST(Slabs, ThatDoNotFitAreMadeAgainAsOne) {
+  Torus cut;
+  const grid::Volume& volume = cut.model.model().surface().volume;
+  const grid::Slab all{0, -3, 2}, low{0, -3, -2}, high{0, 0, 2};
+  for (const Coord& chunk : cut.mesh.chunks) ASSERT_TRUE(all.contains(chunk)) << chunk;
+  CutOptions options;
+  options.contour.normals = Normals::Gradient;
+  options.chunkSize = kRow;
+  const auto reduced = [&](std::vector<grid::Slab> slabs) {
+    ContourReport report;
+    return reduceSlabs(volume, std::move(slabs), cut.model.rule(), options, {}, 1, report,
+                       cut.model.job());
+  };
+  const CutMesh whole = reduced({all}), joined = reduced({low, high});
+  EXPECT_EQ(joined.mesh.positions, whole.mesh.positions);
+  EXPECT_EQ(joined.mesh.triangles, whole.mesh.triangles);
+  EXPECT_EQ(joined.errors, whole.errors);
+  const grid::Slab rest{0, -1, 2};
+  const CutMesh parted = reduced({low, rest});
+  EXPECT_NE(parted.mesh.positions, whole.mesh.positions);
+  for (const CutMesh* mesh : {&whole, &parted}) {
+    const test::MeshTopology found = test::inspect(mesh->mesh);
+    EXPECT_TRUE(found.closed() && found.manifold()) << found;
+    EXPECT_EQ(found.euler(), 0);
+    for (const double error : mesh->errors) EXPECT_LE(error, cut.model.rule().tolerance);
+  }
 }
 
 TEST(SubMesh, HasTheTrianglesAskedFor) {
