@@ -74,16 +74,7 @@ TEST_P(ChunkSlabs, KeepTheTolerancesWithAsManyTriangles) {
   ContourReport report, wholeReport;
   const Made made = test::makeChunks(*grid, options, &report);
   EXPECT_GE(slabsOf(report), 2U);
-  for (const ChunkEntry& entry : made.index.chunks) {
-    for (std::size_t level = 0; level < entry.levels.size(); ++level) {
-      const ChunkLevelEntry& own = entry.levels[level];
-      const std::size_t next = std::min(level + 1, entry.levels.size() - 1);
-      EXPECT_GT(own.maxErrorVoxels, 0);
-      EXPECT_LE(own.maxErrorVoxels, made.index.tolerances[level]);
-      EXPECT_LE(own.transitionErrorVoxels, made.index.tolerances[next]);
-      EXPECT_EQ(own.intersectionsLeft, 0U);
-    }
-  }
+  test::expectTolerancesKept(made);
   options.slabVoxels = ChunkOptions().slabVoxels;
   const Made whole = test::makeChunks(*grid, options, &wholeReport);
   EXPECT_EQ(slabsOf(wholeReport), 0U);

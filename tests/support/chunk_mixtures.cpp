@@ -111,4 +111,17 @@ std::set<unsigned> expectMixturesToClose(const openvdb::GridBase& grid, ChunkOpt
   return masks;
 }
 
+void expectTolerancesKept(const Made& made) {
+  for (const ChunkEntry& entry : made.index.chunks) {
+    for (std::size_t level = 0; level < entry.levels.size(); ++level) {
+      const ChunkLevelEntry& own = entry.levels[level];
+      const std::size_t next = std::min(level + 1, entry.levels.size() - 1);
+      EXPECT_GT(own.maxErrorVoxels, 0);
+      EXPECT_LE(own.maxErrorVoxels, made.index.tolerances[level]);
+      EXPECT_LE(own.transitionErrorVoxels, made.index.tolerances[next]);
+      EXPECT_EQ(own.intersectionsLeft, 0U);
+    }
+  }
+}
+
 }  // namespace tufa::test

@@ -27,4 +27,8 @@ struct Made {
 std::set<unsigned> expectMixturesToClose(const openvdb::GridBase& grid, ChunkOptions options,
                                          int rounds);
 
+/// With strips of either kind: the certificate is a bound, no tolerance is exceeded, and no
+/// triangles intersect.
+void expectTolerancesKept(const Made& made);
+
 }  // namespace tufa::test
