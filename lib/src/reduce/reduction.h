@@ -95,7 +95,7 @@ class Reduction {
   void setRegions(std::function<Regions()> regions);
 
   /// Replaces parts of the input, and then has all triangles of some regions stay where they are.
-  /// `isHeld`: for each region. To be called behind setRegions().
+  /// `isHeld`: for each region. To be called after setRegions().
   void replaceParts(std::span<const ReplacedPart> parts, const std::vector<std::uint8_t>& isHeld);
 
   /// As few triangles as can be found within `tolerance` voxels of the reference. Below
@@ -128,7 +128,7 @@ class Reduction {
   [[nodiscard]] const std::vector<Index>& wentFor() const { return surface_.intoPlane; }
   /// The state between two steps.
   [[nodiscard]] const Surface& surface() const { return surface_; }
-  /// The same, at the end.
+  /// The same, without a copy. To be called last.
   [[nodiscard]] Surface takeSurface() { return std::move(surface_); }
   /// What was tried and made since the beginning.
   [[nodiscard]] const OperationCounts& counts() const { return counts_; }

@@ -235,8 +235,8 @@ bool isHoleOutermost(const std::vector<double>& volumes) {
 std::vector<VertexIndex> findWrong(const Pieces& pieces, const std::vector<double>& volumes,
                                    bool isOutermostHole, std::size_t allVertices,
                                    std::vector<VertexIndex> small, base::Job& job) {
-  // Vertices that no polygon uses are components without volume.
-  // Leaves of some vertices those on the wrong side.
+  // Leaves of some vertices those on the wrong side. Those that no polygon uses are components
+  // without volume, and right.
   const auto keepWrong = [&](std::vector<VertexIndex>& vertices) {
     const std::vector<std::uint8_t> inside = pieces.areInside(vertices);
     std::size_t kept = 0;

@@ -105,7 +105,7 @@ void ChunkChain::reduce(double tolerance, reduce::LineMode lines) {
 }
 
 // The triangles that intersect once positions are rounded as they are written. Guards in single
-// precision may take a crumb, or a star of slivers along a crease, for one that has a volume.
+// precision may take a star of slivers along a crease for simple, and bands have another frame.
 std::vector<reduce::Index> ChunkChain::findIntersecting(const reduce::ReducedMesh& reduced) {
   Mesh mesh;
   mesh.positions.resize(reduced.positions.size());

@@ -67,8 +67,8 @@ struct ReducedBand {
 /// in another plane: reduction guards that too.
 class ChunkChain {
  public:
-  /// The other arguments must outlive this. A cut mesh with errors is LOD 0, whatever its
-  /// tolerance.
+  /// The other arguments must outlive this. A cut mesh with errors is taken for LOD 0 as it is,
+  /// whatever tolerance the first call of next() has.
   ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::CutRule& rule, int chunkSize,
              bool singlePrecision, base::Job& job);
 
@@ -80,7 +80,8 @@ class ChunkChain {
   void replace(std::vector<ReducedBand> bands, const std::vector<std::uint8_t>& isHeld);
   /// LOD 0 alone, as a cut mesh again. To be called in place of next().
   [[nodiscard]] CutMesh reduceAlone(double tolerance);
-  /// LOD 0 of a band, without what it was made of. To be called in place of next(), at the end.
+  /// LOD 0 of a band; its `vertices` and `triangles` are left to the caller. To be called in place
+  /// of next(), and last.
   [[nodiscard]] ReducedBand reduceBand(double tolerance);
   /// The cut mesh, without triangles and normals.
   [[nodiscard]] const CutMesh& cut() const { return cut_; }
@@ -110,8 +111,8 @@ class ChunkChain {
   base::Job& job_;
   refine::LocalFrame frame_;             ///< of the cut mesh
   std::vector<reduce::LineKind> kinds_;  ///< of each vertex of the cut mesh
-  std::map<std::array<float, 3>, Placed>
-      placed_;                 ///< what bands have placed, by places in the frame
+  /// The vertices of bands, by their places in the frame.
+  std::map<std::array<float, 3>, Placed> placed_;
   VertexIndex curveVertices_;  ///< numbers in use, see ChainLevel::curveVertex
   std::optional<reduce::Reduction> reduction_;
   bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
