@@ -26,18 +26,23 @@ std::int64_t floorOf(double x) {
 }
 
 // Calls visit(place in a table of that size, a power of two) for the cubes of the lattice that a
-// triangle is in, by a hash, until it returns true. Whether it did.
+// triangle's box is in, by a hash, until it returns true. Whether it did; true for boxes that are
+// in more cubes than are worth a visit.
 template <class Visit>
 bool visitCubes(const Triangle& triangle, const std::vector<Vec3>& at, std::size_t size,
                 const Visit& visit) {
   constexpr double kCube = 4, kMargin = 0.05;  // steps of the lattice; more than rounding moves
+  constexpr double kMostCubes = 4096;
   const auto& v = triangle.vertices;
   std::int64_t low[3], high[3];
+  double cubes = 1;
   for (int i = 0; i < 3; ++i) {
     const auto [least, most] = std::minmax({at[v[0]][i], at[v[1]][i], at[v[2]][i]});
     low[i] = floorOf((least - kMargin) / kCube);
     high[i] = floorOf((most + kMargin) / kCube);
+    cubes *= static_cast<double>(high[i] - low[i] + 1);
   }
+  if (!(cubes <= kMostCubes)) return true;
   for (std::int64_t x = low[0]; x <= high[0]; ++x) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {
       for (std::int64_t z = low[2]; z <= high[2]; ++z) {
@@ -59,11 +64,14 @@ std::vector<std::uint32_t> trianglesNear(const std::vector<Triangle>& triangles,
                                          const std::vector<std::uint32_t>& some, base::Job& job) {
   const std::size_t size = std::bit_ceil(kPlaces * some.size());
   std::vector<std::uint8_t> isMarked(size, 0);
+  bool isLarge = false;  // one of them: all triangles may be near
   for (const std::uint32_t t : some) {
-    (void)visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] = 1, false; });
+    isLarge |=
+        visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] = 1, false; });
   }
   return base::collectIf(job, triangles.size(), [&](std::uint32_t t) {
-    return visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] != 0; });
+    return isLarge ||
+           visitCubes(triangles[t], at, size, [&](std::size_t i) { return isMarked[i] != 0; });
   });
 }
 
