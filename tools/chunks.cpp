@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -95,13 +96,21 @@ std::vector<double> callShares(const ChunksArguments& arguments) {
 ChunksRun build(const ChunksArguments& arguments) {
   ProgressBar bar(arguments.quiet, callShares(arguments));
   ChunksRun run;
-  std::shared_ptr<openvdb::GridBase> grid;
-  run.readSeconds = timed([&] { grid = readVolume(arguments.input, arguments.grid); });
+  std::optional<GridFile> file;  // none if the volume is in memory as a whole
+  std::shared_ptr<const openvdb::GridBase> grid;
+  run.readSeconds = timed([&] { file = openVolume(arguments.input, arguments.grid); });
+  grid = file->outline();
   requireVoxels(*grid, arguments.input);
   ContourOptions meshing = arguments.chunks.contour;
+  if (lacksIsovalue(arguments.isovalue, *grid)) grid = loadVolume(*file, arguments.input);
   meshing.isovalue = readIsovalue(arguments.isovalue, *grid, arguments.input);
-  grid = filterVolume(grid, arguments.input, arguments.filters, meshing, bar, run.filters);
-  requireLeft(*grid, arguments.input, run.filters);
+  if (!arguments.filters.inOrder.empty()) {
+    std::shared_ptr<openvdb::GridBase> whole;
+    run.readSeconds += timed([&] { whole = loadVolume(*file, arguments.input); });
+    file.reset();
+    grid = filterVolume(whole, arguments.input, arguments.filters, meshing, bar, run.filters);
+    requireLeft(*grid, arguments.input, run.filters);
+  }
   const ChunkOptions options = chunkOptions(arguments, meshing, *grid, bar);
   const ChunkFormat format = arguments.format == "ply" ? ChunkFormat::Ply : ChunkFormat::Glb;
   ChunkFolder folder(arguments.output, format, options.contour.threads);
@@ -115,7 +124,10 @@ ChunksRun build(const ChunksArguments& arguments) {
     if (run.attributes.empty()) run.attributes = withoutValues(chunk.levels.front().attributes);
     run.writeSeconds += timed([&] { folder.add(index, std::move(chunk)); });
   };
-  run.buildSeconds = timed([&] { run.index = buildChunks(*grid, options, sink, &run.contour); });
+  run.buildSeconds = timed([&] {
+    run.index = file ? buildChunks(*file, options, sink, &run.contour)
+                     : buildChunks(*grid, options, sink, &run.contour);
+  });
   run.buildSeconds -= run.writeSeconds + run.attributeSeconds;
   run.contour.nonFiniteValues += run.filters.nonFiniteValues();
   run.index.attributes = run.attributes;
@@ -126,6 +138,7 @@ ChunksRun build(const ChunksArguments& arguments) {
   noteMissing(run.index, options.only);
   if (options.compression != run.index.compression) noteFloats("every level");
   if (options.only.empty() && run.index.chunks.empty()) {
+    if (file) grid = loadVolume(*file, arguments.input);
     requireSurface({}, run.contour.isovalue, *grid, arguments.input, run.filters.text());
   }
   run.writeSeconds += timed([&] { folder.commit(run.index, !options.only.empty()); });

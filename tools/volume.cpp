@@ -126,8 +126,12 @@ void requireVolume(const std::string& file) {
   }
 }
 
-/// Throws Error(InvalidArgument) if a pattern stands where one grid is named.
-void requireName(const std::string& file, const std::string& name) {
+/// Throws Error(InvalidArgument) as requireVolume(), and if a pattern stands where one grid is
+/// named.
+void requireGridName(const std::string& file, const std::optional<std::string>& given) {
+  requireVolume(file);
+  if (!given || given->find_first_of("*?") == std::string::npos) return;
+  const std::string& name = *given;
   std::string names;
   for (const GridName& grid : listVolume(file)) {
     if (grid.name == name) return;
@@ -147,7 +151,7 @@ std::optional<double> readIsovalue(const std::optional<std::string>& text,
     if (const auto value = numberIn<double>(*text)) return value;
     throw Error(ErrorCode::InvalidArgument, "--iso is a number or auto, not \"" + *text + "\"");
   }
-  if (grid.getGridClass() != openvdb::GRID_FOG_VOLUME) return std::nullopt;
+  if (!lacksIsovalue(text, grid)) return std::nullopt;
   const GridInfo info = describeGrid(grid);
   if (!info.minValue) {
     throw Error(ErrorCode::InvalidArgument, "a fog volume needs --iso, and grid \"" +
@@ -160,6 +164,10 @@ std::optional<double> readIsovalue(const std::optional<std::string>& text,
                   " " + describeValues(info) + "; try " + suggestIsovalue(info) +
                   ", or --iso auto for half way between the least and the greatest value, which "
                   "differs from frame to frame");
+}
+
+bool lacksIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid) {
+  return !text && grid.getGridClass() == openvdb::GRID_FOG_VOLUME;
 }
 
 void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid,
@@ -230,9 +238,18 @@ void requireVoxelSize(const std::string& option, double size) {
 
 std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
                                               const std::optional<std::string>& name) {
-  requireVolume(file);
-  if (name && name->find_first_of("*?") != std::string::npos) requireName(file, *name);
+  requireGridName(file, name);
   return guarded(file, [&](const auto& source) { return readGrid(source, name); });
+}
+
+GridFile openVolume(const std::string& file, const std::optional<std::string>& name) {
+  requireGridName(file, name);
+  return guarded(file, [&](const auto& source) { return GridFile(source, name); });
+}
+
+std::shared_ptr<openvdb::GridBase> loadVolume(GridFile& volume, const std::string& file) {
+  const CrashGuard guard(file);
+  return volume.load();
 }
 
 std::vector<GridInfo> describeVolumes(const std::string& file) {

@@ -55,6 +55,10 @@ CLI::Option* addIsovalueOption(CLI::App& app, std::optional<std::string>& isoval
                                                  const openvdb::GridBase& grid,
                                                  const std::string& file);
 
+/// Whether that message will be thrown, for which the grid's values must be in memory.
+[[nodiscard]] bool lacksIsovalue(const std::optional<std::string>& text,
+                                 const openvdb::GridBase& grid);
+
 /// Says on standard error which isovalue was chosen, where that depends on the data.
 void noteIsovalue(const std::optional<std::string>& text, const openvdb::GridBase& grid,
                   double isovalue);
@@ -93,9 +97,13 @@ struct Length {
 [[nodiscard]] double readTolerance(const std::string& option, const std::string& text,
                                    const openvdb::GridBase& grid);
 
-/// readGrid() and describeGrids(), under a CrashGuard: the only ways to the volumes of a file.
+/// readGrid(), GridFile, GridFile::load() and describeGrids(), under a CrashGuard: the only ways to
+/// the volumes of a file.
 [[nodiscard]] std::shared_ptr<openvdb::GridBase> readVolume(const std::string& file,
                                                             const std::optional<std::string>& name);
+[[nodiscard]] GridFile openVolume(const std::string& file, const std::optional<std::string>& name);
+[[nodiscard]] std::shared_ptr<openvdb::GridBase> loadVolume(GridFile& volume,
+                                                            const std::string& file);
 [[nodiscard]] std::vector<GridInfo> describeVolumes(const std::string& file);
 
 /// Whether a grid holds integers, whose labels are meshed one by one.

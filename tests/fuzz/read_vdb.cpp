@@ -3,8 +3,10 @@
 #include <tufa/contour.h>
 #include <tufa/error.h>
 #include <tufa/memory.h>
+#include <array>
 #include <new>
 
+#include "base/leaf_source.h"
 #include "fuzz.h"
 #include "grid/openvdb_templates.h"
 
@@ -23,6 +25,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     (void)tufa::describeGrids(file);
     const openvdb::GridBase::Ptr grid = tufa::readGrid(file);
+    tufa::GridFile stored(file);
+    std::array<double, 512> values{};
+    for (openvdb::Index64 n = 0; stored.leaves() && n < stored.outline()->baseTree().leafCount();
+         ++n) {
+      stored.leaves()->read(n, values.data());
+    }
     if (!small(tufa::describeGrid(*grid))) return 0;
     tufa::ContourOptions options;
     options.nonFinite = tufa::NonFinite::Outside;

@@ -4,14 +4,18 @@
 
 #include <tufa/check.h>
 #include <tufa/chunks.h>
+#include <tufa/grid_files.h>
 #include <tufa/shapes.h>
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
+#include <limits>
 #include <ostream>
 #include <random>
 
 #include "support/chunk_mixtures.h"
 #include "support/expect_error.h"
+#include "support/scratch_folder.h"
 #include "support/shape.h"
 #include "support/uniform_mesh.h"
 
@@ -82,6 +86,7 @@ TEST_P(ChunkSlabs, KeepTheTolerancesWithAsManyTriangles) {
   EXPECT_EQ(report.surfaceCells, wholeReport.surfaceCells);
   EXPECT_EQ(report.openEdges, wholeReport.openEdges);
   EXPECT_EQ(report.activeVoxels, wholeReport.activeVoxels);
+  EXPECT_EQ(report.faceFlips, wholeReport.faceFlips);
   // A part of each later tolerance is the first LOD's: a third more triangles at the second one.
   const double most[] = {1.1, 1.6, 1.3, 1.3};
   for (std::size_t level = 0; level < 4; ++level) {
@@ -104,6 +109,23 @@ INSTANTIATE_TEST_SUITE_P(Volumes, ChunkSlabs,
                                            Case{"noise", noisyBar, 16}),
                          [](const auto& test) { return test.param.name; });
 
+void expectSameChunks(const Made& one, const Made& other) {
+  EXPECT_EQ(one.index.surface, other.index.surface);
+  EXPECT_EQ(one.index.origin, other.index.origin);
+  EXPECT_EQ(one.index.grid, other.index.grid);
+  ASSERT_EQ(one.chunks.size(), other.chunks.size());
+  for (std::size_t i = 0; i < one.chunks.size(); ++i) {
+    ASSERT_EQ(one.chunks[i].levels.size(), other.chunks[i].levels.size());
+    for (std::size_t level = 0; level < one.chunks[i].levels.size(); ++level) {
+      const ChunkLevel &a = one.chunks[i].levels[level], &b = other.chunks[i].levels[level];
+      EXPECT_EQ(a.positions, b.positions);
+      EXPECT_EQ(a.normals, b.normals);
+      EXPECT_EQ(a.transition, b.transition);
+      EXPECT_EQ(a.maxErrorVoxels, b.maxErrorVoxels);
+    }
+  }
+}
+
 TEST(ChunkSlabThreads, GiveTheSameBytes) {
   const openvdb::FloatGrid::Ptr grid = test::shapeOf(Shape::Terrain, 0.015);
   ChunkOptions options = inSlabs(32);
@@ -118,17 +140,57 @@ TEST(ChunkSlabThreads, GiveTheSameBytes) {
   };
   const Made three = test::makeChunks(*grid, options);
   EXPECT_EQ(lastFraction, 1);
-  EXPECT_EQ(one.index.surface, three.index.surface);
-  ASSERT_EQ(one.chunks.size(), three.chunks.size());
-  for (std::size_t i = 0; i < one.chunks.size(); ++i) {
-    for (std::size_t level = 0; level < one.chunks[i].levels.size(); ++level) {
-      const ChunkLevel &a = one.chunks[i].levels[level], &b = three.chunks[i].levels[level];
-      EXPECT_EQ(a.positions, b.positions);
-      EXPECT_EQ(a.normals, b.normals);
-      EXPECT_EQ(a.transition, b.transition);
-      EXPECT_EQ(a.maxErrorVoxels, b.maxErrorVoxels);
-    }
-  }
+  expectSameChunks(one, three);
+}
+
+// Compares chunks of a grid that stays in its file with those of the same grid in memory.
+void expectSameFromFile(const openvdb::FloatGrid::Ptr& grid, const ChunkOptions& options) {
+  const test::ScratchFolder folder;
+  writeGrids({grid}, folder / "m.vdb");
+  GridFile file(folder / "m.vdb");
+  ASSERT_FALSE(file.isLoaded());
+  ContourReport fromMemory, fromFile;
+  expectSameChunks(test::makeChunks(*readGrid(folder / "m.vdb"), options, &fromMemory),
+                   test::makeChunks(file, options, &fromFile));
+  EXPECT_FALSE(file.isLoaded());
+  EXPECT_EQ(slabsOf(fromFile), slabsOf(fromMemory));
+  EXPECT_EQ(fromFile.isovalue, fromMemory.isovalue);
+  EXPECT_EQ(fromFile.distanceField, fromMemory.distanceField);
+  EXPECT_EQ(fromFile.activeVoxels, fromMemory.activeVoxels);
+  EXPECT_EQ(fromFile.nonFiniteValues, fromMemory.nonFiniteValues);
+  EXPECT_EQ(fromFile.surfaceCells, fromMemory.surfaceCells);
+  EXPECT_EQ(fromFile.creaseCells, fromMemory.creaseCells);
+  EXPECT_EQ(fromFile.faceFlips, fromMemory.faceFlips);
+  EXPECT_EQ(fromFile.openEdges, fromMemory.openEdges);
+}
+
+TEST_P(ChunkSlabs, HaveTheSameBytesFromAFile) {
+  const openvdb::FloatGrid::Ptr grid = GetParam().make();
+  expectSameFromFile(grid, inSlabs(GetParam().chunkSize));
+}
+
+// Of one slab, and with an isovalue half way between the least and the greatest value, and values
+// that are not finite.
+TEST(ChunkFiles, OfSmallVolumesHaveTheSameBytes) {
+  ChunkOptions options;
+  options.chunkSize = 16;
+  options.contour.nonFinite = NonFinite::Outside;
+  const openvdb::FloatGrid::Ptr noise = noisyBar();
+  noise->tree().setValue(openvdb::Coord(3), std::numeric_limits<float>::infinity());
+  noise->tree().setValue(openvdb::Coord(-30, 4, 4), std::numeric_limits<float>::quiet_NaN());
+  expectSameFromFile(noise, options);
+  expectSameFromFile(test::shapeOf(Shape::Bracket, 0.05), options);
+  options.slabVoxels = 1;
+  expectSameFromFile(noise, options);
+}
+
+TEST(ChunkFiles, ThatAreCutWhileTheyAreReadAreRefused) {
+  const test::ScratchFolder folder;
+  writeGrids({test::shapeOf(Shape::Bracket, 0.015)}, folder / "m.vdb");
+  GridFile file(folder / "m.vdb");
+  std::filesystem::resize_file(folder / "m.vdb", std::filesystem::file_size(folder / "m.vdb") / 2);
+  test::expectError(ErrorCode::UnreadableFile, "m.vdb: the file ends inside grid \"bracket\"",
+                    [&] { (void)test::makeChunks(file, inSlabs(32)); });
 }
 
 TEST(ChunkSlabsThatAreCancelled, EndAtOnce) {

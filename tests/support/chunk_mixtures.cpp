@@ -54,22 +54,32 @@ void expectWhole(const Mesh& mesh, const MeshTopology& uniform, const std::strin
   EXPECT_EQ(found.components, uniform.components) << what << found;
 }
 
-}  // namespace
-
-Made makeChunks(const openvdb::GridBase& grid, const ChunkOptions& options, ContourReport* report) {
+// Of a grid or a file.
+template <class Volume>
+Made chunksOf(Volume& volume, const ChunkOptions& options, ContourReport* report) {
   Made made;
   std::map<Coord, Chunk> chunks;
   const ChunkSink keep = [&](const ChunkIndex&, Chunk&& chunk) {
     const Coord at = chunk.index;
     EXPECT_TRUE(chunks.emplace(at, std::move(chunk)).second) << at;
   };
-  made.index = buildChunks(grid, options, keep, report);
+  made.index = buildChunks(volume, options, keep, report);
   for (auto& [at, chunk] : chunks) made.chunks.push_back(std::move(chunk));
   EXPECT_EQ(made.index.chunks.size(), made.chunks.size());
   for (std::size_t i = 0; i < made.chunks.size(); ++i) {
     EXPECT_EQ(made.index.chunks[i].index, made.chunks[i].index);
   }
   return made;
+}
+
+}  // namespace
+
+Made makeChunks(const openvdb::GridBase& grid, const ChunkOptions& options, ContourReport* report) {
+  return chunksOf(grid, options, report);
+}
+
+Made makeChunks(GridFile& file, const ChunkOptions& options, ContourReport* report) {
+  return chunksOf(file, options, report);
 }
 
 std::vector<std::size_t> randomLods(const Made& made, std::mt19937& random) {

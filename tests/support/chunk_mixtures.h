@@ -19,6 +19,9 @@ struct Made {
 [[nodiscard]] Made makeChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                               ContourReport* report = nullptr);
 
+[[nodiscard]] Made makeChunks(GridFile& file, const ChunkOptions& options,
+                              ContourReport* report = nullptr);
+
 /// A few fine chunks among coarse ones, or as many of each: both kinds of mixtures occur.
 [[nodiscard]] std::vector<std::size_t> randomLods(const Made& made, std::mt19937& random);
 

@@ -4,6 +4,7 @@
 #include <tufa/contour.h>
 #include <tufa/coord.h>
 #include <tufa/export.h>
+#include <tufa/grid_files.h>
 #include <tufa/io.h>
 #include <tufa/lod.h>
 #include <tufa/mesh.h>
@@ -56,6 +57,12 @@ using ChunkSink = std::function<void(const ChunkIndex& index, Chunk&& chunk)>;
 /// creases and repairs are too high by what lies near a plane between two of them.
 TUFA_API ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                                 const ChunkSink& sink, ContourReport* report = nullptr);
+
+/// The same of a grid that stays in its file: memory holds the values of a slab at a time, and of
+/// the others which voxels are active. The chunks are the same bytes. Throws Error(UnreadableFile)
+/// too.
+TUFA_API ChunkIndex buildChunks(GridFile& file, const ChunkOptions& options, const ChunkSink& sink,
+                                ContourReport* report = nullptr);
 
 /// The triangles of a chunk to draw: its interior, and for each face the transition strip if the
 /// face's bit in `mask` is set, else the regular one. Only the vertices that they use, with their

@@ -10,6 +10,7 @@ namespace tufa {
 class ChunkFolder;
 class Coord;
 class Error;
+class GridFile;
 class Progress;
 class RaySurface;
 class StagedFolder;

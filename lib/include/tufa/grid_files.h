@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tufa/export.h>
+#include <tufa/fwd.h>
 #include <tufa/openvdb_fwd.h>
 #include <cstddef>
 #include <filesystem>
@@ -12,6 +13,10 @@
 #include <vector>
 
 namespace tufa {
+
+namespace base {
+class LeafSource;
+}
 
 /// What a .vdb file tells about one grid.
 struct GridInfo {
@@ -61,6 +66,35 @@ struct GridName {
 /// their active voxels but without the points.
 [[nodiscard]] TUFA_API std::shared_ptr<openvdb::GridBase> readGrid(
     const std::filesystem::path& path, const std::optional<std::string>& name = {});
+
+/// One grid of a .vdb file whose values stay in the file until they are needed, for work on volumes
+/// that are larger than memory: see buildChunks(). What the file may not do meanwhile is change.
+class TUFA_API GridFile {
+ public:
+  /// Opens a grid, which is chosen as by readGrid(), and throws as that does. Grids whose values
+  /// cannot be read by and by are read as a whole: those of a .nvdb, and of a .vdb that has no
+  /// offsets, is of before 2013, or shares a tree among grids.
+  explicit GridFile(const std::filesystem::path& path, const std::optional<std::string>& name = {});
+  /// The bytes must outlive the object.
+  explicit GridFile(const FileBytes& file, const std::optional<std::string>& name = {});
+  GridFile(GridFile&&) noexcept;
+  GridFile& operator=(GridFile&&) noexcept;
+  ~GridFile();
+
+  /// The grid: metadata, transform, tiles and which voxels are active. Leaves have their values
+  /// only if isLoaded().
+  [[nodiscard]] std::shared_ptr<const openvdb::GridBase> outline() const;
+  [[nodiscard]] bool isLoaded() const;
+  /// The whole grid, read unless it has been. Throws Error(UnreadableFile).
+  std::shared_ptr<openvdb::GridBase> load();
+
+  /// For the library itself: what reads values; null if isLoaded().
+  [[nodiscard]] base::LeafSource* leaves();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Writes grids to a .vdb file, whole or not at all. Throws Error(UnwritableFile).
 TUFA_API void writeGrids(const std::vector<std::shared_ptr<const openvdb::GridBase>>& grids,

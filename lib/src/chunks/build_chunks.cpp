@@ -28,7 +28,6 @@
 #include "intersect/surface.h"
 #include "octree/cut_rule.h"
 #include "refine/rounding.h"
-#include "uniform/cell_topology.h"
 
 namespace tufa {
 namespace {
@@ -179,7 +178,7 @@ std::vector<std::size_t> countPairs(const chunks::CutMesh& cut, const chunks::Ch
 
 class ChunkBuilder {
  public:
-  ChunkBuilder(const openvdb::GridBase& grid, const ChunkOptions& options, const ChunkSink& sink,
+  ChunkBuilder(const grid::StoredGrid& grid, const ChunkOptions& options, const ChunkSink& sink,
                ContourReport& report, base::Job& job)
       : grid_(grid),
         options_(options),
@@ -198,11 +197,11 @@ class ChunkBuilder {
     // Vertices at one place, where the surface touches itself, would be one to what joins chunks by
     // positions; and what is separated later only, costs errors, triangles and time.
     contour.repair = true;
-    const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_));
+    const octree::CutRule rule = octree::readRule(contour, grid::transformOf(grid_.grid));
     job_.beginStage("blocks", kEnds.uniform.blocks);
     grid::Volume volume = grid::openVolume(grid_, contour, job_);
     ChunkIndex index = describe(volume, options_);
-    index.grid = grid::nameOf(grid_);
+    index.grid = grid::nameOf(grid_.grid);
     cutting.chunkSize = options_.chunkSize;
     cutting.singlePrecision = fitsSinglePrecision(volume);
     cutting.latticeStep = index.step;
@@ -232,11 +231,9 @@ class ChunkBuilder {
                                      chunks::kLeastSlab, job_);
     }
     if (slabs.size() <= 1) {
+      grid::load(volume, job_);
       return chunks::cutVolume(std::move(volume), cutting, kEnds, report_, job_);
     }
-    report_ = uniform::reportOf(
-        volume, uniform::buildCellTopology(volume.blocks, volume.scale, cutting.contour.ambiguity,
-                                           cutting.contour.cap, job_));
     return chunks::reduceSlabs(volume, std::move(slabs), rule, cutting,
                                scaled(kEnds, 1 / kFirstLevelEnd), kFirstLevelEnd, report_, job_);
   }
@@ -293,7 +290,7 @@ class ChunkBuilder {
     return only_.empty() || std::binary_search(only_.begin(), only_.end(), chunk);
   }
 
-  const openvdb::GridBase& grid_;
+  const grid::StoredGrid grid_;
   const ChunkOptions& options_;
   const ChunkSink& sink_;
   ContourReport& report_;
@@ -302,16 +299,26 @@ class ChunkBuilder {
   std::vector<chunks::ChainLevel> levels_;
 };
 
+ChunkIndex build(const grid::StoredGrid& grid, const ChunkOptions& options, const ChunkSink& sink,
+                 ContourReport* report) {
+  requireOptions(options);
+  if (!sink) throw Error(ErrorCode::InvalidArgument, "there is no sink to hand the chunks to");
+  grid::requireMeshable(grid.grid);
+  return base::runCall(options.contour, report, [&](ContourReport& out, base::Job& job) {
+    return ChunkBuilder(grid, options, sink, out, job).build();
+  });
+}
+
 }  // namespace
 
 ChunkIndex buildChunks(const openvdb::GridBase& grid, const ChunkOptions& options,
                        const ChunkSink& sink, ContourReport* report) {
-  requireOptions(options);
-  if (!sink) throw Error(ErrorCode::InvalidArgument, "there is no sink to hand the chunks to");
-  grid::requireMeshable(grid);
-  return base::runCall(options.contour, report, [&](ContourReport& out, base::Job& job) {
-    return ChunkBuilder(grid, options, sink, out, job).build();
-  });
+  return build(grid, options, sink, report);
+}
+
+ChunkIndex buildChunks(GridFile& file, const ChunkOptions& options, const ChunkSink& sink,
+                       ContourReport* report) {
+  return build({*file.outline(), file.leaves()}, options, sink, report);
 }
 
 }  // namespace tufa

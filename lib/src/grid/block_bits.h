@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+
+#include "base/bits.h"
 
 namespace tufa::grid {
 
@@ -21,6 +24,11 @@ struct BlockBits {
     std::uint64_t all = 0;
     for (const std::uint64_t slab : slabs) all |= slab;
     return all != 0;
+  }
+  [[nodiscard]] std::size_t count() const {
+    std::size_t sum = 0;
+    for (const std::uint64_t slab : slabs) sum += static_cast<std::size_t>(base::countBits(slab));
+    return sum;
   }
 };
 

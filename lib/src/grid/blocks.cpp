@@ -30,8 +30,11 @@ Blocks::Blocks(std::shared_ptr<const Tree> tree, const IsoChoice& iso, NonFinite
 }
 
 Blocks::Blocks(const Blocks& whole, const Slab& slab, base::Job& job)
-    : tree_(whole.tree_), iso_(whole.iso_), slab_(slab), places_(whole.places_) {
-  summary_.nonFiniteValues = whole.summary_.nonFiniteValues;
+    : tree_(whole.tree_),
+      iso_(whole.iso_),
+      slab_(slab),
+      summary_(whole.summary_),
+      places_(whole.places_) {
   std::vector<BlockRef> numbers(whole.count(), kMissingBlock);
   for (std::size_t i = 0; i < whole.count(); ++i) {
     job.pollCancelled(i);
@@ -42,6 +45,13 @@ Blocks::Blocks(const Blocks& whole, const Slab& slab, base::Job& job)
     inside_.push_back(whole.inside_[i]);
   }
   places_.renumber(numbers, job);
+  if (!tree_->isInMemory()) tree_ = tree_->loadedIn(slab, job);
+}
+
+void Blocks::load(base::Job& job) {
+  if (tree_->isInMemory()) return;
+  using Limits = std::numeric_limits<std::int32_t>;
+  tree_ = tree_->loadedIn({0, Limits::min(), Limits::max()}, job);
 }
 
 bool Blocks::isInsideOutermost() const {
@@ -85,15 +95,14 @@ Neighbours Blocks::upperNeighbours(BlockRef block, Accessor& accessor) const {
   return upper;
 }
 
-// A missing block continues the last layer before it, so that no surface is found between them.
 std::uint64_t Blocks::sides(const Neighbours& neighbours, int dx, int dy, int dz, int x) const {
   constexpr std::uint64_t kFirstZ = 0x0101010101010101u;
   const BlockRef block = neighbours[neighbourIndex(dx, dy, dz)];
   if (block >= 0) return inside_[block].slabs[x];
   if (block != kMissingBlock) return block == kInsideTile ? ~std::uint64_t{0} : 0;
-  if (dx != 0) return sides(neighbours, 0, dy, dz, kBlockSize - 1);
-  if (dy != 0) return sides(neighbours, 0, 0, dz, x) >> 56;
-  return (sides(neighbours, 0, 0, 0, x) >> 7) & kFirstZ;
+  if (slab_->axis == 0) return sides(neighbours, 0, dy, dz, kBlockSize - 1);
+  if (slab_->axis == 1) return sides(neighbours, dx, 0, dz, x) >> 56;
+  return (sides(neighbours, dx, dy, 0, x) >> 7) & kFirstZ;
 }
 
 CornerWords Blocks::cornerWords(const Neighbours& neighbours) const {

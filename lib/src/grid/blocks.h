@@ -36,6 +36,9 @@ class Blocks {
   /// the outermost layer of cells is not as it is in `whole`.
   Blocks(const Blocks& whole, const Slab& slab, base::Job& job);
 
+  /// Reads the values of leaves that are not in memory yet, which only parts do otherwise.
+  void load(base::Job& job);
+
   [[nodiscard]] std::size_t count() const { return origins_.size(); }
   [[nodiscard]] const Coord& origin(BlockRef block) const { return origins_[block]; }
   [[nodiscard]] const BlockBits& inside(BlockRef block) const { return inside_[block]; }
@@ -56,7 +59,8 @@ class Blocks {
   [[nodiscard]] const IsoChoice& iso() const { return iso_; }
   /// Whether blocks may be missing.
   [[nodiscard]] bool isPart() const { return slab_.has_value(); }
-  /// The slab that the blocks of a part lie in.
+  /// The slab that the blocks of a part lie in. What is missing beyond is taken to go on as the
+  /// last layer before it, samples and sides alike, so that no surface is found between them.
   [[nodiscard]] const Slab& slab() const { return *slab_; }
   [[nodiscard]] std::size_t nonFiniteValues() const { return summary_.nonFiniteValues; }
   /// Whether what lies beyond all blocks is inside.

@@ -26,30 +26,30 @@ openvdb::math::Mat3d linearPart(const openvdb::math::Transform& transform) {
   return columns;
 }
 
-// Some of the leaves, all over the tree.
-template <class TreeT>
-std::vector<const typename TreeT::LeafNodeType*> someLeaves(const TreeT& tree) {
-  std::vector<const typename TreeT::LeafNodeType*> all, some;
+// Calls use(leaf, values) for some of the leaves, all over the tree.
+template <class TreeT, class Use>
+void forSomeLeaves(const TreeT& tree, base::LeafSource* source, const Use& use) {
+  using Leaf = typename TreeT::LeafNodeType;
+  std::vector<const Leaf*> all;
   tree.getNodes(all);
+  LeafValues<Leaf> valuesOf(source);
   const std::size_t step = std::max<std::size_t>(1, all.size() / kSampledLeaves);
-  for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
-  return some;
+  for (std::size_t i = 0; i < all.size(); i += step) use(*all[i], valuesOf.of(*all[i], i));
 }
 
 // Scales values that are so large or small that the squares of their differences are no floats,
 // such as densities of 1e-24. By a power of two, as directions are all that counts of a field that
 // is no distance.
 template <class TreeT>
-void bringIntoRange(const TreeT& tree, FieldScale& scale) {
+void bringIntoRange(const TreeT& tree, base::LeafSource* source, FieldScale& scale) {
   constexpr double kSmall = 1e-10, kLarge = 1e10, kLargestFactor = 1e38;
   double largest = 0;
-  for (const auto* leaf : someLeaves(tree)) {
-    const auto* values = leaf->buffer().data();
-    for (int i = 0; i < 512; ++i) {
+  forSomeLeaves(tree, source, [&](const auto&, const auto* values) {
+    for (int i = 0; i < kBlockCells; ++i) {
       const double size = std::abs((values[i] - scale.isovalue) * scale.factor);
       if (std::isfinite(size)) largest = std::max(largest, size);
     }
-  }
+  });
   if (!(largest > 0) || (largest >= kSmall && largest <= kLarge)) return;
   const double factor = std::ldexp(scale.factor, -std::ilogb(largest));
   const bool isFloat = std::is_same_v<typename TreeT::ValueType, float>;
@@ -60,12 +60,12 @@ void bringIntoRange(const TreeT& tree, FieldScale& scale) {
 // surface, where a distance comes from (Rouy and Tourin 1992): on the other side of a thin wall's
 // middle it falls again, and a mean of both would be no gradient.
 template <class TreeT>
-bool hasUnitGradient(const TreeT& tree, const FieldScale& scale, const IsoChoice& iso) {
+bool hasUnitGradient(const TreeT& tree, base::LeafSource* source, const FieldScale& scale,
+                     const IsoChoice& iso) {
   std::size_t units = 0, all = 0;
-  for (const auto* leaf : someLeaves(tree)) {
-    const auto* values = leaf->buffer().data();
-    const auto& mask = leaf->getValueMask();
-    for (int cell = 0; cell < 512; ++cell) {
+  forSomeLeaves(tree, source, [&](const auto& leaf, const auto* values) {
+    const auto& mask = leaf.getValueMask();
+    for (int cell = 0; cell < kBlockCells; ++cell) {
       const int x = cell >> 6, y = (cell >> 3) & 7, z = cell & 7;
       if (x == 0 || x == 7 || y == 0 || y == 7 || z == 0 || z == 7 || !mask.isOn(cell)) continue;
       const double here = values[cell];
@@ -95,12 +95,13 @@ bool hasUnitGradient(const TreeT& tree, const FieldScale& scale, const IsoChoice
       ++all;
       units += std::abs(std::sqrt(squared) - 1) < kUnitTolerance ? 1 : 0;
     }
-  }
+  });
   return static_cast<double>(units) > kUnitShare * static_cast<double>(all);
 }
 
 template <class TreeT>
-FieldScale readScale(const openvdb::Grid<TreeT>& grid, const IsoChoice& iso) {
+FieldScale readScale(const openvdb::Grid<TreeT>& grid, base::LeafSource* source,
+                     const IsoChoice& iso) {
   const openvdb::math::Mat3d linear = linearPart(grid.transform());
   const double voxel = std::cbrt(std::abs(linear.det()));
   FieldScale scale;
@@ -115,8 +116,8 @@ FieldScale readScale(const openvdb::Grid<TreeT>& grid, const IsoChoice& iso) {
     scale.axisLength[axis] = linear.col(axis).length() / voxel;
   }
   const bool isFog = grid.getGridClass() == openvdb::GRID_FOG_VOLUME;
-  scale.distance = !isFog && hasUnitGradient(grid.tree(), scale, iso);
-  if (!scale.distance) bringIntoRange(grid.tree(), scale);
+  scale.distance = !isFog && hasUnitGradient(grid.tree(), source, scale, iso);
+  if (!scale.distance) bringIntoRange(grid.tree(), source, scale);
   scale.narrowBand = scale.distance && grid.getGridClass() == openvdb::GRID_LEVEL_SET;
   if (scale.narrowBand) {
     // A little less than the background, which a band clamps to.
@@ -131,11 +132,12 @@ FieldScale readScale(const openvdb::Grid<TreeT>& grid, const IsoChoice& iso) {
 
 }  // namespace
 
-FieldScale readFieldScale(const openvdb::GridBase& grid, const IsoChoice& iso) {
+FieldScale readFieldScale(const StoredGrid& stored, const IsoChoice& iso) {
+  const openvdb::GridBase& grid = stored.grid;
   if (grid.isType<openvdb::FloatGrid>()) {
-    return readScale(static_cast<const openvdb::FloatGrid&>(grid), iso);
+    return readScale(static_cast<const openvdb::FloatGrid&>(grid), stored.leaves, iso);
   }
-  return readScale(static_cast<const openvdb::DoubleGrid&>(grid), iso);
+  return readScale(static_cast<const openvdb::DoubleGrid&>(grid), stored.leaves, iso);
 }
 
 }  // namespace tufa::grid

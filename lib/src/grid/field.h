@@ -3,6 +3,7 @@
 #include <array>
 
 #include "grid/isovalue.h"
+#include "grid/stored_grid.h"
 
 namespace tufa::grid {
 
@@ -39,6 +40,6 @@ inline constexpr double kLongestStep = 1.02;
 
 /// Decides from a sample of the grid's leaves whether the field is a distance. The grid's transform
 /// must be linear.
-[[nodiscard]] FieldScale readFieldScale(const openvdb::GridBase& grid, const IsoChoice& iso);
+[[nodiscard]] FieldScale readFieldScale(const StoredGrid& grid, const IsoChoice& iso);
 
 }  // namespace tufa::grid

@@ -12,18 +12,19 @@ namespace {
 
 // Half way between the least and the greatest finite value; the background counts as one.
 template <class GridT>
-double middleValue(const GridT& grid) {
+double middleValue(const GridT& grid, base::LeafSource* source) {
   using Upper = typename GridT::TreeType::RootNodeType::ChildNodeType;
   using Lower = typename Upper::ChildNodeType;
+  using Leaf = typename Lower::ChildNodeType;
   double least = grid.background();
   double greatest = least;
+  const auto add = [&](double value) {
+    if (!std::isfinite(value)) return;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  };
   const auto addValues = [&](const auto& node) {
-    for (auto value = node.cbeginValueOn(); value; ++value) {
-      const double v = *value;
-      if (!std::isfinite(v)) continue;
-      least = std::min(least, v);
-      greatest = std::max(greatest, v);
-    }
+    for (auto value = node.cbeginValueOn(); value; ++value) add(*value);
   };
   const auto addNodes = [&]<class Node>() {
     std::vector<const Node*> nodes;
@@ -34,18 +35,25 @@ double middleValue(const GridT& grid) {
   addValues(grid.tree().root());
   addNodes.template operator()<Upper>();
   addNodes.template operator()<Lower>();
-  addNodes.template operator()<typename Lower::ChildNodeType>();
+  std::vector<const Leaf*> leaves;
+  grid.tree().getNodes(leaves);
+  LeafValues<Leaf> valuesOf(source);
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    const auto* values = valuesOf.of(*leaves[n], n);
+    for (auto voxel = leaves[n]->getValueMask().beginOn(); voxel; ++voxel) add(values[voxel.pos()]);
+  }
   return std::midpoint(least, greatest);
 }
 
 template <class GridT>
-IsoChoice choose(const GridT& grid, std::optional<double> isovalue, Inside inside) {
+IsoChoice choose(const GridT& grid, base::LeafSource* source, std::optional<double> isovalue,
+                 Inside inside) {
   const openvdb::GridClass gridClass = grid.getGridClass();
   IsoChoice choice;
   if (isovalue) {
     choice.isovalue = *isovalue;
   } else if (gridClass != openvdb::GRID_LEVEL_SET) {
-    choice.isovalue = middleValue(grid);
+    choice.isovalue = middleValue(grid, source);
   }
   switch (inside) {
     case Inside::Below:
@@ -65,16 +73,16 @@ IsoChoice choose(const GridT& grid, std::optional<double> isovalue, Inside insid
 
 }  // namespace
 
-IsoChoice chooseIsovalue(const openvdb::GridBase& grid, std::optional<double> isovalue,
-                         Inside inside) {
+IsoChoice chooseIsovalue(const StoredGrid& stored, std::optional<double> isovalue, Inside inside) {
+  const openvdb::GridBase& grid = stored.grid;
   if (isovalue && !std::isfinite(*isovalue)) {
     throw Error(ErrorCode::InvalidArgument, "the isovalue is not a finite number");
   }
   if (grid.isType<openvdb::FloatGrid>()) {
-    return choose(static_cast<const openvdb::FloatGrid&>(grid), isovalue, inside);
+    return choose(static_cast<const openvdb::FloatGrid&>(grid), stored.leaves, isovalue, inside);
   }
   if (grid.isType<openvdb::DoubleGrid>()) {
-    return choose(static_cast<const openvdb::DoubleGrid&>(grid), isovalue, inside);
+    return choose(static_cast<const openvdb::DoubleGrid&>(grid), stored.leaves, isovalue, inside);
   }
   throw Error(ErrorCode::UnsupportedGrid,
               "grid \"" + grid.getName() + "\" holds values of type " + grid.valueType() +

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "grid/stored_grid.h"
+
 namespace tufa::grid {
 
 /// The isovalue and the side of it that is inside.
@@ -23,7 +25,7 @@ struct IsoChoice {
 /// volumes, for other grids the side that the background is not on. Throws Error(InvalidArgument)
 /// for an isovalue that is not finite, Error(UnsupportedGrid) for grids other than float and
 /// double.
-[[nodiscard]] IsoChoice chooseIsovalue(const openvdb::GridBase& grid,
-                                       std::optional<double> isovalue, Inside inside);
+[[nodiscard]] IsoChoice chooseIsovalue(const StoredGrid& grid, std::optional<double> isovalue,
+                                       Inside inside);
 
 }  // namespace tufa::grid

@@ -23,6 +23,12 @@ class SampleReader {
   /// The sample at a lattice point -8..15 steps from the block's origin on each axis.
   [[nodiscard]] double at(int x, int y, int z) const {
     const BlockRef block = neighbours_[neighbourIndex(x >> 3, y >> 3, z >> 3)];
+    if (block == kMissingBlock) {
+      std::array<int, 3> last{x, y, z};
+      int& across = last[blocks_.slab().axis];
+      across = across < 0 ? 0 : kBlockSize - 1;
+      return at(last[0], last[1], last[2]);
+    }
     const LeafRef leaf = block < 0 ? kNoLeaf : blocks_.leaf(block);
     return scaled(leaf != kNoLeaf ? blocks_.tree().leafValue(leaf, cellIndex(x & 7, y & 7, z & 7))
                                   : accessor_.value(blocks_.origin(block_).offsetBy(x, y, z)));
@@ -81,6 +87,8 @@ class BlockSamples {
               const Neighbours& neighbours, Accessor& accessor);
 
  private:
+  void continueMissing(int axis, const Neighbours& neighbours);
+
   std::array<float, kCount> values_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "base/sort_unique.h"
 #include "grid/block_bits.h"
+#include "grid/node_accessor.h"
 #include "grid/node_tiles.h"
 
 namespace tufa::grid {
@@ -17,7 +18,7 @@ namespace {
 // 26 blocks around each of its outer blocks.
 template <class TreeT>
 class TileContacts {
-  using Accessor = openvdb::tree::ValueAccessor<const TreeT>;
+  using Accessor = NodeAccessor<TreeT>;
   using UpperNode = typename TreeT::RootNodeType::ChildNodeType;
   using LowerNode = typename UpperNode::ChildNodeType;
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "grid/node_accessor.h"
 #include "grid/node_tiles.h"
 
 namespace tufa::grid {
@@ -25,7 +26,7 @@ std::optional<openvdb::Coord> beside(const openvdb::Coord& origin, std::int64_t 
 /// different sides that touch one is such a tile.
 template <class TreeT>
 class TileFaces {
-  using Accessor = openvdb::tree::ValueAccessor<const TreeT>;
+  using Accessor = NodeAccessor<TreeT>;
   using Upper = typename TreeT::RootNodeType::ChildNodeType;
   using Lower = typename Upper::ChildNodeType;
   using Leaf = typename Lower::ChildNodeType;

@@ -15,6 +15,8 @@
 #include "grid/block_places.h"
 #include "grid/field.h"
 #include "grid/isovalue.h"
+#include "grid/slab.h"
+#include "grid/stored_grid.h"
 
 namespace tufa::grid {
 
@@ -51,6 +53,11 @@ class Tree {
 
   /// For messages.
   [[nodiscard]] virtual const std::string& gridName() const = 0;
+  /// Whether values of all leaves are at hand.
+  [[nodiscard]] virtual bool isInMemory() const = 0;
+  /// The same tree with the values of the leaves in a slab. For trees that are not in memory.
+  [[nodiscard]] virtual std::shared_ptr<const Tree> loadedIn(const Slab& slab,
+                                                             base::Job& job) const = 0;
   [[nodiscard]] virtual std::size_t leafCount() const = 0;
   [[nodiscard]] virtual Coord leafOrigin(LeafRef leaf) const = 0;
   /// The 512 values of a leaf as double: one of them.
@@ -73,7 +80,8 @@ class Tree {
                                                         base::Job& job) const = 0;
 };
 
-/// The tree of a float or double grid, which must outlive it.
-[[nodiscard]] std::shared_ptr<const Tree> treeOf(const openvdb::GridBase& grid, base::Job& job);
+/// The tree of a float or double grid, which must outlive it, as must what reads values. Values
+/// that are not in memory are read by readSides(), and then again by each part.
+[[nodiscard]] std::shared_ptr<const Tree> treeOf(const StoredGrid& grid, base::Job& job);
 
 }  // namespace tufa::grid

@@ -9,7 +9,9 @@
 #include <string>
 #include <utility>
 
+#include "base/coord_table.h"
 #include "base/huge_pages.h"
+#include "grid/node_accessor.h"
 #include "grid/node_tiles.h"
 #include "grid/non_finite.h"
 #include "grid/openvdb_templates.h"
@@ -85,15 +87,47 @@ float scaled(T value, T isovalue, T factor) {
   return static_cast<float>(bounded + value * T(0));
 }
 
+/// Values of some leaves, beside a tree that holds none.
+template <class T>
+class LoadedLeaves {
+ public:
+  void reserve(std::size_t leaves, base::Job& job) {
+    base::resizeLarge(values_, leaves * kBlockCells, job);
+    places_.reserve(leaves);
+  }
+  /// Room for the values of one leaf more.
+  T* add(const Coord& origin) {
+    places_.tryEmplace(origin, count_);
+    return &values_[kBlockCells * count_++];
+  }
+  /// Null where none has been added.
+  [[nodiscard]] const T* find(const Coord& at) const {
+    const std::uint32_t place = places_.find(at & ~(kBlockSize - 1));
+    return place == base::CoordTable::kNone ? nullptr : &values_[place * std::size_t{kBlockCells}];
+  }
+
+ private:
+  std::vector<T> values_;
+  base::CoordTable places_;
+  std::uint32_t count_ = 0;
+};
+
 template <class TreeT>
 class VdbAccessor final : public Accessor {
   using T = typename TreeT::ValueType;
 
  public:
-  VdbAccessor(const TreeT& tree, const std::vector<const T*>& values)
-      : accessor_(tree), values_(values) {}
+  /// `loaded`: null if the tree holds all values.
+  VdbAccessor(const TreeT& tree, const std::vector<const T*>& values, const LoadedLeaves<T>* loaded)
+      : accessor_(tree), values_(values), loaded_(loaded) {}
 
-  double value(const Coord& at) override { return accessor_.getValue(toVdb(at)); }
+  double value(const Coord& at) override {
+    if (loaded_ != nullptr) {
+      if (const T* leaf = loaded_->find(at))
+        return leaf[cellIndex(at[0] & 7, at[1] & 7, at[2] & 7)];
+    }
+    return accessor_.getValue(toVdb(at));
+  }
   bool isActive(const Coord& at) override { return accessor_.isValueOn(toVdb(at)); }
 
   void gather(const std::array<LeafRef, 27>& leaves, const Coord& origin, const FieldScale& scale,
@@ -135,8 +169,9 @@ class VdbAccessor final : public Accessor {
   }
 
  private:
-  openvdb::tree::ValueAccessor<const TreeT> accessor_;
+  NodeAccessor<TreeT> accessor_;
   const std::vector<const T*>& values_;
+  const LoadedLeaves<T>* loaded_;
 };
 
 template <class TreeT>
@@ -148,21 +183,42 @@ class VdbTree final : public Tree {
   static_assert(Leaf::LOG2DIM == 3 && Node::LOG2DIM == BlockPlaces::kNodeBits);
 
  public:
-  VdbTree(std::string gridName, const TreeT& tree, base::Job& job)
-      : gridName_(std::move(gridName)), tree_(tree) {
-    std::vector<const Leaf*> leaves;
-    tree.getNodes(leaves);
-    base::resizeLarge(values_, leaves.size(), job);
-    base::resizeLarge(leaves_, leaves.size(), job);
-    job.forRanges(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
+  VdbTree(std::string gridName, const TreeT& tree, base::LeafSource* source, base::Job& job)
+      : gridName_(std::move(gridName)), tree_(tree), source_(source) {
+    tree.getNodes(leaves_);
+    base::resizeLarge(values_, leaves_.size(), job);
+    if (source_ != nullptr) return;
+    job.forRanges(leaves_.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        leaves_[i] = leaves[i];
-        values_[i] = leaves[i]->buffer().data();  // loads a leaf whose values are still in the file
+        values_[i] = leaves_[i]->buffer().data();  // may load them: delayed by OpenVDB
       }
     });
   }
 
+  /// The part of another one.
+  VdbTree(const VdbTree& whole, const Slab& slab, base::Job& job)
+      : gridName_(whole.gridName_), tree_(whole.tree_), leaves_(whole.leaves_) {
+    std::vector<std::size_t> inside;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      if (slab.contains(leafOrigin(static_cast<LeafRef>(i)))) inside.push_back(i);
+    }
+    base::resizeLarge(values_, leaves_.size(), job);
+    loaded_ = std::make_unique<LoadedLeaves<T>>();
+    loaded_->reserve(inside.size(), job);
+    for (std::size_t n = 0; n < inside.size(); ++n) {
+      job.checkCancelled(n, inside.size());
+      T* const values = loaded_->add(leafOrigin(static_cast<LeafRef>(inside[n])));
+      whole.source_->read(inside[n], values);
+      values_[inside[n]] = values;
+    }
+  }
+
   [[nodiscard]] const std::string& gridName() const override { return gridName_; }
+  [[nodiscard]] bool isInMemory() const override { return source_ == nullptr; }
+  [[nodiscard]] std::shared_ptr<const Tree> loadedIn(const Slab& slab,
+                                                     base::Job& job) const override {
+    return std::make_shared<VdbTree>(*this, slab, job);
+  }
   [[nodiscard]] std::size_t leafCount() const override { return leaves_.size(); }
   [[nodiscard]] Coord leafOrigin(LeafRef leaf) const override {
     return fromVdb(leaves_[leaf]->origin());
@@ -174,7 +230,7 @@ class VdbTree final : public Tree {
     return leaves_[leaf]->getValueMask().template getWord<std::uint64_t>(x);
   }
   [[nodiscard]] std::unique_ptr<Accessor> accessor() const override {
-    return std::make_unique<VdbAccessor<TreeT>>(tree_, values_);
+    return std::make_unique<VdbAccessor<TreeT>>(tree_, values_, loaded_.get());
   }
 
   Summary readSides(const IsoChoice& iso, std::vector<BlockBits>& inside,
@@ -230,33 +286,54 @@ class VdbTree final : public Tree {
     std::mutex mutex;
     std::size_t firstBad = values_.size();
     std::atomic<std::size_t> active{0};
-    job.forRanges(values_.size(), 64, [&](std::size_t begin, std::size_t end) {
-      std::size_t activeHere = 0;
-      for (std::size_t i = begin; i < end; ++i) {
-        const T* values = values_[i];
-        activeHere += leaves_[i]->getValueMask().countOn();
-        if (iso.insideIsBelow) {
-          packSides<true>(values, limit, inside[i]);
-        } else {
-          packSides<false>(values, limit, inside[i]);
-        }
-        if (allFinite(values)) continue;
-        const std::scoped_lock lock(mutex);
-        for (int cell = 0; cell < kBlockCells; ++cell) {
-          if (std::isfinite(values[cell])) continue;
-          ++summary.nonFiniteValues;
-          inside[i].slabs[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
-          if (i < firstBad) {
-            firstBad = i;
-            summary.firstNonFinite =
-                leafOrigin(static_cast<LeafRef>(i)).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
-          }
+    forValues(job, [&](std::size_t i, const T* values) {
+      active.fetch_add(leaves_[i]->getValueMask().countOn(), std::memory_order_relaxed);
+      if (iso.insideIsBelow) {
+        packSides<true>(values, limit, inside[i]);
+      } else {
+        packSides<false>(values, limit, inside[i]);
+      }
+      if (allFinite(values)) return;
+      const std::scoped_lock lock(mutex);
+      for (int cell = 0; cell < kBlockCells; ++cell) {
+        if (std::isfinite(values[cell])) continue;
+        ++summary.nonFiniteValues;
+        inside[i].slabs[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
+        if (i < firstBad) {
+          firstBad = i;
+          summary.firstNonFinite =
+              leafOrigin(static_cast<LeafRef>(i)).offsetBy(cell >> 6, (cell >> 3) & 7, cell & 7);
         }
       }
-      active += activeHere;
     });
     summary.activeVoxels = active;
     return summary;
+  }
+
+  // Calls use(leaf, values) for each leaf, in parallel. Values that are not in memory are read some
+  // at a time.
+  template <class Use>
+  void forValues(base::Job& job, const Use& use) const {
+    if (source_ == nullptr) {
+      job.forRanges(values_.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) use(i, values_[i]);
+      });
+      return;
+    }
+    constexpr std::size_t kAtOnce = 4096;
+    std::vector<T> values(kAtOnce * kBlockCells);
+    for (std::size_t first = 0; first < leaves_.size(); first += kAtOnce) {
+      const std::size_t count = std::min(kAtOnce, leaves_.size() - first);
+      job.beginLoop(double(first) / double(leaves_.size()),
+                    double(first + count) / double(leaves_.size()));
+      for (std::size_t i = 0; i < count; ++i) {
+        job.pollCancelled(i);
+        source_->read(first + i, &values[i * kBlockCells]);
+      }
+      job.forRanges(count, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) use(first + i, &values[i * kBlockCells]);
+      });
+    }
   }
 
   void readTiles(Summary& summary, base::Job& job) const {
@@ -301,19 +378,22 @@ class VdbTree final : public Tree {
 
   std::string gridName_;
   const TreeT& tree_;
-  std::vector<const T*> values_;     ///< the 512 values of each leaf
-  std::vector<const Leaf*> leaves_;  ///< in the order of the tree
+  base::LeafSource* source_ = nullptr;       ///< of values that are not in memory
+  std::vector<const T*> values_;             ///< the 512 values of each leaf, or null
+  std::vector<const Leaf*> leaves_;          ///< in the order of the tree
+  std::unique_ptr<LoadedLeaves<T>> loaded_;  ///< of a part: what values_ points to
 };
 
 }  // namespace
 
-std::shared_ptr<const Tree> treeOf(const openvdb::GridBase& grid, base::Job& job) {
+std::shared_ptr<const Tree> treeOf(const StoredGrid& stored, base::Job& job) {
+  const openvdb::GridBase& grid = stored.grid;
   if (grid.isType<openvdb::FloatGrid>()) {
     return std::make_shared<VdbTree<openvdb::FloatTree>>(
-        grid.getName(), static_cast<const openvdb::FloatGrid&>(grid).tree(), job);
+        grid.getName(), static_cast<const openvdb::FloatGrid&>(grid).tree(), stored.leaves, job);
   }
   return std::make_shared<VdbTree<openvdb::DoubleTree>>(
-      grid.getName(), static_cast<const openvdb::DoubleGrid&>(grid).tree(), job);
+      grid.getName(), static_cast<const openvdb::DoubleGrid&>(grid).tree(), stored.leaves, job);
 }
 
 }  // namespace tufa::grid

@@ -115,20 +115,28 @@ void requireMeshable(const openvdb::GridBase& grid) {
 
 std::string nameOf(const openvdb::GridBase& grid) { return grid.getName(); }
 
-Volume openVolume(const openvdb::GridBase& grid, const ContourOptions& options, base::Job& job) {
-  const IsoChoice iso = chooseIsovalue(grid, options.isovalue, options.inside);
-  const std::shared_ptr<const Tree> tree = treeOf(grid, job);
+Volume openVolume(const StoredGrid& stored, const ContourOptions& options, base::Job& job) {
+  const openvdb::GridBase& grid = stored.grid;
+  const IsoChoice iso = chooseIsovalue(stored, options.isovalue, options.inside);
+  const std::shared_ptr<const Tree> tree = treeOf(stored, job);
   requireFewTileFaces(*tree, iso, options.tileFaces, grid.getName(), job);
   Blocks blocks(tree, iso, options.nonFinite, job);
-  const FieldScale scale = readFieldScale(grid, iso);
+  const FieldScale scale = readFieldScale(stored, iso);
   const Transform transform = transformOf(grid);
   const Affine affine(transform, lowestOrigin(blocks));
   const double reach = largestCoordinate(blocks, transform);
-  return {std::move(blocks), scale, transform, affine, reach};
+  return {std::move(blocks), scale, transform, affine, reach, {}};
 }
 
-Volume partOf(const Volume& whole, const Slab& slab, base::Job& job) {
-  return {Blocks(whole.blocks, slab, job), whole.scale, whole.transform, whole.affine, whole.reach};
+void load(Volume& volume, base::Job& job) { volume.blocks.load(job); }
+
+Volume partOf(const Volume& whole, const Slab& slab, const Slab& own, base::Job& job) {
+  return {Blocks(whole.blocks, slab, job),
+          whole.scale,
+          whole.transform,
+          whole.affine,
+          whole.reach,
+          own};
 }
 
 }  // namespace tufa::grid

@@ -128,20 +128,14 @@ class CellTopologyBuilder {
       if (!cut || cuts[i] == nullptr) continue;
       topology_.specials.back().cut = *cuts[i];
       for (const BlockBits& bits : *cuts[i]) {
-        topology_.openEdges += countAll(bits);
-        block.quadCount -= static_cast<std::uint32_t>(countAll(bits));
+        topology_.openEdges += bits.count();
+        block.quadCount -= static_cast<std::uint32_t>(bits.count());
       }
     }
   }
 
-  static std::size_t countAll(const BlockBits& bits) {
-    std::size_t sum = 0;
-    for (const std::uint64_t slab : bits.slabs)
-      sum += static_cast<std::size_t>(base::countBits(slab));
-    return sum;
-  }
   static std::size_t countAll(const Cuts& cuts) {
-    return countAll(cuts[0]) + countAll(cuts[1]) + countAll(cuts[2]);
+    return cuts[0].count() + cuts[1].count() + cuts[2].count();
   }
 
   // A face alternates if its diagonal corners are equal and its neighbouring ones are not.
@@ -274,7 +268,7 @@ class CellTopologyBuilder {
           for (int x = 0; x < kBlockSize; ++x) {
             topology_.specials[i].joined[axis].slabs[x] ^= flips[i].slabs[x];
           }
-          topology_.faceFlips += countAll(flips[i]);
+          topology_.specials[i].faceFlips += static_cast<std::uint32_t>(flips[i].count());
         }
       }
     }

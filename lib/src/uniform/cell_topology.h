@@ -31,6 +31,7 @@ struct SpecialBlock {
   std::array<grid::BlockBits, 3> cut;
   std::vector<CellException> exceptions;  ///< sorted by cell
   std::int32_t extra = 0;                 ///< vertices beyond one a cell, of the whole block
+  std::uint32_t faceFlips = 0;            ///< faces joined against the rule
 };
 
 /// A block that the surface passes.
@@ -57,7 +58,6 @@ struct CellTopology {
   std::uint64_t vertexCount = 0;
   std::uint64_t quadCount = 0;
   std::size_t cellCount = 0;
-  std::size_t faceFlips = 0;
   std::size_t openEdges = 0;
   std::size_t missingEdges = 0;  ///< of these, those in whose place blocks are missing
 

@@ -83,9 +83,14 @@ ContourReport reportOf(const grid::Volume& volume, const CellTopology& topology)
   report.distanceField = volume.scale.distance;
   report.activeVoxels = blocks.activeVoxels();
   report.nonFiniteValues = blocks.nonFiniteValues();
-  report.surfaceCells = topology.cellCount;
-  report.faceFlips = topology.faceFlips;
-  report.openEdges = topology.openEdges - topology.missingEdges;
+  for (const SurfaceBlock& block : topology.blocks) {
+    if (volume.own && !volume.own->contains(blocks.origin(block.block))) continue;
+    report.surfaceCells += block.cellCount;
+    if (block.special < 0) continue;
+    const SpecialBlock& special = topology.specials[static_cast<std::size_t>(block.special)];
+    report.faceFlips += special.faceFlips;
+    for (const grid::BlockBits& cut : special.cut) report.openEdges += cut.count();
+  }
   return report;
 }
 

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "base/index_box.h"
+#include "base/leaf_source.h"
+#include "grid/samples.h"
 #include "grid/vdb_coord.h"
 #include "support/expect_error.h"
 #include "support/fields.h"
@@ -104,7 +108,7 @@ TEST(Volume, OfASlabHasTheBlocksInItAndCountsFromTheSamePoint) {
   const auto grid = ball(20.3, openvdb::Coord(0));
   const Volume whole = openVolume(*grid, {}, job);
   const Slab slab{1, -16, 7};
-  const Volume part = partOf(whole, slab, job);
+  const Volume part = partOf(whole, slab, slab, job);
   EXPECT_TRUE(part.blocks.isPart());
   EXPECT_FALSE(whole.blocks.isPart());
   EXPECT_EQ(part.affine.origin(), whole.affine.origin());
@@ -126,6 +130,126 @@ TEST(Volume, OfASlabHasTheBlocksInItAndCountsFromTheSamePoint) {
     ASSERT_GE(there, 0) << origin;
     EXPECT_EQ(part.blocks.inside(block).slabs, whole.blocks.inside(there).slabs) << origin;
   }
+}
+
+// Samples and sides, of white noise beside tiles.
+TEST(Volume, OfASlabGoesOnBeyondItAsInItsLastLayer) {
+  base::Job job(1, {});
+  const auto grid = test::randomTree<FloatGrid>({.seed = 5});
+  grid->setGridClass(openvdb::GRID_UNKNOWN);
+  ContourOptions options;
+  options.isovalue = 0;
+  options.inside = Inside::Below;
+  const Volume whole = openVolume(*grid, options, job);
+  const auto wholeAccessor = whole.blocks.accessor();
+  base::IndexBox box;
+  for (std::size_t i = 0; i < whole.blocks.count(); ++i) {
+    box.add(whole.blocks.origin(static_cast<BlockRef>(i)));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const Slab slab{axis, box.min[axis] + 8,
+                    box.max[axis] - 1};  // without the first and last blocks
+    const Volume part = partOf(whole, slab, slab, job);
+    ASSERT_GT(part.blocks.count(), 0U);
+    const auto accessor = part.blocks.accessor();
+    std::size_t continued = 0;
+    for (std::size_t i = 0; i < part.blocks.count(); ++i) {
+      const auto block = static_cast<BlockRef>(i);
+      const Coord& origin = part.blocks.origin(block);
+      const Neighbours neighbours = part.blocks.neighbours(block, *accessor);
+      BlockSamples samples;
+      samples.gather(part.blocks, part.scale, block, neighbours, *accessor);
+      const SampleReader reader(part.blocks, part.scale, block, neighbours, *accessor);
+      const CornerWords corners = part.blocks.cornerWords(neighbours);
+      for (int n = 0; n < 11 * 11 * 11; ++n) {
+        const Coord step(n / 121 - 1, n / 11 % 11 - 1, n % 11 - 1);
+        Coord at = origin + step;
+        if (!slab.contains(at) && whole.blocks.find(at & ~7, *wholeAccessor) >= 0) {
+          at[axis] = std::clamp(at[axis], slab.first, slab.last);
+          ++continued;
+        }
+        const double expected = double(grid->tree().getValue(toVdb(at))) * part.scale.factor;
+        ASSERT_NEAR(double(samples[BlockSamples::index(step[0], step[1], step[2])]), expected, 1e-6)
+            << origin << step;
+        ASSERT_NEAR(reader.at(step[0], step[1], step[2]), expected, 1e-6) << origin << step;
+        if (minCoord(step, Coord(0)) != Coord(0) || step[0] > 8 || step[1] > 8 || step[2] > 8)
+          continue;
+        // Word 0 to 3: the corner itself, and one further in z, in y, in both.
+        const int y = std::min(step[1], 7), z = std::min(step[2], 7);
+        const std::uint64_t word = corners.words[step[0]][(step[1] - y) * 2 + (step[2] - z)];
+        ASSERT_EQ((word >> (y * 8 + z) & 1) != 0, expected < 0) << origin << step;
+      }
+    }
+    EXPECT_GT(continued, 0U) << axis;
+  }
+}
+
+/// The leaves of a grid, as if they were elsewhere.
+class LeavesOf : public base::LeafSource {
+ public:
+  explicit LeavesOf(const FloatGrid& grid) { grid.tree().getNodes(leaves_); }
+
+  void read(std::size_t leaf, void* values) override {
+    ++reads;
+    std::copy_n(leaves_.at(leaf)->buffer().data(), kBlockCells, static_cast<float*>(values));
+  }
+
+  std::size_t reads = 0;
+
+ private:
+  std::vector<const FloatGrid::TreeType::LeafNodeType*> leaves_;
+};
+
+// The tree itself has other values, which nobody may look at.
+TEST(Volume, OfStoredLeavesIsAsOneInMemory) {
+  base::Job job(2, {});
+  const auto grid = ball(20.3, openvdb::Coord(0));
+  const auto outline = grid->deepCopy();
+  for (auto leaf = outline->tree().beginLeaf(); leaf; ++leaf) leaf->buffer().fill(1e6F);
+  LeavesOf leaves(*grid);
+  const Volume whole = openVolume(*grid, {}, job);
+  Volume stored = openVolume({*outline, &leaves}, {}, job);
+  EXPECT_EQ(stored.scale.distance, whole.scale.distance);
+  EXPECT_EQ(stored.blocks.activeVoxels(), whole.blocks.activeVoxels());
+  ASSERT_EQ(stored.blocks.count(), whole.blocks.count());
+  for (std::size_t i = 0; i < whole.blocks.count(); ++i) {
+    const auto block = static_cast<BlockRef>(i);
+    EXPECT_EQ(stored.blocks.inside(block).slabs, whole.blocks.inside(block).slabs);
+  }
+  const auto expectSamples = [&](const Volume& volume) {
+    const auto accessor = volume.blocks.accessor();
+    for (std::size_t i = 0; i < volume.blocks.count(); ++i) {
+      const auto block = static_cast<BlockRef>(i);
+      const Coord at = volume.blocks.origin(block).offsetBy(3, 2, 5);
+      const float expected = grid->tree().getValue(toVdb(at));
+      EXPECT_EQ(accessor->value(at), double(expected)) << at;
+      if (volume.blocks.leaf(block) == kNoLeaf) continue;
+      EXPECT_EQ(volume.blocks.tree().leafValue(volume.blocks.leaf(block), cellIndex(3, 2, 5)),
+                double(expected));
+    }
+  };
+  const std::size_t before = leaves.reads;
+  const Slab slab{1, -16, 7};
+  const Volume part = partOf(stored, slab, slab, job);
+  EXPECT_LT(leaves.reads - before, grid->tree().leafCount());
+  EXPECT_GT(part.blocks.count(), 0U);
+  expectSamples(part);
+  load(stored, job);
+  expectSamples(stored);
+  const std::size_t all = leaves.reads;
+  load(stored, job);
+  EXPECT_EQ(leaves.reads, all) << "read once more";
+}
+
+TEST(Volume, WithAFogOfStoredLeavesHasItsIsovalue) {
+  base::Job job(1, {});
+  const auto grid = test::noise<FloatGrid>({.size = 20});
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  const auto outline = grid->deepCopy();
+  for (auto leaf = outline->tree().beginLeaf(); leaf; ++leaf) leaf->buffer().fill(1e6F);
+  LeavesOf leaves(*grid);
+  EXPECT_EQ(chooseIsovalue({*outline, &leaves}, {}, Inside::Auto).isovalue,
+            chooseIsovalue(*grid, {}, Inside::Auto).isovalue);
 }
 
 }  // namespace

@@ -11,8 +11,10 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <random>
 
+#include "base/leaf_source.h"
 #include "io/grid/tree_walker.h"
 #include "support/expect_error.h"
 #include "support/openvdb_templates.h"
@@ -122,6 +124,53 @@ TYPED_TEST(TreeFiles, OfEveryKindAreRead) {
   }
 }
 
+/// Compares the values of each leaf, and its active voxels, with those of the grid read at once.
+template <class GridT>
+void expectLeafByLeaf(const std::filesystem::path& path, const std::string& name) {
+  GridFile file(path, name);
+  ASSERT_FALSE(file.isLoaded());
+  const auto outline = openvdb::gridConstPtrCast<GridT>(file.outline());
+  const auto whole = openvdb::gridPtrCast<GridT>(readGrid(path, name));
+  ASSERT_TRUE(outline->tree().hasSameTopology(whole->tree()));
+  std::vector<const typename GridT::TreeType::LeafNodeType*> leaves;
+  whole->tree().getNodes(leaves);
+  // Backwards, too, and one twice.
+  std::vector<std::size_t> order(leaves.size());
+  std::iota(order.begin(), order.end(), 0);
+  order.insert(order.end(), order.rbegin(), order.rend());
+  for (const std::size_t n : order) {
+    std::array<typename GridT::ValueType, 512> values;
+    file.leaves()->read(n, values.data());
+    for (openvdb::Index i = 0; i < 512; ++i) ASSERT_EQ(values[i], leaves[n]->getValue(i)) << n;
+  }
+  EXPECT_TRUE(outline->tree().hasSameTopology(whole->tree()));
+  for (auto leaf = outline->tree().cbeginLeaf(); leaf; ++leaf) {
+    EXPECT_TRUE(leaf->buffer().empty()) << "the values are still in memory";
+  }
+  const auto loaded = openvdb::gridPtrCast<GridT>(file.load());
+  EXPECT_TRUE(file.isLoaded());
+  EXPECT_EQ(file.leaves(), nullptr);
+  EXPECT_EQ(loaded, file.outline());
+  for (auto value = whole->cbeginValueAll(); value; ++value) {
+    ASSERT_EQ(loaded->tree().getValue(value.getCoord()), *value);
+  }
+}
+
+TEST(TreeFiles, OfEveryCompressionAreReadLeafByLeaf) {
+  const ScratchFolder folder;
+  for (const std::uint32_t compression : kCompressions) {
+    SCOPED_TRACE(compression);
+    auto single = makeVaried<openvdb::FloatGrid>(1), half = makeVaried<openvdb::FloatGrid>(2);
+    auto wide = makeVaried<openvdb::DoubleGrid>(3);
+    single->setName("single"), half->setName("half"), wide->setName("wide");
+    half->setSaveFloatAsHalf(true);
+    writeWith(folder / "m.vdb", {single, half, wide}, compression);
+    expectLeafByLeaf<openvdb::FloatGrid>(folder / "m.vdb", "single");
+    expectLeafByLeaf<openvdb::FloatGrid>(folder / "m.vdb", "half");
+    expectLeafByLeaf<openvdb::DoubleGrid>(folder / "m.vdb", "wide");
+  }
+}
+
 /// The walk ends where the tree does: it knows the size of all that lies in it.
 TYPED_TEST(TreeFiles, AreWalkedToTheirEnd) {
   const ScratchFolder folder;
@@ -206,6 +255,11 @@ void refuse(const ScratchFolder& folder, const std::string& bytes, const std::st
   SCOPED_TRACE(part);
   writeBytes(folder / "m.vdb", bytes);
   expectError(ErrorCode::UnreadableFile, part, [&] { (void)describeGrids(folder / "m.vdb"); });
+  expectError(ErrorCode::UnreadableFile, part, [&] {
+    GridFile file(folder / "m.vdb", listGrids(folder / "m.vdb").at(0).name);
+    std::array<double, 512> values;
+    if (file.leaves() != nullptr) file.leaves()->read(0, values.data());
+  });
 }
 
 template <class GridT>

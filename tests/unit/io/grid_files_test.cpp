@@ -4,11 +4,14 @@
 #include <openvdb/points/PointDataGrid.h>
 
 #include <tufa/io.h>
+#include <tufa/memory.h>
 #include <tufa/shapes.h>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <sstream>
+#include <utility>
 
 #include "support/expect_error.h"
 #include "support/scratch_folder.h"
@@ -89,6 +92,52 @@ TEST(GridFiles, TellWhatMakersNote) {
   EXPECT_EQ(describeGrids(folder / "m.vdb").at(0).metadata,
             (Metadata{{"creator", "a test"}, {"frame", "12"}}));
   EXPECT_EQ(describeGrid(*grid).metadata, describeGrids(folder / "m.vdb").at(0).metadata);
+}
+
+TEST(GridFile, IsChosenAsAGridThatIsRead) {
+  const ScratchFolder folder;
+  const auto fog = makeSingle<openvdb::FloatGrid>("fog", 1.0f);
+  const auto vectors = makeSingle<openvdb::Vec3SGrid>("v", openvdb::Vec3f(1));
+  writeGrids({vectors, fog, makeBall("a"), makeBall("b")}, folder / "m.vdb");
+  const GridFile file(folder / "m.vdb");
+  EXPECT_FALSE(file.isLoaded());
+  EXPECT_EQ(file.outline()->getName(), "a");
+  EXPECT_EQ(file.outline()->getGridClass(), openvdb::GRID_LEVEL_SET);
+  EXPECT_EQ(file.outline()->transform(), makeBall("a")->transform());
+  EXPECT_EQ(file.outline()->activeVoxelCount(), makeBall("a")->activeVoxelCount());
+  EXPECT_EQ(GridFile(folder / "m.vdb", "b").outline()->getName(), "b");
+  expectError(ErrorCode::UnknownGrid, R"("v", "fog", "a", "b")",
+              [&] { (void)GridFile(folder / "m.vdb", "c"); });
+  expectError(ErrorCode::UnreadableFile, "No such file",
+              [&] { (void)GridFile(folder / "none.vdb"); });
+}
+
+TEST(GridFile, WithoutLeavesToReadByAndByIsLoaded) {
+  const ScratchFolder folder;
+  const auto ball = makeBall("ball");
+  const auto shared = ball->copy();  // has the ball's tree
+  shared->setName("shared");
+  writeGrids({ball, shared, makeSingle<openvdb::Vec3SGrid>("v", openvdb::Vec3f(1))},
+             folder / "m.vdb");
+  EXPECT_TRUE(GridFile(folder / "m.vdb", "shared").isLoaded());
+  EXPECT_TRUE(GridFile(folder / "m.vdb", "v").isLoaded());
+  std::ostringstream stream;
+  writeGrids({ball}, stream);
+  const std::string bytes = stream.str();
+  GridFile inMemory(FileBytes{bytes, "bytes"});
+  EXPECT_TRUE(inMemory.isLoaded());
+  EXPECT_EQ(inMemory.load(), inMemory.outline());
+  EXPECT_EQ(inMemory.outline()->activeVoxelCount(), ball->activeVoxelCount());
+}
+
+TEST(GridFile, OfBytesIsReadFromThem) {
+  const ScratchFolder folder;
+  writeGrids({makeBall("ball")}, folder / "m.vdb");
+  const std::string bytes = readBytes(folder / "m.vdb");
+  GridFile file(FileBytes{bytes, "bytes"});
+  GridFile moved = std::move(file);
+  EXPECT_FALSE(moved.isLoaded());
+  EXPECT_EQ(moved.load()->activeVoxelCount(), makeBall("ball")->activeVoxelCount());
 }
 
 // OpenVDB goes on with a warning, on standard output where it was built with log4cplus.

@@ -1,6 +1,7 @@
 #include "chunks/slabs/reduce_slabs.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -63,8 +64,10 @@ class SlabReducer {
 
   CutSlab reduce(const grid::Slab& slab, base::Job& job) {
     job.beginStage("blocks", ends_.uniform.blocks);
+    const grid::Slab own = samplesOf(slab, slabs_, options_.chunkSize, 0);
     const grid::Slab samples = samplesOf(slab, slabs_, options_.chunkSize, kMargin);
-    CutMesh cut = cutVolume(grid::partOf(volume_, samples, job), options_, ends_, report_, job);
+    CutMesh cut =
+        cutVolume(grid::partOf(volume_, samples, own, job), options_, ends_, report_, job);
     std::vector<Marks> inBands;
     for (const Band& band : bandsOf(slab)) inBands.push_back(trianglesOf(cut, band, job));
     SubMesh window = subMesh(cut, trianglesOf(cut, slab, inBands, job), job);
@@ -150,14 +153,18 @@ class SlabReducer {
 
   CutMesh join(ContourReport& report) {
     std::vector<CutSlab> slabs;
-    for (Done& done : done_) {
+    report = done_.front().report;
+    for (const Done& done : std::span(done_).subspan(1)) {
+      report.surfaceCells += done.report.surfaceCells;
+      report.faceFlips += done.report.faceFlips;
+      report.openEdges += done.report.openEdges;
       report.creaseCells += done.report.creaseCells;
       report.intersectionsFound += done.report.intersectionsFound;
       report.movedVertices += done.report.movedVertices;
       report.flippedDiagonals += done.report.flippedDiagonals;
       report.fannedQuads += done.report.fannedQuads;
-      slabs.push_back(std::move(done.made));
     }
+    for (Done& done : done_) slabs.push_back(std::move(done.made));
     CutMesh joined = joinSlabs(std::move(slabs), job_);
     const double moved = joined.moved;
     keepApart(joined, volume_.affine, options_.singlePrecision, job_);

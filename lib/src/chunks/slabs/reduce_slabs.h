@@ -22,9 +22,9 @@ inline constexpr int kLeastSlab = 64;
 /// where a repair reached farther, both are made again as one. The curves in the planes between
 /// slabs are open borders to reduction, and stay as they are at this LOD.
 ///
-/// `rule` has the tolerance, in voxels, and no scale. `report` is completed: counts of repairs, and
-/// of creases, near a border of two slabs are those of both. `end`: the share of the progress that
-/// is reached at the end.
+/// `rule` has the tolerance, in voxels, and no scale. In the report counts of
+/// repairs and of creases near a border of two slabs are those of both. `end`: the share of the
+/// progress that is reached at the end.
 [[nodiscard]] CutMesh reduceSlabs(const grid::Volume& volume, std::vector<grid::Slab> slabs,
                                   const octree::CutRule& rule, const CutOptions& options,
                                   const CutEnds& ends, double end, ContourReport& report,

@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "base/parallel.h"
+#include "io/grid/choose_grid.h"
 #include "io/grid/grid_traits.h"
 #include "io/grid/vdb_reader.h"
 #include "io/output_file.h"
@@ -23,60 +24,12 @@ class VdbWriter : private openvdb::io::Archive {
   }
 };
 
-std::string listNames(const io::VdbReader& reader) {
-  std::string names;
-  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
-    names += (n == 0 ? "\"" : ", \"") + reader.gridName(n) + "\"";
-  }
-  return names;
-}
-
-std::size_t findNamed(const io::VdbReader& reader, const std::string& name) {
-  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
-    if (reader.isNamed(n, name)) return n;
-  }
-  throw Error(ErrorCode::UnknownGrid,
-              "no grid \"" + name + "\" in " + reader.name() + "; it holds " + listNames(reader));
-}
-
-std::size_t findMeshable(io::VdbReader& reader) {
-  std::optional<std::size_t> found;
-  std::string reasons;
-  for (std::size_t n = 0; n < reader.gridCount(); ++n) {
-    const auto outline = reader.readOutline(n);
-    const std::string whyNot = io::whyNotMeshable(*outline);
-    if (!whyNot.empty()) {
-      reasons += (reasons.empty() ? "\"" : "; \"") + reader.gridName(n) + "\": " + whyNot;
-      continue;
-    }
-    if (outline->getGridClass() == openvdb::GRID_LEVEL_SET) return n;
-    if (!found) found = n;
-  }
-  if (found) return *found;
-  throw Error(ErrorCode::UnsupportedGrid,
-              "no grid in " + reader.name() + " can be meshed (" + reasons + ")");
-}
-
 std::vector<GridName> listIn(io::VdbReader& reader) {
   std::vector<GridName> grids;
   for (std::size_t n = 0; n < reader.gridCount(); ++n) {
     grids.push_back({reader.gridName(n), io::whyNotMeshable(*reader.readOutline(n)).empty()});
   }
   return grids;
-}
-
-openvdb::GridBase::Ptr readFrom(io::VdbReader& reader, const std::optional<std::string>& name) {
-  if (reader.gridCount() == 0) {
-    throw Error(ErrorCode::UnreadableFile, "cannot read " + reader.name() + ": it holds no grid");
-  }
-  if (!name) return reader.readGrid(findMeshable(reader));
-  const std::size_t index = findNamed(reader, *name);
-  // Of no use for anything: OpenVDB's own functions throw on such transforms.
-  if (const std::string why = io::whyOutOfRange(*reader.readOutline(index)); !why.empty()) {
-    throw Error(ErrorCode::UnsupportedGrid,
-                "grid \"" + *name + "\" in " + reader.name() + " cannot be meshed: " + why);
-  }
-  return reader.readGrid(index);
 }
 
 void requireGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids) {
@@ -121,12 +74,12 @@ std::vector<GridName> listGrids(const FileBytes& file) {
 openvdb::GridBase::Ptr readGrid(const std::filesystem::path& path,
                                 const std::optional<std::string>& name) {
   io::VdbReader reader(path);
-  return readFrom(reader, name);
+  return reader.readGrid(io::chooseGrid(reader, name));
 }
 
 openvdb::GridBase::Ptr readGrid(const FileBytes& file, const std::optional<std::string>& name) {
   io::VdbReader reader(file);
-  return readFrom(reader, name);
+  return reader.readGrid(io::chooseGrid(reader, name));
 }
 
 void writeGrids(const std::vector<openvdb::GridBase::ConstPtr>& grids,

@@ -262,6 +262,7 @@ void TreeWalker::walkBuffers() {
             [](const Branch& a, const Branch& b) { return a.origin < b.origin; });
   for (const Branch& branch : branches_) {
     for (std::size_t leaf = 0; leaf < branch.leaves; ++leaf) {
+      leafPlaces_.push_back(bytes_.place());
       walkLeaf(buffersHaveOrigins() ? &branch.leafOrigins[leaf] : nullptr);
     }
   }

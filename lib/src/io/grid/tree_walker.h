@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <istream>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "io/grid/byte_window.h"
@@ -58,6 +59,9 @@ class TreeWalker {
   /// it walks the topology, which lies before all that leaves hold.
   void walk();
 
+  /// Where the buffers of each leaf begin, in the order of the tree.
+  [[nodiscard]] std::vector<std::uint64_t> takeLeafPlaces() { return std::move(leafPlaces_); }
+
   /// Where the walk has come to.
   [[nodiscard]] std::uint64_t place() const { return bytes_.place(); }
 
@@ -103,6 +107,7 @@ class TreeWalker {
   TreeLayout layout_;
   TreeCoding coding_;
   std::vector<Branch> branches_;
+  std::vector<std::uint64_t> leafPlaces_;
 };
 
 /// Throws DamagedGrid unless a chunk of Blosc's is all of `chunkBytes` and unpacks to `bytes`.

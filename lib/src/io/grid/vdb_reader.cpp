@@ -263,8 +263,8 @@ void VdbReader::requireSoundGridHead() {
 }
 
 /// Behind a head that is sound.
-void VdbReader::requireSoundTree(const GridDescriptor& descriptor) {
-  if (descriptor.isInstance()) return;
+std::vector<std::uint64_t> VdbReader::requireSoundTree(const GridDescriptor& descriptor) {
+  if (descriptor.isInstance()) return {};
   const auto start = stream_.tellg();
   const GridBase::Ptr head = createGrid(descriptor);
   readGridCompression(stream_);
@@ -281,8 +281,10 @@ void VdbReader::requireSoundTree(const GridDescriptor& descriptor) {
   // The metadata, not the descriptor, says whether values are in half precision.
   const TreeCoding coding{fileVersion(), openvdb::io::getDataCompression(stream_),
                           head->saveFloatAsHalf()};
-  TreeWalker(stream_, end, *layout, coding).walk();
+  TreeWalker walker(stream_, end, *layout, coding);
+  walker.walk();
   stream_.seekg(start);
+  return walker.takeLeafPlaces();
 }
 
 std::string VdbReader::gridName(std::size_t index) const {
@@ -334,12 +336,16 @@ void VdbReader::readHere(const GridBase::Ptr& grid, const GridDescriptor& descri
 /// be meshed: they are not read.
 void VdbReader::readPoints(GridBase& grid) {
   if (!inputHasGridOffsets()) fail("it has points, and does not say where they end");
+  readTopologyHere(grid);
+  openvdb::io::setGridBackgroundValuePtr(stream_, nullptr);  // it is that of the root just read
+}
+
+void VdbReader::readTopologyHere(GridBase& grid) {
   readGridCompression(stream_);
   grid.readMeta(stream_);
   grid.removeMeta(GridBase::META_FILE_DELAYED_LOAD);
   grid.readTransform(stream_);
   grid.readTopology(stream_);
-  openvdb::io::setGridBackgroundValuePtr(stream_, nullptr);  // it is that of the root just read
 }
 
 GridBase::Ptr VdbReader::readGrid(std::size_t index) {
@@ -356,6 +362,37 @@ GridBase::Ptr VdbReader::readGrid(std::size_t index) {
     grid->setTree(readTree(parent->descriptor)->baseTreePtr());
   });
   return grid;
+}
+
+VdbReader::Topology VdbReader::readTopology(std::size_t index) {
+  const Entry& entry = entries_.at(index);
+  if (entry.whole || entry.descriptor.isInstance() ||
+      fileVersion() < openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION) {
+    return {};
+  }
+  Topology topology;
+  guarded("grid \"" + gridName(index) + "\"", [&] {
+    const GridBase::Ptr grid = createGrid(entry.descriptor);
+    if (!grid->isType<openvdb::FloatGrid>() && !grid->isType<openvdb::DoubleGrid>()) return;
+    entry.descriptor.seekToGrid(stream_);
+    requireSoundGridHead();
+    topology.leafPlaces = requireSoundTree(entry.descriptor);
+    readTopologyHere(*grid);
+    if (grid->baseTree().leafCount() != topology.leafPlaces.size()) fail("it is damaged");
+    topology.grid = grid;
+  });
+  return topology;
+}
+
+void VdbReader::readAt(std::uint64_t place, const GridBase& grid,
+                       const std::function<void(std::istream&, bool)>& read) {
+  guarded("grid \"" + grid.getName() + "\"", [&] {
+    // Seeking empties the stream's buffer.
+    if (static_cast<std::uint64_t>(stream_.tellg()) != place) {
+      stream_.seekg(static_cast<std::streamoff>(place));
+    }
+    read(stream_, grid.saveFloatAsHalf());
+  });
 }
 
 }  // namespace tufa::io

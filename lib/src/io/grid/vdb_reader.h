@@ -42,6 +42,22 @@ class VdbReader : private openvdb::io::Archive {
   /// The grid with all its values; of points only the tree, without what its leaves hold.
   [[nodiscard]] openvdb::GridBase::Ptr readGrid(std::size_t index);
 
+  /// A grid whose leaves have no values, and where in the file these are.
+  struct Topology {
+    openvdb::GridBase::Ptr grid;
+    std::vector<std::uint64_t> leafPlaces;  ///< in the order of the tree
+  };
+
+  /// The grid without values. Null where leaves are not read one by one: in a .nvdb, files without
+  /// offsets or of before 2013, grids that are neither of float nor of double or have their tree
+  /// from another one.
+  [[nodiscard]] Topology readTopology(std::size_t index);
+
+  /// Calls read(stream, whether values are in half precision) with the stream at a leaf's buffers.
+  /// `grid` is that of the last call of readTopology(), no other grid having been read since.
+  void readAt(std::uint64_t place, const openvdb::GridBase& grid,
+              const std::function<void(std::istream&, bool)>& read);
+
  private:
   struct Entry {
     openvdb::io::GridDescriptor descriptor;
@@ -65,7 +81,8 @@ class VdbReader : private openvdb::io::Archive {
   void requireSoundFileMetadata();
   void requireSoundDescriptor();
   void requireSoundGridHead();
-  void requireSoundTree(const openvdb::io::GridDescriptor& descriptor);
+  /// Returns where the leaves' buffers are.
+  std::vector<std::uint64_t> requireSoundTree(const openvdb::io::GridDescriptor& descriptor);
 
   [[nodiscard]] std::uint64_t bytesLeft();
   std::uint32_t takeNumber();
@@ -75,6 +92,7 @@ class VdbReader : private openvdb::io::Archive {
   openvdb::GridBase::Ptr readTree(const openvdb::io::GridDescriptor& descriptor);
   void readHere(const openvdb::GridBase::Ptr& grid, const openvdb::io::GridDescriptor& descriptor);
   void readPoints(openvdb::GridBase& grid);
+  void readTopologyHere(openvdb::GridBase& grid);
   void guarded(const std::string& what, const std::function<void()>& work) const;
   [[noreturn]] void fail(const std::string& cause) const;
 
