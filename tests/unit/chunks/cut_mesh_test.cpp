@@ -10,6 +10,7 @@
 
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
+#include "chunks/cut/move_to_planes.h"
 #include "chunks/cut/separate_rounded.h"
 #include "support/mesh_oracle.h"
 #include "support/model.h"
@@ -83,6 +84,49 @@ TEST(CutMesh, LeavesFacesInPlanesWhole) {
   }));
   EXPECT_EQ(cut.mesh.chunks.size(), 8U);
   expectDivided(cut, test::area(test::triangulated(cut.model.mesh())));
+}
+
+// A sheet across the plane x = 8 of chunks of eight voxels, whose vertices have these heights in
+// columns around it; it is cut there already. Which columns were moved to the plane z = 0.
+std::vector<bool> movedColumns(const std::vector<double>& heights) {
+  constexpr double kColumns[] = {6.5, 7.5, 8, 8.5, 9.5};
+  constexpr VertexIndex kRows = 6;
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  for (VertexIndex x = 0; x < 5; ++x) {
+    for (VertexIndex y = 0; y < kRows; ++y) points.emplace_back(kColumns[x], y + 0.5, heights[x]);
+  }
+  for (VertexIndex x = 0; x + 1 < 5; ++x) {
+    for (VertexIndex y = 0; y + 1 < kRows; ++y) {
+      const VertexIndex v = x * kRows + y;
+      triangles.emplace_back(v, v + kRows, v + 1);
+      triangles.emplace_back(v + 1, v + kRows, v + kRows + 1);
+    }
+  }
+  base::Job job(1, {});
+  (void)moveToPlanes(ChunkPlanes(Coord(0), 8), 2, triangles, points, job);
+  std::vector<bool> moved;
+  for (VertexIndex x = 0; x < 5; ++x) {
+    for (VertexIndex y = 0; y < kRows; ++y) {
+      const bool isOn = points[x * kRows + y][2] == 0;
+      if (y == 0) moved.push_back(isOn);
+      EXPECT_EQ(isOn, moved.back()) << kColumns[x] << ' ' << y;
+    }
+  }
+  return moved;
+}
+
+// Else all vertices of the column would be ends of curves.
+TEST(MoveToPlanes, LeavesVerticesOnOtherPlanesWhereASheetLeavesThePlane) {
+  using Columns = std::vector<bool>;
+  EXPECT_EQ(movedColumns({0.001, 0.001, 0.001, 0.001, 0.001}), Columns(5, true));
+  EXPECT_EQ(movedColumns({0.001, 0.001, -0.002, -0.006, -0.03}),
+            (Columns{true, true, false, false, false}));
+  EXPECT_EQ(movedColumns({-0.03, -0.006, -0.003, -0.001, 0.001}),
+            (Columns{false, false, false, true, true}));
+  // Too near to be told from the plane.
+  EXPECT_EQ(movedColumns({0.001, 0.001, -1e-5, -0.006, -0.03}),
+            (Columns{true, true, true, false, false}));
 }
 
 TEST(CutMesh, IsTheSameForAnyNumberOfThreads) {

@@ -19,11 +19,13 @@ struct Move {
   double distance;    ///< along the axis within which they are, steps of the lattice
   double turnCosine;  ///< unless a triangle turns by more than the angle of this cosine,
   double leastShare;  ///< or shrinks to less than this share
+  bool makesChains;   ///< see PlaneMover::leaveChains()
 };
 
 // Those that are very near also where slivers turn: otherwise edges around them would be cut in
 // places that single precision does not tell apart. Each distance is below the one before.
-constexpr Move kMoves[] = {{5e-3, 0.9, 0.25}, {5e-4, 0.05, 0.02}, {2e-5, -2, 0}};
+constexpr Move kMoves[] = {
+    {5e-3, 0.9, 0.25, false}, {5e-4, 0.05, 0.02, false}, {2e-5, -2, 0, true}};
 
 constexpr double kStays = std::numeric_limits<double>::infinity();
 
@@ -69,6 +71,7 @@ class PlaneMover {
       const double x = points_[v][axis_], plane = planes_.nearest(axis_, x);
       target_[v] = plane != x && std::abs(plane - x) < move.distance ? plane : kStays;
     }
+    if (!move.makesChains) leaveChains();
     for (bool isAny = true; isAny;) {
       isAny = false;
       for (const std::uint32_t t : touched_) {
@@ -85,6 +88,35 @@ class PlaneMover {
       isAny = true;
     }
     if (isAny) returnIntersecting();
+  }
+
+  // A vertex that was made on a plane of an axis before is on an edge of chunks once it is moved.
+  // Where several in a row are and the surface leaves this plane beside them, this plane's curve
+  // would run along the edge: ends of curves all of them, which stay at every LOD. They stay where
+  // they are, and the curve runs through the vertices beside them.
+  void leaveChains() {
+    for (int other = 0; other < axis_; ++other) {
+      std::vector<std::uint8_t> isInChain(points_.size(), 0), isBorder(points_.size(), 0);
+      for (const std::uint32_t t : touched_) {
+        for (const VertexIndex v : triangles_[t].vertices) {
+          if (target_[v] == kStays || !isOn(other, v)) continue;
+          for (const VertexIndex w : triangles_[t].vertices) {
+            if (w == v) continue;
+            const bool isBeside = points_[w][other] == points_[v][other];
+            const bool willBeOn = target_[w] != kStays || isOn(axis_, w);
+            if (isBeside && willBeOn) isInChain[v] = 1;
+            if (!isBeside && !willBeOn) isBorder[v] = 1;
+          }
+        }
+      }
+      for (const VertexIndex v : near_) {
+        if ((isInChain[v] & isBorder[v]) != 0) target_[v] = kStays;
+      }
+    }
+  }
+
+  [[nodiscard]] bool isOn(int axis, VertexIndex v) const {
+    return points_[v][axis] == planes_.nearest(axis, points_[v][axis]);
   }
 
   // Whether a triangle would turn or shrink too much.
