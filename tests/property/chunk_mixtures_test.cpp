@@ -11,12 +11,16 @@
 #include <map>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "base/vec3.h"
 #include "support/chunk_mixtures.h"
 #include "support/expect_error.h"
+#include "support/fields.h"
+#include "support/nearest_triangle.h"
 #include "support/print.h"
 #include "support/shape.h"
+#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
@@ -46,6 +50,45 @@ TEST(ChunkPairs, NoneAreLeft) {
       EXPECT_EQ(report.selfIntersectingPairs, 0u);
     }
   }
+}
+
+// A plate with a round hole, four of its faces a hundredth of a voxel beside planes between chunks.
+openvdb::FloatGrid::Ptr plateBesidePlanes() {
+  const openvdb::CoordBBox box(openvdb::Coord(-5), openvdb::Coord(37, 37, 13));
+  return test::levelSet<openvdb::FloatGrid>(
+      box, 3,
+      [](const openvdb::Coord& at) {
+        const openvdb::Vec3d p = at.asVec3d();
+        const double upper = std::max({p.x() - 32.011, p.y() - 32, p.z() - 8.009});
+        const double lower = std::max({-p.x() - 0.013, -p.y() - 3.3, -p.z() - 0.012});
+        return std::max({upper, lower, 7 - std::hypot(p.x() - 15, p.y() - 17)});
+      },
+      1);
+}
+
+TEST(ChunksOfFacesBesidePlanes, AreFewAndWithinWhatTheySay) {
+  const openvdb::FloatGrid::Ptr grid = plateBesidePlanes();
+  ChunkOptions options;
+  options.chunkSize = 16;
+  const Made made = makeChunks(*grid, options);
+  test::expectTolerancesKept(made);
+  // Else there are also those beyond all four faces, which hold nothing but these faces.
+  EXPECT_LE(made.index.chunks.size(), 12U);
+  const Mesh uniform = test::uniformMesh(*grid);
+  for (std::size_t level = 0; level < 4; ++level) {
+    double error = 0;
+    for (const ChunkEntry& entry : made.index.chunks) {
+      error = std::max(error, entry.levels[level].maxErrorVoxels);
+    }
+    const Mesh mesh = assembleChunks(made.chunks, std::vector(made.chunks.size(), level));
+    EXPECT_TRUE(check(mesh).watertight()) << level;
+    EXPECT_LE(test::largestDistance(mesh, uniform, 10), error + 1e-5) << level;
+    EXPECT_LE(test::largestDistance(uniform, mesh, 10), error + 1e-5) << level;
+  }
+  (void)expectMixturesToClose(*grid, options, 4);
+  // Of a tolerance that leaves too little they are not moved as far, and kept, too.
+  options.contour.tolerance = 0.03;
+  test::expectTolerancesKept(makeChunks(*grid, options));
 }
 
 // In noise strips of two faces of a chunk lie so close that many would meet beside coarser chunks

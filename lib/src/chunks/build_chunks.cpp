@@ -35,6 +35,10 @@ namespace {
 // Shares of the time that stages took on the sample volumes.
 constexpr chunks::CutEnds kEnds = {{0.01, 0.02, 0.06, 0.07, 0.08, 0.12}, 0.14};
 constexpr double kFirstLevelEnd = 0.75;
+// Voxels by which faces along planes between chunks may be moved to them, and the least tolerance
+// that leaves enough then.
+constexpr double kFlatDistance = 0.02;
+constexpr double kLeastForFlat = 0.05;
 constexpr double kLevelsEnd = 0.95;
 
 chunks::CutEnds scaled(chunks::CutEnds ends, double by) {
@@ -232,7 +236,9 @@ class ChunkBuilder {
     }
     if (slabs.size() <= 1) {
       grid::load(volume, job_);
-      return chunks::cutVolume(std::move(volume), cutting, kEnds, report_, job_);
+      chunks::CutOptions whole = cutting;
+      if (!rule.scale && rule.tolerance >= kLeastForFlat) whole.flatDistance = kFlatDistance;
+      return chunks::cutVolume(std::move(volume), whole, kEnds, report_, job_);
     }
     return chunks::reduceSlabs(volume, std::move(slabs), rule, cutting,
                                scaled(kEnds, 1 / kFirstLevelEnd), kFirstLevelEnd, report_, job_);

@@ -19,7 +19,7 @@ constexpr int kSize = 16;
 
 struct Chain {
   test::ModelOf model{refine::test_ring::ring()};
-  CutMesh cut = cutAtChunks(model.mesh(), model.model().affine(), kSize, true, model.job());
+  CutMesh cut = cutAtChunks(model.mesh(), model.model().affine(), kSize, true, 0, model.job());
   ChunkChain chain{cut, model.model().affine(), model.rule(), kSize, true, model.job()};
   std::vector<ChainLevel> levels;
 

@@ -24,9 +24,10 @@ struct Cut {
   test::ModelOf model;
   CutMesh mesh;
 
-  explicit Cut(const openvdb::FloatGrid::Ptr& grid)
+  explicit Cut(const openvdb::FloatGrid::Ptr& grid, double flatDistance = 0)
       : model(grid),
-        mesh(cutAtChunks(model.mesh(), model.model().affine(), kChunk, true, model.job())) {}
+        mesh(cutAtChunks(model.mesh(), model.model().affine(), kChunk, true, flatDistance,
+                         model.job())) {}
 
   [[nodiscard]] Vec3 latticeOf(VertexIndex v) const {
     return model.model().affine().latticePoint(mesh.mesh.positions[v], Coord(0));
@@ -71,44 +72,70 @@ TEST(CutMesh, DividesABall) {
   expectDivided(cut, test::area(test::triangulated(cut.model.mesh())));
 }
 
-// Four of its faces lie in planes between chunks but for rounding.
-TEST(CutMesh, LeavesFacesInPlanesWhole) {
-  const Vec3 half(16, 16, 9.4);
-  const Cut cut(test::levelSetOf(24, 0.1, [&](const Vec3& p) {
+openvdb::FloatGrid::Ptr boxOf(const Vec3& half) {
+  return test::levelSetOf(24, 0.1, [half](const Vec3& p) {
     double outside = 0, inside = -1e9;
     for (int axis = 0; axis < 3; ++axis) {
       const double d = std::abs(p[axis]) - half[axis];
       outside += std::max(d, 0.0) * std::max(d, 0.0), inside = std::max(inside, d);
     }
     return inside > 0 ? std::sqrt(outside) : inside;
-  }));
+  });
+}
+
+// Four of its faces lie in planes between chunks but for rounding.
+TEST(CutMesh, LeavesFacesInPlanesWhole) {
+  const Cut cut(boxOf({16, 16, 9.4}));
   EXPECT_EQ(cut.mesh.chunks.size(), 8U);
   expectDivided(cut, test::area(test::triangulated(cut.model.mesh())));
 }
 
+// Four of its faces lie a hundredth of a voxel beside planes.
+TEST(CutMesh, MovesFacesToPlanesAndSaysHowFar) {
+  const openvdb::FloatGrid::Ptr box = boxOf({16.012, 16.012, 9.4});
+  const Cut near(box);
+  EXPECT_GT(near.mesh.chunks.size(), 8U);
+  EXPECT_TRUE(near.mesh.far.empty());
+  const Cut cut(box, 0.02);
+  EXPECT_EQ(cut.mesh.chunks.size(), 8U);
+  expectDivided(cut, test::area(test::triangulated(cut.model.mesh())));
+  EXPECT_LT(cut.mesh.moved, 0.006);
+  std::vector<double> most(cut.mesh.mesh.positions.size(), cut.mesh.moved);
+  for (const CutMesh::Far& far : cut.mesh.far) most[far.vertex] += far.more;
+  const Mesh& uniform = cut.model.mesh();
+  double farthest = 0;
+  for (std::size_t v = 0; v < uniform.positions.size(); ++v) {
+    const double by = (Vec3(cut.mesh.mesh.positions[v]) - Vec3(uniform.positions[v])).length() /
+                      cut.model.voxelSize();
+    EXPECT_LE(by, most[v] + 1e-9) << v;
+    farthest = std::max(farthest, by);
+  }
+  EXPECT_GT(farthest, 0.01);
+}
+
 // A sheet across the plane x = 8 of chunks of eight voxels, whose vertices have these heights in
 // columns around it; it is cut there already. Which columns were moved to the plane z = 0.
-std::vector<bool> movedColumns(const std::vector<double>& heights) {
+std::vector<bool> movedColumns(const std::vector<double>& heights, double flatDistance = 0,
+                               VertexIndex rows = 6) {
   constexpr double kColumns[] = {6.5, 7.5, 8, 8.5, 9.5};
-  constexpr VertexIndex kRows = 6;
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;
   for (VertexIndex x = 0; x < 5; ++x) {
-    for (VertexIndex y = 0; y < kRows; ++y) points.emplace_back(kColumns[x], y + 0.5, heights[x]);
+    for (VertexIndex y = 0; y < rows; ++y) points.emplace_back(kColumns[x], y + 0.5, heights[x]);
   }
   for (VertexIndex x = 0; x + 1 < 5; ++x) {
-    for (VertexIndex y = 0; y + 1 < kRows; ++y) {
-      const VertexIndex v = x * kRows + y;
-      triangles.emplace_back(v, v + kRows, v + 1);
-      triangles.emplace_back(v + 1, v + kRows, v + kRows + 1);
+    for (VertexIndex y = 0; y + 1 < rows; ++y) {
+      const VertexIndex v = x * rows + y;
+      triangles.emplace_back(v, v + rows, v + 1);
+      triangles.emplace_back(v + 1, v + rows, v + rows + 1);
     }
   }
   base::Job job(1, {});
-  (void)moveToPlanes(ChunkPlanes(Coord(0), 8), 2, triangles, points, job);
+  (void)moveToPlanes(ChunkPlanes(Coord(0), 8), 2, flatDistance, triangles, points, job);
   std::vector<bool> moved;
   for (VertexIndex x = 0; x < 5; ++x) {
-    for (VertexIndex y = 0; y < kRows; ++y) {
-      const bool isOn = points[x * kRows + y][2] == 0;
+    for (VertexIndex y = 0; y < rows; ++y) {
+      const bool isOn = points[x * rows + y][2] == 0;
       if (y == 0) moved.push_back(isOn);
       EXPECT_EQ(isOn, moved.back()) << kColumns[x] << ' ' << y;
     }
@@ -129,6 +156,17 @@ TEST(MoveToPlanes, LeavesVerticesOnOtherPlanesWhereASheetLeavesThePlane) {
             (Columns{true, true, true, false, false}));
 }
 
+TEST(MoveToPlanes, MovesManyVerticesFartherWhereASheetLiesAlongThePlane) {
+  using Columns = std::vector<bool>;
+  const std::vector<double> beside(5, 0.012);
+  EXPECT_EQ(movedColumns(beside, 0.02, 40), Columns(5, true));
+  EXPECT_EQ(movedColumns(beside, 0.02, 6), Columns(5, false));
+  EXPECT_EQ(movedColumns(beside, 0.01, 40), Columns(5, false));
+  EXPECT_EQ(movedColumns(beside, 0, 40), Columns(5, false));
+  EXPECT_EQ(movedColumns({0.012, 0.012, 0.012, 0.012, -0.3}, 0.02, 40),
+            (Columns{true, true, true, true, false}));
+}
+
 TEST(CutMesh, IsTheSameForAnyNumberOfThreads) {
   const auto make = [](int threads) {
     ContourOptions options;
@@ -136,7 +174,7 @@ TEST(CutMesh, IsTheSameForAnyNumberOfThreads) {
     CutMesh out;
     job.run([&] {
       const test::ModelOf model(test::ballOf(21.3, 0.5), options);
-      out = cutAtChunks(model.mesh(), model.model().affine(), kChunk, true, job);
+      out = cutAtChunks(model.mesh(), model.model().affine(), kChunk, true, 0, job);
     });
     return out;
   };

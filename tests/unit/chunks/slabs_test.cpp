@@ -25,7 +25,7 @@ constexpr int kRow = 16;
 // A tilted torus of 66 voxels, which reaches beyond the origin on all sides.
 struct Torus {
   test::ModelOf model{test::shapeOf(Shape::Torus, 0.04)};
-  CutMesh mesh = cutAtChunks(model.mesh(), model.model().affine(), kRow, true, model.job());
+  CutMesh mesh = cutAtChunks(model.mesh(), model.model().affine(), kRow, true, 0, model.job());
 
   Torus() { mesh.errors.assign(mesh.chunks.size(), 0); }
 };

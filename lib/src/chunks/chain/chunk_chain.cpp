@@ -48,8 +48,8 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
   std::iota(same.begin(), same.end(), 0);
   reduce::Options options = reduce::optionsForAngle(rule.minAngle);
   options.faults = [this](const reduce::ReducedMesh& m) { return findIntersecting(m); };
-  reduction_.emplace(input, same.empty() ? input : reference, same,
-                     refine::scalesOf(cut_.mesh, affine, rule, job), std::move(options), job);
+  reduction_.emplace(input, same.empty() ? input : reference, same, scalesOf(rule),
+                     std::move(options), job);
   reduction_->setRegions([this] { return regionsOf(); });
   kinds_ = reduction_->surface().lineKind;
 }
@@ -99,8 +99,22 @@ float ChunkChain::toleranceOf(double tolerance) const {
   return static_cast<float>(frame_.within(std::max(0.0, tolerance - cut_.moved)));
 }
 
+// What a tolerance is multiplied with at each vertex, if that differs: beside vertices that were
+// moved far enough is left for that at the first tolerance, and so at all.
+std::vector<float> ChunkChain::scalesOf(const octree::CutRule& rule) const {
+  if (cut_.far.empty()) return refine::scalesOf(cut_.mesh, affine_, rule, job_);
+  std::vector<float> scales(cut_.mesh.positions.size(), 1);
+  const double first = toleranceOf(rule.tolerance);
+  for (const auto& [v, more] : cut_.far) {
+    constexpr double kRounding = 1e-6;
+    scales[v] = static_cast<float>(std::max(0.0, 1 - more / first - kRounding));
+  }
+  return scales;
+}
+
 void ChunkChain::reduce(double tolerance, reduce::LineMode lines) {
   isSearched_ = false;
+  tolerance_ = tolerance;
   reduction_->toTolerance(toleranceOf(tolerance), lines);
 }
 
@@ -226,6 +240,14 @@ std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate)
   std::vector<double> errors(cut_.chunks.size(), cut_.moved + (isReduced ? frame_.rounding() : 0));
   for (std::size_t i = 0; i < certificate.ofRegion.size(); ++i) {
     errors[i] += static_cast<double>(certificate.ofRegion[i]);
+  }
+  if (cut_.far.empty()) return errors;
+  // Less was allowed where it was moved far, by as much.
+  double more = 0;
+  for (const CutMesh::Far& far : cut_.far) more = std::max(more, far.more);
+  for (double& error : errors) {
+    const double all = error + more;
+    error = certificate.beyond.empty() ? std::max(error, std::min(all, tolerance_)) : all;
   }
   return errors;
 }

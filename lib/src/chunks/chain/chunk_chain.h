@@ -93,6 +93,7 @@ class ChunkChain {
 
   [[nodiscard]] reduce::Regions regionsOf() const;
   [[nodiscard]] float toleranceOf(double tolerance) const;
+  [[nodiscard]] std::vector<float> scalesOf(const octree::CutRule& rule) const;
   void reduce(double tolerance, reduce::LineMode lines);
   [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
   [[nodiscard]] Position written(const Position& p) const;
@@ -115,6 +116,7 @@ class ChunkChain {
   std::map<std::array<float, 3>, Placed> placed_;
   VertexIndex curveVertices_;  ///< numbers in use, see ChainLevel::curveVertex
   std::optional<reduce::Reduction> reduction_;
+  double tolerance_ = 0;     ///< of the last reduction
   bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
 };
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "base/collect.h"
@@ -37,13 +38,15 @@ constexpr double kLeastHeight = 1e-4;
 
 class Cutter {
  public:
-  Cutter(Mesh uniform, const grid::Affine& affine, int size, bool singlePrecision, base::Job& job)
+  Cutter(Mesh uniform, const grid::Affine& affine, int size, bool singlePrecision,
+         double flatDistance, base::Job& job)
       : size_(static_cast<std::size_t>(size)),
         uniform_(std::move(uniform.positions)),
         hasNormals_(!uniform.normals.empty()),
         affine_(affine),
         planes_(affine.origin(), size),
         singlePrecision_(singlePrecision),
+        flatDistance_(flatDistance),
         job_(job) {
     out_.mesh.triangles = base::triangulate(uniform, job);
     out_.mesh.normals = std::move(uniform.normals);
@@ -64,6 +67,7 @@ class Cutter {
       flip(out_.isNew);
     }
     out_.isSeparated = joinWhereRounded();
+    setFar();
     out_.moved += reshaped_ * voxelsOfStep();
     finish();
     return std::move(out_);
@@ -134,11 +138,12 @@ class Cutter {
   bool moveAll(int axis) {
     const double perVoxel = affine_.axis(axis).length() / affine_.voxelSize();
     const std::vector<MovedVertex> moved =
-        moveToPlanes(planes_, axis, out_.mesh.triangles, at_, job_);
+        moveToPlanes(planes_, axis, flatDistance_, out_.mesh.triangles, at_, job_);
     for (const auto& [v, by] : moved) {
       moved_[v] += by * perVoxel;
       out_.isNew[v] = 1;
-      out_.moved = std::max(out_.moved, moved_[v]);
+      if (by >= kNearPlane) far_.insert(v);
+      if (!far_.contains(v)) out_.moved = std::max(out_.moved, moved_[v]);
     }
     return !moved.empty();
   }
@@ -194,6 +199,41 @@ class Cutter {
     }
     for (const VertexIndex v : changed) out_.isNew[v] = 1;
     reshaped_ += moved;
+    if (!far_.empty()) spreadMoves(before, changed);
+  }
+
+  // What is at a vertex whose triangles have changed may have been part of the triangles that it
+  // had `before`, and have been moved as their vertices were; several times where changes meet.
+  void spreadMoves(const std::vector<Triangle>& before, const std::vector<VertexIndex>& changed) {
+    constexpr int kRings = 3;
+    std::vector<std::uint8_t> isChanged(at_.size(), 0);
+    for (const VertexIndex v : changed) isChanged[v] = 1;
+    for (int ring = 0; ring < kRings; ++ring) {
+      for (const Triangle& t : before) {
+        const auto& v = t.vertices;
+        if ((isChanged[v[0]] | isChanged[v[1]] | isChanged[v[2]]) == 0) continue;
+        const double most = std::max({moved_[v[0]], moved_[v[1]], moved_[v[2]]});
+        if (most <= out_.moved) continue;
+        for (const VertexIndex w : v) {
+          if (isChanged[w] != 0 && moved_[w] < most) moved_[w] = most, far_.insert(w);
+        }
+      }
+    }
+  }
+
+  // Of all triangles with a vertex that was moved far.
+  void setFar() {
+    if (far_.empty()) return;
+    std::vector<double> most(at_.size(), 0);
+    for (const Triangle& t : out_.mesh.triangles) {
+      const auto& v = t.vertices;
+      const double m = std::max({moved_[v[0]], moved_[v[1]], moved_[v[2]]});
+      if (m <= out_.moved) continue;
+      for (const VertexIndex w : v) most[w] = std::max(most[w], m);
+    }
+    for (VertexIndex v = 0; v < most.size(); ++v) {
+      if (most[v] > out_.moved) out_.far.push_back({v, most[v] - out_.moved});
+    }
   }
 
   // Where triangles that were cut intersect once they are rounded, collapses their short edges.
@@ -319,6 +359,7 @@ class Cutter {
     at_.push_back(p);
     place_.push_back(place);
     moved_.push_back(std::max(moved_[a], moved_[b]));  // of a point between: no more
+    if (far_.contains(a) || far_.contains(b)) far_.insert(found->second);
     out_.isNew.push_back(1);
     if (hasNormals_) {
       const Vec3 m = Vec3(out_.mesh.normals[a]) * (1 - share) + Vec3(out_.mesh.normals[b]) * share;
@@ -383,21 +424,23 @@ class Cutter {
   const grid::Affine& affine_;
   ChunkPlanes planes_;
   bool singlePrecision_;
+  double flatDistance_;
   base::Job& job_;
   CutMesh out_;
   std::vector<Vec3> at_;  ///< lattice points, counted from the origin of positions
   std::vector<PlacesAmongPlanes> place_;
-  std::size_t axesCut_ = 0;    ///< across the first so many axes the mesh is cut
-  double reshaped_ = 0;        ///< how far collapses and flips have moved it, steps
-  std::vector<double> moved_;  ///< how far each vertex was moved to planes, voxels
+  std::size_t axesCut_ = 0;              ///< across the first so many axes the mesh is cut
+  double reshaped_ = 0;                  ///< how far collapses and flips have moved it, steps
+  std::vector<double> moved_;            ///< how far each vertex was moved to planes, voxels
+  std::unordered_set<VertexIndex> far_;  ///< those that were moved by more than all others
   std::unordered_map<std::uint64_t, VertexIndex> cuts_;
 };
 
 }  // namespace
 
 CutMesh cutAtChunks(Mesh uniform, const grid::Affine& affine, int size, bool singlePrecision,
-                    base::Job& job) {
-  return Cutter(std::move(uniform), affine, size, singlePrecision, job).run();
+                    double flatDistance, base::Job& job) {
+  return Cutter(std::move(uniform), affine, size, singlePrecision, flatDistance, job).run();
 }
 
 }  // namespace tufa::chunks

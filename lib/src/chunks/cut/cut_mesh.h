@@ -42,9 +42,15 @@ struct CutMesh {
   /// Whether a search has shown that no triangle with a new vertex intersects another one once
   /// positions are rounded.
   bool isSeparated = false;
-  /// How far it is from the uniform mesh at most, as vertices were moved to planes, and apart;
-  /// voxels.
+  /// How far it is from the uniform mesh at most, as vertices were moved to planes, and apart, but
+  /// for what is far; voxels.
   double moved = 0;
+  /// The vertices around which it is farther than that, and how much. Rising.
+  struct Far {
+    VertexIndex vertex;
+    double more;  ///< voxels
+  };
+  std::vector<Far> far;
   std::vector<double> errors;  ///< of LOD 0: the same for each chunk
 
   /// The planes of a vertex, kNone where there are fewer than three.
@@ -61,9 +67,11 @@ struct CutMesh {
 ///
 /// Vertices within half a hundredth of a voxel of a plane are moved to it unless that turns a
 /// triangle: flat faces of parts often lie in such planes but for rounding, and would be shredded.
+/// So are those within `flatDistance` voxels where the surface lies along the plane, see
+/// CutMesh::far: the field is off by that beside edges of faces.
 /// Short edges that are cut where single precision, if positions are to be written in it, does not
 /// tell their vertices apart are collapsed. Cost: linear, some 100 ns a triangle.
 [[nodiscard]] CutMesh cutAtChunks(Mesh uniform, const grid::Affine& affine, int size,
-                                  bool singlePrecision, base::Job& job);
+                                  bool singlePrecision, double flatDistance, base::Job& job);
 
 }  // namespace tufa::chunks

@@ -28,8 +28,8 @@ CutMesh cutVolume(grid::Volume volume, const CutOptions& options, const CutEnds&
   const grid::Affine affine = volume.affine;
   Mesh uniform = uniformMesh(std::move(volume), options.contour, ends.uniform, report, job);
   job.beginStage("cut", ends.cut);
-  CutMesh cut =
-      cutAtChunks(std::move(uniform), affine, options.chunkSize, options.singlePrecision, job);
+  CutMesh cut = cutAtChunks(std::move(uniform), affine, options.chunkSize, options.singlePrecision,
+                            options.flatDistance, job);
   if (std::exchange(report.intersectionsLeft, 0) > 0) {
     cut.isNew.assign(cut.isNew.size(), 1);  // triangles of the uniform mesh intersect
     cut.isSeparated = false;

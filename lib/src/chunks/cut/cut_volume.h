@@ -16,6 +16,7 @@ struct CutOptions {
   ContourOptions contour;  ///< with gradient normals and repair
   int chunkSize = 0;       ///< voxels
   bool singlePrecision = true;
+  double flatDistance = 0;  ///< of faces that lie along planes, see cutAtChunks()
   double latticeStep = 0;  ///< of the lattice that positions will be moved to, world units; 0: none
 };
 

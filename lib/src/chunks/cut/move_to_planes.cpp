@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -25,23 +26,35 @@ struct Move {
 // Those that are very near also where slivers turn: otherwise edges around them would be cut in
 // places that single precision does not tell apart. Each distance is below the one before.
 constexpr Move kMoves[] = {
-    {5e-3, 0.9, 0.25, false}, {5e-4, 0.05, 0.02, false}, {2e-5, -2, 0, true}};
+    {kNearPlane, 0.9, 0.25, false}, {5e-4, 0.05, 0.02, false}, {2e-5, -2, 0, true}};
+
+// The surface lies along a plane where all vertices of a triangle are this near to it, and its
+// normal is within the angle of this cosine of the axis.
+constexpr double kAlongPlane = 0.05, kAlongCosine = 0.95;
+// Fewer vertices are not worth it: where vertices are moved far, less is left to reduction.
+constexpr std::ptrdiff_t kFewFar = 64;
 
 constexpr double kStays = std::numeric_limits<double>::infinity();
 
 class PlaneMover {
  public:
-  PlaneMover(const ChunkPlanes& planes, int axis, const std::vector<Triangle>& triangles,
-             std::vector<Vec3>& points, base::Job& job)
-      : planes_(planes), axis_(axis), triangles_(triangles), points_(points), job_(job) {}
+  PlaneMover(const ChunkPlanes& planes, int axis, double flatDistance,
+             const std::vector<Triangle>& triangles, std::vector<Vec3>& points, base::Job& job)
+      : planes_(planes),
+        axis_(axis),
+        flatDistance_(std::max(flatDistance, kNearPlane)),
+        triangles_(triangles),
+        points_(points),
+        job_(job) {}
 
   std::vector<MovedVertex> run() {
     near_ = base::collectIf(job_, points_.size(), [&](std::uint32_t v) {
-      const double x = points_[v][axis_], off = std::abs(planes_.nearest(axis_, x) - x);
-      return off > 0 && off < kMoves[0].distance;
+      const double off = offPlane(v);
+      return off > 0 && off < flatDistance_;
     });
     if (near_.empty()) return {};
     findTouched();
+    findFlat();
     base::resizeLarge(target_, points_.size(), job_, kStays);
     base::resizeLarge(before_, points_.size(), job_, kStays);
     std::vector<double> first;
@@ -66,10 +79,33 @@ class PlaneMover {
     });
   }
 
+  // The vertices where the surface lies along a plane, at its borders too.
+  void findFlat() {
+    base::resizeLarge(isFlat_, points_.size(), job_);
+    if (flatDistance_ <= kNearPlane) return;
+    for (const std::uint32_t t : touched_) {
+      const auto& v = triangles_[t].vertices;
+      if (std::max({offPlane(v[0]), offPlane(v[1]), offPlane(v[2])}) >= kAlongPlane) continue;
+      const Vec3 normal = (points_[v[1]] - points_[v[0]]).cross(points_[v[2]] - points_[v[0]]);
+      if (std::abs(normal[axis_]) < kAlongCosine * normal.length()) continue;
+      for (const VertexIndex corner : v) isFlat_[corner] = 1;
+    }
+    const auto isFar = [&](VertexIndex v) { return isFlat_[v] != 0 && offPlane(v) >= kNearPlane; };
+    if (std::count_if(near_.begin(), near_.end(), isFar) >= kFewFar) return;
+    std::fill(isFlat_.begin(), isFlat_.end(), std::uint8_t{0});
+  }
+
+  [[nodiscard]] double offPlane(VertexIndex v) const {
+    const double x = points_[v][axis_];
+    return std::abs(planes_.nearest(axis_, x) - x);
+  }
+
   void make(const Move& move) {
     for (const VertexIndex v : near_) {
       const double x = points_[v][axis_], plane = planes_.nearest(axis_, x);
-      target_[v] = plane != x && std::abs(plane - x) < move.distance ? plane : kStays;
+      const bool isFar = isFlat_[v] != 0 && &move == kMoves;
+      const double most = isFar ? flatDistance_ : move.distance;
+      target_[v] = plane != x && std::abs(plane - x) < most ? plane : kStays;
     }
     if (!move.makesChains) leaveChains();
     for (bool isAny = true; isAny;) {
@@ -156,21 +192,23 @@ class PlaneMover {
 
   const ChunkPlanes& planes_;
   int axis_;
+  double flatDistance_;
   const std::vector<Triangle>& triangles_;
   std::vector<Vec3>& points_;
   base::Job& job_;
   std::vector<VertexIndex> near_;  ///< that may be moved, rising
   std::vector<std::uint32_t> touched_;
+  std::vector<std::uint8_t> isFlat_;  ///< of vertices
   // For each vertex, or kStays: where it goes in the move at hand, and where it was before.
   std::vector<double> target_, before_;
 };
 
 }  // namespace
 
-std::vector<MovedVertex> moveToPlanes(const ChunkPlanes& planes, int axis,
+std::vector<MovedVertex> moveToPlanes(const ChunkPlanes& planes, int axis, double flatDistance,
                                       const std::vector<Triangle>& triangles,
                                       std::vector<Vec3>& points, base::Job& job) {
-  return PlaneMover(planes, axis, triangles, points, job).run();
+  return PlaneMover(planes, axis, flatDistance, triangles, points, job).run();
 }
 
 }  // namespace tufa::chunks

@@ -15,10 +15,15 @@ struct MovedVertex {
   double by;  ///< steps of the lattice, above 0
 };
 
-/// Moves vertices that lie within half a hundredth of a step of a plane across `axis` to it, unless
-/// that turns a triangle or makes some intersect others. Returns them in rising order. Cost: a pass
-/// over the vertices, and one over the triangles if there are any.
+/// Steps of the lattice within which vertices are moved to a plane.
+inline constexpr double kNearPlane = 5e-3;
+
+/// Moves vertices that lie within that of a plane across `axis` to it, unless that turns a triangle
+/// or makes some intersect others; and within `flatDistance`, if that is more, where the surface
+/// lies along the plane. Returns them in rising order. Cost: a pass over the vertices, and one over
+/// the triangles if there are any.
 [[nodiscard]] std::vector<MovedVertex> moveToPlanes(const ChunkPlanes& planes, int axis,
+                                                    double flatDistance,
                                                     const std::vector<Triangle>& triangles,
                                                     std::vector<Vec3>& points, base::Job& job);
 
