@@ -77,13 +77,14 @@ class TUFA_API GridFile {
   explicit GridFile(const std::filesystem::path& path, const std::optional<std::string>& name = {});
   /// The bytes must outlive the object.
   explicit GridFile(const FileBytes& file, const std::optional<std::string>& name = {});
-  GridFile(GridFile&&) noexcept;
-  GridFile& operator=(GridFile&&) noexcept;
+  GridFile(GridFile&&) noexcept;  ///< of what is moved from only the destructor may be called
+  GridFile& operator=(GridFile&&) noexcept;  ///< the same
   ~GridFile();
 
   /// The grid: metadata, transform, tiles and which voxels are active. Leaves have their values
   /// only if isLoaded().
   [[nodiscard]] std::shared_ptr<const openvdb::GridBase> outline() const;
+  /// Whether all values are in memory.
   [[nodiscard]] bool isLoaded() const;
   /// The whole grid, read unless it has been. Throws Error(UnreadableFile).
   std::shared_ptr<openvdb::GridBase> load();
