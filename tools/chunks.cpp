@@ -96,7 +96,7 @@ std::vector<double> callShares(const ChunksArguments& arguments) {
 ChunksRun build(const ChunksArguments& arguments) {
   ProgressBar bar(arguments.quiet, callShares(arguments));
   ChunksRun run;
-  std::optional<GridFile> file;  // none if the volume is in memory as a whole
+  std::optional<GridFile> file;  // none once the volume is filtered
   std::shared_ptr<const openvdb::GridBase> grid;
   run.readSeconds = timed([&] { file = openVolume(arguments.input, arguments.grid); });
   grid = file->outline();

@@ -68,16 +68,17 @@ struct GridName {
     const std::filesystem::path& path, const std::optional<std::string>& name = {});
 
 /// One grid of a .vdb file whose values stay in the file until they are needed, for work on volumes
-/// that are larger than memory: see buildChunks(). What the file may not do meanwhile is change.
+/// that are larger than memory: see buildChunks(). The file must not change meanwhile.
 class TUFA_API GridFile {
  public:
-  /// Opens a grid, which is chosen as by readGrid(), and throws as that does. Grids whose values
-  /// cannot be read by and by are read as a whole: those of a .nvdb, and of a .vdb that has no
-  /// offsets, is of before 2013, or shares a tree among grids.
+  /// Opens a grid, which is chosen as by readGrid(), and throws as that does. Where leaves cannot
+  /// be read one by one, the grid is read as a whole: of a .nvdb, of a .vdb without offsets or of
+  /// before 2013, where grids share a tree, and where values are neither floats nor doubles.
   explicit GridFile(const std::filesystem::path& path, const std::optional<std::string>& name = {});
   /// The bytes must outlive the object.
   explicit GridFile(const FileBytes& file, const std::optional<std::string>& name = {});
-  GridFile(GridFile&&) noexcept;  ///< of what is moved from only the destructor may be called
+  /// What was moved from may only be assigned to or destroyed.
+  GridFile(GridFile&&) noexcept;
   GridFile& operator=(GridFile&&) noexcept;  ///< the same
   ~GridFile();
 

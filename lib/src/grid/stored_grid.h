@@ -26,7 +26,7 @@ class LeafValues {
  public:
   explicit LeafValues(base::LeafSource* source) : source_(source) {}
 
-  /// The values of a leaf with that number in the order of its tree. Until the next call.
+  /// The values of a leaf with that number in the order of its tree. Valid until the next call.
   const typename LeafT::ValueType* of(const LeafT& leaf, std::size_t number) {
     if (source_ == nullptr) return leaf.buffer().data();
     source_->read(number, values_.data());

@@ -99,8 +99,9 @@ float ChunkChain::toleranceOf(double tolerance) const {
   return static_cast<float>(frame_.within(std::max(0.0, tolerance - cut_.moved)));
 }
 
-// What a tolerance is multiplied with at each vertex, if that differs: beside vertices that were
-// moved far enough is left for that at the first tolerance, and so at all.
+// What a tolerance is multiplied with at each vertex, if that differs. Around vertices that were
+// moved far less is allowed: so much that the way they were moved fits into the first tolerance
+// too, and so into all.
 std::vector<float> ChunkChain::scalesOf(const octree::CutRule& rule) const {
   if (cut_.far.empty()) return refine::scalesOf(cut_.mesh, affine_, rule, job_);
   std::vector<float> scales(cut_.mesh.positions.size(), 1);
@@ -242,7 +243,7 @@ std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate)
     errors[i] += static_cast<double>(certificate.ofRegion[i]);
   }
   if (cut_.far.empty()) return errors;
-  // Less was allowed where it was moved far, by as much.
+  // Where the surface was moved far, less was allowed by as much: the tolerance is kept there too.
   double more = 0;
   for (const CutMesh::Far& far : cut_.far) more = std::max(more, far.more);
   for (double& error : errors) {

@@ -202,8 +202,8 @@ class Cutter {
     if (!far_.empty()) spreadMoves(before, changed);
   }
 
-  // What is at a vertex whose triangles have changed may have been part of the triangles that it
-  // had `before`, and have been moved as their vertices were; several times where changes meet.
+  // The surface around a vertex whose triangles have changed was part of the triangles that it had
+  // `before`, so it may have been moved as far as their vertices. In rings, as changes may meet.
   void spreadMoves(const std::vector<Triangle>& before, const std::vector<VertexIndex>& changed) {
     constexpr int kRings = 3;
     std::vector<std::uint8_t> isChanged(at_.size(), 0);
@@ -221,7 +221,7 @@ class Cutter {
     }
   }
 
-  // Of all triangles with a vertex that was moved far.
+  // The vertices of all triangles of which one was moved far.
   void setFar() {
     if (far_.empty()) return;
     std::vector<double> most(at_.size(), 0);

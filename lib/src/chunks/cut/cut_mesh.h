@@ -42,8 +42,8 @@ struct CutMesh {
   /// Whether a search has shown that no triangle with a new vertex intersects another one once
   /// positions are rounded.
   bool isSeparated = false;
-  /// How far it is from the uniform mesh at most, as vertices were moved to planes, and apart, but
-  /// for what is far; voxels.
+  /// How far it is from the uniform mesh at most, as vertices were moved to planes, and apart,
+  /// except around those in `far`; voxels.
   double moved = 0;
   /// The vertices around which it is farther than that, and how much. Rising.
   struct Far {
