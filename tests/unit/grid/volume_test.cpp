@@ -103,6 +103,27 @@ TEST(Volume, TellsDistancesInThinWalls) {
   }
 }
 
+// A function over the length of its gradient at each sample: near to a distance, and nowhere one.
+TEST(Volume, OfAFunctionOverItsGradientIsNoDistance) {
+  base::Job job(1, {});
+  const openvdb::CoordBBox box(openvdb::Coord(-24), openvdb::Coord(24));
+  for (const double period : {20.0, 30.0, 45.0}) {
+    const double k = 2 * std::acos(-1) / period;
+    // The shell of 0.3 periods about Schoen's gyroid, which is smooth.
+    const auto shell = [&](const openvdb::Coord& at) {
+      const openvdb::Vec3d p = at.asVec3d() * k;
+      const openvdb::Vec3d s(std::sin(p.x()), std::sin(p.y()), std::sin(p.z()));
+      const openvdb::Vec3d c(std::cos(p.x()), std::cos(p.y()), std::cos(p.z()));
+      const double g = s.x() * c.y() + s.y() * c.z() + s.z() * c.x();
+      const openvdb::Vec3d slope(c.x() * c.y() - s.z() * s.x(), c.y() * c.z() - s.x() * s.y(),
+                                 c.z() * c.x() - s.y() * s.z());
+      return std::abs(g) / (k * slope.length()) - 0.075 * period;
+    };
+    const auto grid = test::levelSet<FloatGrid>(box, 3, shell, 1);
+    EXPECT_FALSE(openVolume(*grid, {}, job).scale.distance) << period;
+  }
+}
+
 TEST(Volume, OfASlabHasTheBlocksInItAndCountsFromTheSamePoint) {
   base::Job job(1, {});
   const auto grid = ball(20.3, openvdb::Coord(0));
