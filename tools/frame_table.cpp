@@ -33,9 +33,9 @@ bool isWatertight(const Json& grid) {
   return !grid.contains("check") || grid["check"].value("watertight", true);
 }
 
-bool allWatertight(const Json& result) {
+bool isSound(const Json& result) {
   const auto grids = gridsOf(result);
-  return std::all_of(grids.begin(), grids.end(), isWatertight);
+  return !result.contains("error") && std::all_of(grids.begin(), grids.end(), isWatertight);
 }
 
 /// The greatest certified error of a frame's meshes, in voxels; none of uniform meshes.
@@ -107,8 +107,9 @@ std::string FrameRow::message() const {
 }
 
 const FrameRow& FrameTable::add(FrameRow row) {
+  if (row.state == FrameState::Skipped && !isSound(row.result)) row.state = FrameState::Failed;
   if (row.state == FrameState::Done) {
-    if (row.result.contains("error") || !allWatertight(row.result)) {
+    if (!isSound(row.result)) {
       row.state = FrameState::Failed;
     } else if (sumOf(row.result, "triangles") == 0) {
       row.state = FrameState::Empty;
@@ -116,6 +117,11 @@ const FrameRow& FrameTable::add(FrameRow row) {
   }
   rows_.push_back(std::move(row));
   return rows_.back();
+}
+
+bool FrameTable::isEmpty() const {
+  const std::size_t empty = count(FrameState::Empty);
+  return empty > 0 && empty + count(FrameState::Missing) == rows_.size();
 }
 
 std::size_t FrameTable::count(FrameState state) const {
@@ -135,9 +141,11 @@ std::string FrameTable::describeLast() const {
     case FrameState::Missing:
       return text + "missing\n";
     case FrameState::Skipped:
-      return text + "skipped, its mesh is newer: " + shownFile(row.output) + "\n";
+      return text + "skipped, its mesh is newer" +
+             (row.result.contains("check") ? " and watertight: " : ": ") + shownFile(row.output) +
+             "\n";
     case FrameState::Failed:
-      return text + "failed\n";
+      return text + "failed" + (gridsOf(row.result).empty() ? "" : ": " + describeMesh(row)) + "\n";
   }
   return text;
 }

@@ -48,6 +48,8 @@ class FrameTable {
 
   /// Whether any frame has failed.
   [[nodiscard]] bool failed() const { return count(FrameState::Failed) > 0; }
+  /// Whether there are frames, and none of them has a surface.
+  [[nodiscard]] bool isEmpty() const;
 
  private:
   [[nodiscard]] std::size_t count(FrameState state) const;

@@ -31,7 +31,7 @@ int judge(const MeshRun& run) {
   for (const GridRun& grid : run.grids) voxelSize = std::min(voxelSize, grid.voxelSize);
   noteRounding(run.written.rounding, voxelSize);
   for (const GridRun& grid : run.grids) {
-    noteData(grid.contour, grid.filters.reports.empty() ? nullptr : &grid.mesh);
+    noteData(grid.contour, &grid.mesh);
     if (!grid.check || grid.check->watertight()) continue;
     noteBroken(*grid.check, grid.contour,
                run.grids.size() == 1 ? "the mesh" : "the mesh of grid \"" + grid.grid + "\"");

@@ -166,6 +166,27 @@ void checkMesh(GridRun& run, const MeshArguments& arguments, ProgressBar& bar) {
   run.checkSeconds = timed([&] { run.check = check(run.mesh, options); });
 }
 
+/// Checks a mesh as its file has it where that holds other positions, which may bring sheets
+/// together that are apart in memory.
+void checkRounded(GridRun& run, const WriteReport& written, const MeshArguments& arguments) {
+  if (!run.check || !run.check->watertight() || isDirect(run.output)) return;
+  const MeshFormat format = meshFormat(run.output, arguments.format);
+  const bool isRounded = written.rounding > 0 || (format == MeshFormat::Glb &&
+                                                  arguments.compression != GlbCompression::None);
+  if (!isRounded || (format != MeshFormat::Glb && format != MeshFormat::Stl)) return;
+  CheckOptions options;
+  options.threads = arguments.contour.threads;
+  options.progress = [](std::string_view /*stage*/, double /*fraction*/) { return !interrupted(); };
+  run.checkSeconds += timed([&] {
+    CheckReport found = check(readMeshInput(run.output, arguments.format), options);
+    if (!found.watertight()) run.check = std::move(found);
+  });
+  if (run.check->watertight()) return;
+  printNote(run.output +
+            " holds positions of less precision than the mesh, which breaks it; .ply, "
+            ".obj and .off hold it as it is");
+}
+
 WriteOptions writeOptions(const MeshArguments& arguments, const GridRun& run, ProgressBar& bar) {
   WriteOptions options;
   if (!run.grid.empty()) options.name = run.grid;
@@ -411,6 +432,9 @@ MeshRun meshFile(const MeshArguments& arguments) {
     for (GridRun& grid : run.grids) checkMesh(grid, arguments, bar);
   }
   run.writeSeconds = timed([&] { writeAll(run, arguments, bar); });
+  if (arguments.check && (run.grids.size() == 1 || base::hasBraces(arguments.output))) {
+    for (GridRun& grid : run.grids) checkRounded(grid, run.written, arguments);
+  }
   return run;
 }
 

@@ -1,5 +1,6 @@
 #include "mesh_sequence.h"
 
+#include <tufa/check.h>
 #include <tufa/error.h>
 #include <tufa/io.h>
 #include <tufa/staged_folder.h>
@@ -23,6 +24,7 @@
 #include "frames.h"
 #include "paths.h"
 #include "processes.h"
+#include "report.h"
 #include "standard_streams.h"
 #include "usda_sequence.h"
 #include "volume.h"
@@ -110,6 +112,11 @@ bool isNewer(const std::string& output, const std::string& input) {
   return made > std::filesystem::last_write_time(input, error) && !error;
 }
 
+/// Whether meshes of a format can be read, and so checked.
+bool isReadable(MeshFormat format) {
+  return format != MeshFormat::Usda && format != MeshFormat::ThreeMf;
+}
+
 Frame makeFrame(int number, const MeshArguments& arguments, const SequenceArguments& sequence) {
   Frame frame;
   frame.number = number;
@@ -118,7 +125,8 @@ Frame makeFrame(int number, const MeshArguments& arguments, const SequenceArgume
   std::error_code error;
   if (!std::filesystem::exists(frame.input, error)) {
     frame.state = FrameState::Missing;
-  } else if (sequence.resume && isNewer(frame.output, frame.input)) {
+  } else if (sequence.resume && isNewer(frame.output, frame.input) &&
+             (!arguments.check || isReadable(meshFormat(frame.output, arguments.format)))) {
     frame.state = FrameState::Skipped;
   }
   return frame;
@@ -203,6 +211,30 @@ std::vector<Frame> framesOf(const MeshArguments& arguments, const SequenceArgume
   }
   requireFeasible(argumentsOf(frames.front(), arguments, sequence));
   return frames;
+}
+
+/// In the process of a frame whose mesh is there already: whether that is as it should be.
+std::string checkFrame(const MeshArguments& arguments) {
+  Json json;
+  try {
+    const Mesh mesh = readMeshInput(arguments.output, arguments.format);
+    json["output"] = arguments.output;
+    json["vertices"] = mesh.positions.size();
+    json["triangles"] = mesh.triangleCount();
+    CheckOptions options;
+    options.threads = arguments.contour.threads;
+    std::optional<CheckReport> report;
+    const double seconds = timed([&] {
+      if (mesh.triangleCount() > 0) report = check(mesh, options);
+    });
+    json["seconds"] = {{"check", seconds}};
+    if (report) json["check"] = toJson(*report);
+  } catch (const Error& error) {
+    json["error"] = errorToJson(nameOf(error.code()), messageOf(error));
+  } catch (const std::bad_alloc&) {
+    json["error"] = errorToJson("out_of_memory", "out of memory");
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// In the process of a frame: what there is to tell of it. `output`: the file that is told of, if
@@ -352,10 +384,13 @@ class FrameTeller {
   std::string wrongUsage_;
 };
 
-std::vector<std::size_t> indicesToMesh(const std::vector<Frame>& frames) {
+/// Of frames that are to be meshed, or checked.
+std::vector<std::size_t> indicesOfWork(const std::vector<Frame>& frames, bool checksSkipped) {
   std::vector<std::size_t> indices;
   for (std::size_t index = 0; index < frames.size(); ++index) {
-    if (frames[index].state == FrameState::Done) indices.push_back(index);
+    const FrameState state = frames[index].state;
+    const bool isChecked = checksSkipped && state == FrameState::Skipped;
+    if (state == FrameState::Done || isChecked) indices.push_back(index);
   }
   return indices;
 }
@@ -380,20 +415,21 @@ bool isSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
 int runSequence(const MeshArguments& arguments, const SequenceArguments& sequence) {
   requireSound(arguments, sequence);
   const std::vector<Frame> frames = framesOf(arguments, sequence);
-  const std::vector<std::size_t> toMesh = indicesToMesh(frames);
+  const std::vector<std::size_t> toDo = indicesOfWork(frames, arguments.check);
   std::optional<OneFile> one;
   if (isOneFile(arguments)) one.emplace(arguments.output);
   FrameTeller teller(frames, !arguments.quiet && !arguments.json);
   const auto work = [&](std::size_t n) {
-    const Frame& frame = frames[toMesh[n]];
+    const Frame& frame = frames[toDo[n]];
     MeshArguments ofFrame = argumentsOf(frame, arguments, sequence);
+    if (frame.state == FrameState::Skipped) return checkFrame(ofFrame);
     if (one) ofFrame.output = one->frameFile(frame.number);
     return meshFrame(ofFrame, frame.output);
   };
   const auto tell = [&](std::size_t n, const ProcessResult& result) {
-    return teller.tell(toMesh[n], readResult(result));
+    return teller.tell(toDo[n], readResult(result));
   };
-  const double seconds = timed([&] { runInProcesses(toMesh.size(), sequence.jobs, work, tell); });
+  const double seconds = timed([&] { runInProcesses(toDo.size(), sequence.jobs, work, tell); });
   const FrameTable& table = teller.table();
   if (teller.wrongUsage().empty()) teller.finish();
   // Before what may fail still.
@@ -412,7 +448,10 @@ int runSequence(const MeshArguments& arguments, const SequenceArguments& sequenc
     print(table.describe(seconds));
     if (isJoined) print(describeWritten({arguments.output}, joinSeconds));
   }
-  return table.failed() ? kPromiseBroken : kDone;
+  if (table.isEmpty()) {
+    printNote("no frame has a surface: all meshes are empty; tufa info says what values there are");
+  }
+  return table.failed() || table.isEmpty() ? kPromiseBroken : kDone;
 }
 
 }  // namespace tufa::tools

@@ -46,6 +46,10 @@ Json repairJson(const RepairReport& report) {
 }
 
 std::string describeRepair(const RepairReport& report, double mergeDistance) {
+  if (report.keptInput && report.before.watertight()) {
+    return "the mesh is watertight: nothing to repair; it was written as it is\n" +
+           describe(report.after);
+  }
   if (report.keptInput) {
     return "no repair makes this mesh better" +
            std::string(mergeDistance > 0 ? " at this --merge distance: a smaller one may" : "") +

@@ -4,6 +4,8 @@
 
 #include <tufa/error.h>
 #include <tufa/io.h>
+#include <tufa/mesh.h>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,12 +32,27 @@ struct VoxelizeArguments {
   bool quiet = false;
 };
 
+/// A mesh shorter than so many voxels hardly has a shape: its units may be others.
+constexpr double kFewVoxels = 8;
+
 /// Whether there is anything that the surface is around.
 bool hasInside(const openvdb::FloatGrid& grid, bool isFog) {
   for (auto value = grid.cbeginValueOn(); value; ++value) {
     if (isFog ? *value > 0 : *value < 0) return true;
   }
   return false;
+}
+
+/// Of a mesh that has vertices, along an axis.
+double longestSide(const Mesh& mesh) {
+  double longest = 0;
+  for (const auto at : {&Position::x, &Position::y, &Position::z}) {
+    const auto [least, greatest] =
+        std::minmax_element(mesh.positions.begin(), mesh.positions.end(),
+                            [at](const Position& a, const Position& b) { return a.*at < b.*at; });
+    longest = std::max(longest, (*greatest).*at - (*least).*at);
+  }
+  return longest;
 }
 
 int runVoxelize(const VoxelizeArguments& arguments) {
@@ -56,6 +73,12 @@ int runVoxelize(const VoxelizeArguments& arguments) {
     options.progress = bar.callback();
     grid = voxelize(mesh, options, &voxelized.distances);
   });
+  const double length = longestSide(mesh) / arguments.options.voxelSize;
+  if (!arguments.quiet && length < kFewVoxels) {
+    printNote("note: the mesh is " + shortNumber(length) +
+              " voxels long; --voxel is in the mesh's units, and a hundredth of its length shows "
+              "most of its shape");
+  }
   if (!arguments.quiet && !hasInside(*grid, arguments.options.fog)) {
     printNote("note: no voxel is inside: the mesh is thinner than the voxels of " +
               formatNumber(arguments.options.voxelSize) + ", or open; there is no surface to mesh");

@@ -3,12 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <tufa/chunks.h>
+#include <tufa/implicit.h>
+#include <tufa/memory.h>
+#include <tufa/voxelize.h>
 #include <array>
 #include <random>
+#include <string>
 #include <vector>
 
+#include "support/chunk_mixtures.h"
 #include "support/mesh_oracle.h"
 #include "support/openvdb_templates.h"
+#include "support/random_solid.h"
+#include "support/uniform_mesh.h"
 
 namespace tufa {
 namespace {
@@ -67,6 +74,28 @@ TEST(ChunkRepair, IsMadeWhateverIsAskedFor) {
       const Kept kept = keptBy(*grid, repair);
       EXPECT_EQ(kept.whole, 2u) << "seed " << seed << ", repair " << repair;
       EXPECT_EQ(kept.within, kept.levels) << "seed " << seed << ", repair " << repair;
+    }
+  }
+}
+
+// Rounding takes vertices of one plate through another one, and along the edges of plates both
+// sides are joined by strips without width.
+TEST(ChunksOfPlates, KeepTheirTolerancesAndMakeNoFolds) {
+  for (const unsigned seed : {0U, 1U, 2U, 3U, 4U, 5U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::string text = test::randomPlates(seed);
+    VoxelizeOptions voxels;
+    voxels.voxelSize = 0.045;
+    const auto grid = voxelize(*implicit::readScene(FileBytes{text, "plates"}).field, voxels);
+    ChunkOptions options;
+    options.chunkSize = 16;
+    options.levels = 2;
+    const test::Made made = test::makeChunks(*grid, options);
+    test::expectTolerancesKept(made);
+    const std::size_t folds = test::foldedEdges(test::uniformMesh(*grid), voxels.voxelSize);
+    for (std::size_t level = 0; level < 2; ++level) {
+      const std::vector<std::size_t> lods(made.chunks.size(), level);
+      EXPECT_LE(test::foldedEdges(assembleChunks(made.chunks, lods), voxels.voxelSize), folds);
     }
   }
 }

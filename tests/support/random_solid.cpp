@@ -29,6 +29,20 @@ class Maker {
     return object;
   }
 
+  Json plates() {
+    Json objects = Json::array();
+    const unsigned count = 3 + below(5);
+    for (unsigned i = 0; i < count; ++i) {
+      const Json axis{between(-0.3, 0.3), 1, 0.1};
+      const Json turn{{"rotate", {{"axis", axis}, {"degrees", between(-25, 25)}}}};
+      const Json move{{"translate", {0, 0, 0.12 * i - 0.4}}};
+      objects.push_back({{"type", "box"},
+                         {"size", {1.4, 1.1, between(0.03, 0.12)}},
+                         {"transform", {turn, move}}});
+    }
+    return objects;
+  }
+
  private:
   // Of the engine's own bits: distributions differ from one standard library to another.
   unsigned below(unsigned end) { return static_cast<unsigned>(random_() % end); }
@@ -99,6 +113,10 @@ class Maker {
 
 std::string randomSolid(unsigned seed) {
   return Json{{"tufa_scene", 1}, {"name", "solid"}, {"objects", {Maker(seed).solid()}}}.dump();
+}
+
+std::string randomPlates(unsigned seed) {
+  return Json{{"tufa_scene", 1}, {"name", "plates"}, {"objects", Maker(seed).plates()}}.dump();
 }
 
 }  // namespace tufa::test

@@ -111,9 +111,20 @@ TEST_F(Hints, ForFogThatIsCalledALevelSet) {
 
 TEST_F(Hints, ForDistancesThatMergeTooMuch) {
   makeSphere();
-  ASSERT_EQ(run("mesh s.vdb -o m.stl --quiet").exitCode, 0);
+  ASSERT_EQ(run("mesh s.vdb -o whole.stl --quiet").exitCode, 0);
+  ASSERT_EQ(run("mesh s.vdb -o m.stl --clip -2,-2,-2,2,2,0 --quiet").exitCode, 0);
   EXPECT_NE(run("repair m.stl -o r.ply --merge 10").out.find("a smaller one may"),
             std::string::npos);
+  EXPECT_NE(run("repair whole.stl -o r.ply --merge 10").out.find("nothing to repair"),
+            std::string::npos);
+}
+
+TEST_F(Hints, ForMeshesOfAFewVoxels) {
+  makeSphere();
+  ASSERT_EQ(run("mesh s.vdb -o m.ply --quiet").exitCode, 0);
+  EXPECT_NE(run("voxelize m.ply -o v.vdb --voxel 1").err.find("is in the mesh's units"),
+            std::string::npos);
+  EXPECT_EQ(run("voxelize m.ply -o v.vdb --voxel 0.1").err, "");
 }
 
 TEST_F(Hints, ForIntegersAndFolders) {

@@ -158,7 +158,8 @@ TEST_F(Sequence, AbsentFramesAreCheap) {
 TEST_F(Sequence, EmptyFramesAreWrittenEmpty) {
   const Outcome outcome =
       run("mesh 'f.####.vdb' -o 'm.####.ply' --iso 2.5 --report all.json --inside below");
-  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(outcome.exitCode, 1);  // as all are
+  EXPECT_NE(outcome.err.find("no frame has a surface"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("no surface, an empty mesh: m.0001.ply"), std::string::npos)
       << outcome.out;
   EXPECT_EQ(readMesh(folder / "m.0001.ply").triangleCount(), 0u);
@@ -254,6 +255,29 @@ TEST_F(Sequence, CheckedFramesThatAreNotWatertightFail) {
   EXPECT_EQ(outcome.exitCode, 1);
   EXPECT_NE(outcome.err.find("m.0001.ply is not watertight"), std::string::npos) << outcome.err;
   EXPECT_TRUE(exists("m.0002.ply"));
+  EXPECT_NE(outcome.out.find("f.0001.vdb: failed: "), std::string::npos) << outcome.out;
+}
+
+TEST_F(Sequence, ResumeChecksWhatIsThere) {
+  const std::string command = "mesh 'f.####.vdb' -o 'm.####.ply' --frames 1-2 --check";
+  ASSERT_EQ(run(command).exitCode, 0);
+  const auto now = std::filesystem::last_write_time(folder / "m.0002.ply");
+  for (const char* input : {"f.0001.vdb", "f.0002.vdb"}) {
+    std::filesystem::last_write_time(folder / input, now - std::chrono::hours(1));
+  }
+  const Outcome sound = run(command + " --resume");
+  EXPECT_EQ(sound.exitCode, 0) << sound.err;
+  EXPECT_NE(sound.out.find("skipped, its mesh is newer and watertight: m.0002.ply"),
+            std::string::npos)
+      << sound.out;
+  // A mesh that an earlier run has written and not found watertight.
+  ASSERT_EQ(run("mesh f.0002.vdb -o m.0002.ply --clip -2,-2,-2,2,2,0").exitCode, 0);
+  const Outcome open = run(command + " --resume --report all.json");
+  EXPECT_EQ(open.exitCode, 1);
+  EXPECT_NE(open.err.find("m.0002.ply is not watertight"), std::string::npos) << open.err;
+  EXPECT_EQ(statesOf(test::parseJson(readBytes(folder / "all.json"))),
+            (States{"skipped", "failed"}));
+  EXPECT_EQ(run("mesh 'f.####.vdb' -o 'm.####.ply' --frames 1-2 --resume").exitCode, 0);
 }
 
 TEST_F(Sequence, WhatIsWrongWithAllFramesIsToldOnce) {
@@ -336,7 +360,7 @@ TEST_F(Sequence, ReportsAUsdaThatCannotBeJoined) {
 TEST_F(Sequence, OneUsdaHasFramesWithoutASurface) {
   const Outcome outcome =
       run("mesh 'f.####.vdb' -o all.usda --frames 1-2 --iso 2.5 --inside below");
-  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(outcome.exitCode, 1);
   const std::string all = readBytes(folder / "all.usda");
   EXPECT_NE(all.find("point3f[] points.timeSamples = {\n            1: [],\n            2: [],\n"),
             std::string::npos);

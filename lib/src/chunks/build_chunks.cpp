@@ -207,6 +207,7 @@ class ChunkBuilder {
     ChunkIndex index = describe(volume, options_);
     index.grid = grid::nameOf(grid_.grid);
     cutting.chunkSize = options_.chunkSize;
+    if (!rule.scale && rule.tolerance >= kLeastForFlat) cutting.flatDistance = kFlatDistance;
     cutting.singlePrecision = fitsSinglePrecision(volume);
     cutting.latticeStep = index.step;
     if (!cutting.singlePrecision) index.origin = middleOf(volume.blocks, volume.transform);
@@ -236,9 +237,7 @@ class ChunkBuilder {
     }
     if (slabs.size() <= 1) {
       grid::load(volume, job_);
-      chunks::CutOptions whole = cutting;
-      if (!rule.scale && rule.tolerance >= kLeastForFlat) whole.flatDistance = kFlatDistance;
-      return chunks::cutVolume(std::move(volume), whole, kEnds, report_, job_);
+      return chunks::cutVolume(std::move(volume), cutting, kEnds, report_, job_);
     }
     return chunks::reduceSlabs(volume, std::move(slabs), rule, cutting,
                                scaled(kEnds, 1 / kFirstLevelEnd), kFirstLevelEnd, report_, job_);

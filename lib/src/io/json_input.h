@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 
 #include "io/input_bytes.h"
@@ -13,12 +14,19 @@ namespace tufa::io {
 /// other: documents are copied and freed by functions that call themselves, once for each level.
 void requireShallowJson(std::string_view text, const InputBytes& input);
 
-/// Parses a text that is a file, or part of one. Throws Error(UnreadableFile) if it is too deep,
-/// and what nlohmann::json throws.
+/// Throws Error(UnreadableFile) for a text that is no JSON, by what nlohmann::json says of it.
+[[noreturn]] void failAsNoJson(std::string_view message, const InputBytes& input);
+
+/// Parses a text that is a file, or part of one. Throws Error(UnreadableFile) if it is too deep, or
+/// no JSON.
 template <class Json>
 Json parseJson(std::string_view text, const InputBytes& input) {
   requireShallowJson(text, input);
-  return Json::parse(text);
+  try {
+    return Json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    failAsNoJson(error.what(), input);
+  }
 }
 
 /// A count or an index: a whole number from 0 up, which a JSON text may write as 3 or 3.0. Converts

@@ -217,6 +217,11 @@ void Reduction::setRegions(std::function<Regions()> regions) {
   reduce::setRegions(surface_, regions_(), job_);
 }
 
+void Reduction::setScales(std::vector<float> scales) {
+  largestScale_ = takeLargest(scales);
+  reference_.setScales(std::move(scales));
+}
+
 void Reduction::replaceParts(std::span<const ReplacedPart> parts,
                              const std::vector<std::uint8_t>& isHeld) {
   if (!parts.empty()) {

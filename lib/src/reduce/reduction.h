@@ -94,6 +94,11 @@ class Reduction {
   /// are asked for again where the input is.
   void setRegions(std::function<Regions()> regions);
 
+  /// For tolerances to come, in place of `scales` of the constructor: the surface must be within
+  /// them. Not where there were none when a second tolerance was reached, as another reference may
+  /// stand in then.
+  void setScales(std::vector<float> scales);
+
   /// Replaces parts of the input, and then has all triangles of some regions stay where they are.
   /// `isHeld`: for each region. To be called after setRegions().
   void replaceParts(std::span<const ReplacedPart> parts, const std::vector<std::uint8_t>& isHeld);

@@ -35,6 +35,8 @@ class ReferenceMesh {
     if ((marks_[vertex] & kFrozen) != 0) return 0;
     return promisedScaleAt(vertex) * ((marks_[vertex] & kHeld) != 0 ? heldShare_ : 1);
   }
+  /// In place of those before.
+  void setScales(std::vector<float> scales) { scales_ = std::move(scales); }
   /// Whether the tolerance that is promised differs from place to place.
   [[nodiscard]] bool hasScales() const { return !scales_.empty(); }
   /// What it is multiplied with at a vertex.

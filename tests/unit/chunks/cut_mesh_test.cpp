@@ -6,12 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "chunks/cut/flip_caps.h"
 #include "chunks/cut/join_vertices.h"
 #include "chunks/cut/move_to_planes.h"
+#include "chunks/cut/push_apart.h"
 #include "chunks/cut/separate_rounded.h"
+#include "chunks/cut/surface_moves.h"
+#include "chunks/cut/turned.h"
 #include "support/mesh_oracle.h"
 #include "support/model.h"
 
@@ -44,7 +48,7 @@ void expectDivided(const Cut& cut, double uniformArea) {
   EXPECT_EQ(topology.nonManifoldEdges + topology.nonManifoldVertices + topology.misorientedEdges,
             0U);
   EXPECT_NEAR(test::area(mesh.mesh), uniformArea, 2e-3 * uniformArea);
-  EXPECT_LT(mesh.moved, 0.02);
+  EXPECT_LT(mesh.moved, 1e-6);
   std::vector<std::set<std::uint32_t>> chunksAt(mesh.mesh.positions.size());
   for (std::size_t t = 0; t < mesh.mesh.triangles.size(); ++t) {
     const Coord& chunk = mesh.chunks[mesh.chunkOf[t]];
@@ -95,13 +99,12 @@ TEST(CutMesh, MovesFacesToPlanesAndSaysHowFar) {
   const openvdb::FloatGrid::Ptr box = boxOf({16.012, 16.012, 9.4});
   const Cut near(box);
   EXPECT_GT(near.mesh.chunks.size(), 8U);
-  EXPECT_TRUE(near.mesh.far.empty());
+  for (const MovedVertex& moved : near.mesh.movedAt) EXPECT_LT(moved.by, 0.012);
   const Cut cut(box, 0.02);
   EXPECT_EQ(cut.mesh.chunks.size(), 8U);
   expectDivided(cut, test::area(test::triangulated(cut.model.mesh())));
-  EXPECT_LT(cut.mesh.moved, 0.006);
   std::vector<double> most(cut.mesh.mesh.positions.size(), cut.mesh.moved);
-  for (const CutMesh::Far& far : cut.mesh.far) most[far.vertex] += far.more;
+  for (const MovedVertex& moved : cut.mesh.movedAt) most[moved.vertex] += moved.by;
   const Mesh& uniform = cut.model.mesh();
   double farthest = 0;
   for (std::size_t v = 0; v < uniform.positions.size(); ++v) {
@@ -193,11 +196,14 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
   };
   base::Job job(1, {});
   std::vector<Triangle> joined = octahedron();
-  std::vector<VertexIndex> changed;
+  std::vector<MovedVertex> changed;
   const auto always = [](VertexIndex, VertexIndex) { return true; };
-  EXPECT_NEAR(joinNearVertices(points, 1e-3, {}, always, joined, changed, job), 1e-5, 1e-12);
+  joinNearVertices(points, 1e-3, false, {}, always, joined, changed, job);
   EXPECT_EQ(joined.size(), 8U);
-  EXPECT_EQ(changed, std::vector<VertexIndex>{4});
+  ASSERT_EQ(changed.size(), 2U);
+  EXPECT_EQ(changed[0].vertex + changed[1].vertex, 4U + 5U);
+  for (const MovedVertex& end : changed) EXPECT_NEAR(end.by, 1e-5, 1e-12);
+  changed.clear();
   Mesh mesh;
   mesh.positions.assign(points.begin(), points.end());
   mesh.triangles = joined;
@@ -205,13 +211,88 @@ TEST(JoinNearVertices, CollapsesShortEdgesWhereTheTopologyAllowsIt) {
   EXPECT_EQ(test::inspect(mesh).nonManifoldEdges, 0U);
   std::vector<Triangle> kept = octahedron();
   const auto never = [](VertexIndex, VertexIndex) { return false; };
-  EXPECT_EQ(joinNearVertices(points, 1e-3, {}, never, kept, changed, job), 0);
+  joinNearVertices(points, 1e-3, false, {}, never, kept, changed, job);
   EXPECT_EQ(kept, octahedron());
   // An edge of a tetrahedron cannot go, however short.
   const std::vector<Vec3> few = {{0, 0, 0}, {1e-5, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  EXPECT_EQ(joinNearVertices(few, 1e-3, {}, always, tetrahedron, changed, job), 0);
+  joinNearVertices(few, 1e-3, false, {}, always, tetrahedron, changed, job);
   EXPECT_EQ(tetrahedron.size(), 4U);
+  EXPECT_TRUE(changed.empty());
+}
+
+// Two sheets that meet along a strip as narrow as the edges that go: collapsed, they would be
+// neighbours, one lying on the other. Every other edge of the strip may go.
+TEST(JoinNearVertices, MakesNoFoldsUnlessTold) {
+  constexpr double kThin = 1e-5, kOpening = 0.02;
+  constexpr VertexIndex kRows = 6;
+  std::vector<Vec3> points;
+  for (VertexIndex i = 0; i < kRows; ++i) {
+    points.insert(points.end(), {{1, double(i), kOpening},
+                                 {0, double(i), kThin},
+                                 {0, double(i), 0},
+                                 {1, double(i), -kOpening}});
+  }
+  std::vector<Triangle> triangles;
+  for (VertexIndex i = 0; i + 1 < kRows; ++i) {
+    for (VertexIndex c = 0; c < 3; ++c) {
+      const VertexIndex a = 4 * i + c, b = a + 1, d = a + 4, e = a + 5;
+      triangles.insert(triangles.end(), {{a, b, d}, {b, e, d}});
+    }
+  }
+  base::Job job(1, {});
+  const auto always = [](VertexIndex, VertexIndex) { return true; };
+  std::vector<MovedVertex> changed;
+  const auto countFolds = [&] {
+    const auto normalOf = [&](const Triangle& t) {
+      const Vec3 p = points[t.vertices[0]];
+      return (points[t.vertices[1]] - p).cross(points[t.vertices[2]] - p);
+    };
+    std::map<std::pair<VertexIndex, VertexIndex>, Vec3> normals;
+    for (const Triangle& t : triangles) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        normals[{t.vertices[i], t.vertices[(i + 1) % 3]}] = normalOf(t);
+      }
+    }
+    int folds = 0;
+    for (const auto& [edge, normal] : normals) {
+      const auto other = normals.find({edge.second, edge.first});
+      if (other != normals.end() && isFold(normal, other->second)) ++folds;
+    }
+    return folds;
+  };
+  ASSERT_EQ(countFolds(), 0);
+  joinNearVertices(points, 1e-3, false, {}, always, triangles, changed, job);
+  EXPECT_EQ(countFolds(), 0);
+  joinNearVertices(points, 1e-3, true, {}, always, triangles, changed, job);
+  EXPECT_GT(countFolds(), 0);
+}
+
+// The vertex of a sheet has gone through another one by rounding.
+TEST(PushApart, TakesVerticesBackThatHavePassedATriangle) {
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 4, 5}};
+  const auto pointsWith = [](double depth) {
+    return std::vector<Vec3>{{-1, -1, 0},    {1, -1, 0}, {0, 1, 0},
+                             {0, 0, -depth}, {1, 0, 1},  {-1, 0, 1}};
+  };
+  const std::vector<intersect::PolygonPair> pairs = {{0, 1}};
+  const auto always = [](VertexIndex, const Vec3&) { return true; };
+  std::vector<Vec3> points = pointsWith(1e-6);
+  std::vector<MovedVertex> moved;
+  pushApart(triangles, pairs, 1e-3, always, points, moved);
+  ASSERT_EQ(moved.size(), 1U);
+  EXPECT_EQ(moved[0].vertex, 3U);
+  EXPECT_NEAR(points[3][2], 1e-3, 1e-12);
+  EXPECT_NEAR(moved[0].by, 1e-3 + 1e-6, 1e-12);
+  // Not where that may not be, nor by more than the surface is to be moved.
+  std::vector<Vec3> held = pointsWith(1e-6);
+  moved.clear();
+  pushApart(
+      triangles, pairs, 1e-3, [](VertexIndex v, const Vec3&) { return v != 3; }, held, moved);
+  EXPECT_TRUE(moved.empty());
+  std::vector<Vec3> deep = pointsWith(0.5);
+  pushApart(triangles, pairs, 1e-3, always, deep, moved);
+  EXPECT_TRUE(moved.empty());
 }
 
 // The vertex in the middle of an edge of a square's two triangles.
@@ -219,23 +300,63 @@ TEST(FlipCaps, TurnsTheEdgeThatAVertexLiesOn) {
   const std::vector<Vec3> points = {{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, 1e-6, 0}};
   base::Job job(1, {});
   std::vector<Triangle> triangles = {{0, 1, 2}, {1, 0, 3}};
-  std::vector<VertexIndex> changed;
+  std::vector<MovedVertex> changed;
   const std::vector<Triangle> before = triangles;
   const auto never = [](const std::array<VertexIndex, 4>&) { return false; };
-  EXPECT_EQ(flipCaps(points, 1e-4, {}, never, triangles, changed, job), 0);
+  flipCaps(points, 1e-4, {}, never, triangles, changed, job);
   EXPECT_EQ(triangles, before);
   EXPECT_TRUE(changed.empty());
   const std::vector<std::uint8_t> marks = {0, 0, 1, 0};  // on the square's far corner
   const auto always = [](const std::array<VertexIndex, 4>&) { return true; };
-  EXPECT_EQ(flipCaps(points, 1e-4, marks, always, triangles, changed, job), 0);
-  EXPECT_NEAR(flipCaps(points, 1e-4, {}, always, triangles, changed, job), 1e-6, 1e-12);
+  flipCaps(points, 1e-4, marks, always, triangles, changed, job);
+  EXPECT_TRUE(changed.empty());
+  flipCaps(points, 1e-4, {}, always, triangles, changed, job);
   EXPECT_EQ(changed.size(), 4U);
+  for (const MovedVertex& corner : changed) EXPECT_NEAR(corner.by, 1e-6, 1e-12);
   ASSERT_EQ(triangles.size(), 2U);
   for (const Triangle& t : triangles) {
     const Vec3 n = (points[t.vertices[1]] - points[t.vertices[0]])
                        .cross(points[t.vertices[2]] - points[t.vertices[0]]);
     EXPECT_NEAR(n[2], 2, 1e-4);  // half of what the two were
   }
+}
+
+// A strip of triangles along two rows of vertices, even ones below and odd ones above.
+TEST(SurfaceMoves, AddUpWhereChangesMeetAndOnlyThere) {
+  constexpr VertexIndex kCount = 20;
+  std::vector<Triangle> strip;
+  for (VertexIndex v = 0; v + 2 < kCount; ++v) strip.push_back({v, v + 1, v + 2});
+  base::Job job(1, {});
+  const auto movedAfter = [&](const auto& change) {
+    SurfaceMoves moves;
+    moves.reserve(kCount, kCount, job);
+    change(moves);
+    std::vector<double> by(kCount, 0);
+    for (const auto& [v, most] : moves.take(strip, job)) by[v] = most;
+    return by;
+  };
+  using Kind = SurfaceMoves::Kind;
+  // The triangles at a vertex that has moved are those of vertices up to two places on.
+  const std::vector<double> once = movedAfter([&](SurfaceMoves& moves) {
+    moves.add(Kind::Places, strip, {{9, 0.5}}, job);
+  });
+  for (VertexIndex v = 0; v < kCount; ++v) EXPECT_EQ(once[v], v >= 7 && v <= 11 ? 0.5 : 0) << v;
+  // A second move beside it is on top of the first one, and far from it is not.
+  const std::vector<double> twice = movedAfter([&](SurfaceMoves& moves) {
+    moves.add(Kind::Places, strip, {{9, 0.5}}, job);
+    moves.add(Kind::Places, strip, {{10, 0.25}, {17, 0.25}}, job);
+  });
+  EXPECT_EQ(twice[10], 0.75);
+  EXPECT_EQ(twice[17], 0.25);
+  EXPECT_EQ(twice[3], 0);
+  // Collapses that hang together: what the first vertex had goes on to the last one.
+  const std::vector<double> chain = movedAfter([&](SurfaceMoves& moves) {
+    moves.add(Kind::Places, strip, {{4, 0.5}}, job);
+    moves.add(Kind::Triangles, strip, {{5, 0.125}, {7, 0.125}, {9, 0.25}, {16, 0.125}}, job);
+  });
+  EXPECT_EQ(chain[9], 0.75);
+  EXPECT_EQ(chain[5], 0.75);
+  EXPECT_EQ(chain[16], 0.125);
 }
 
 // Far from the origin, what lay apart is at one place in world space.

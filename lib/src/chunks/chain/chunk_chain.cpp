@@ -19,6 +19,10 @@ using base::Vec3f;
 
 // Voxels that vertices inside a chunk keep from its faces, unless they were nearer before.
 constexpr double kDepth = 2e-3;
+// Where the cut has moved the surface by less than this share of a tolerance at most, all of the
+// surface is reduced by that less: scales would save few triangles, and no proxy can stand in for a
+// reference with scales.
+constexpr double kLittleMoved = 0.02;
 
 }  // namespace
 
@@ -33,7 +37,10 @@ ChunkChain::ChunkChain(CutMesh cut, const grid::Affine& affine, const octree::Cu
       job_(job),
       frame_(cut_.mesh.positions, affine.voxelSize(), job,
              cut_.errors.empty() ? base::TriangleView() : faces_),
-      curveVertices_(static_cast<VertexIndex>(cut_.mesh.positions.size())) {
+      curveVertices_(static_cast<VertexIndex>(cut_.mesh.positions.size())),
+      isScaled_(static_cast<bool>(rule.scale)),
+      tolerance_(rule.tolerance) {
+  for (const MovedVertex& moved : cut_.movedAt) mostMoved_ = std::max(mostMoved_, moved.by);
   const auto localsOf = [&](const std::vector<Position>& from) {
     std::vector<Vec3f> local;
     base::resizeLarge(local, from.size(), job);
@@ -94,29 +101,42 @@ reduce::Regions ChunkChain::regionsOf() const {
   return regions;
 }
 
-// What is left of a tolerance.
-float ChunkChain::toleranceOf(double tolerance) const {
-  return static_cast<float>(frame_.within(std::max(0.0, tolerance - cut_.moved)));
+// What is left of a tolerance where the cut has moved the surface least.
+double ChunkChain::leftOf(double tolerance) const {
+  return tolerance - cut_.moved - (hasScales(tolerance) ? 0 : mostMoved_);
 }
 
-// What a tolerance is multiplied with at each vertex, if that differs. Around vertices that were
-// moved far less is allowed: so much that the way they were moved fits into the first tolerance
-// too, and so into all.
+// Whether less of a tolerance is allowed where the cut has moved the surface than elsewhere.
+bool ChunkChain::hasScales(double tolerance) const {
+  return isScaled_ || mostMoved_ > kLittleMoved * tolerance;
+}
+
+// What guards multiply a tolerance with, or none: where the surface was moved, what leaves room for
+// that.
 std::vector<float> ChunkChain::scalesOf(const octree::CutRule& rule) const {
-  if (cut_.far.empty()) return refine::scalesOf(cut_.mesh, affine_, rule, job_);
-  std::vector<float> scales(cut_.mesh.positions.size(), 1);
-  const double first = toleranceOf(rule.tolerance);
-  for (const auto& [v, more] : cut_.far) {
+  std::vector<float> scales;
+  if (rule.scale) scales = refine::scalesOf(cut_.mesh, affine_, rule, job_);
+  if (cut_.movedAt.empty() || !hasScales(rule.tolerance)) return scales;
+  if (scales.empty()) base::resizeLarge(scales, cut_.mesh.positions.size(), job_, 1.0f);
+  const double left = leftOf(rule.tolerance);
+  for (const auto& [v, by] : cut_.movedAt) {
     constexpr double kRounding = 1e-6;
-    scales[v] = static_cast<float>(std::max(0.0, 1 - more / first - kRounding));
+    const double scale = static_cast<double>(scales[v]) - by / left - kRounding;
+    scales[v] = left > 0 ? static_cast<float>(std::max(0.0, scale)) : 0;
   }
   return scales;
 }
 
 void ChunkChain::reduce(double tolerance, reduce::LineMode lines) {
   isSearched_ = false;
+  if (tolerance != tolerance_ && hasScales(tolerance_) && !isScaled_) {
+    octree::CutRule rule;
+    rule.tolerance = tolerance;
+    reduction_->setScales(scalesOf(rule));
+  }
   tolerance_ = tolerance;
-  reduction_->toTolerance(toleranceOf(tolerance), lines);
+  reduction_->toTolerance(static_cast<float>(frame_.within(std::max(0.0, leftOf(tolerance)))),
+                          lines);
 }
 
 // The triangles that intersect once positions are rounded as they are written. Guards in single
@@ -238,17 +258,16 @@ void ChunkChain::setInto(ChainLevel& level) {
 
 std::vector<double> ChunkChain::errorsOf(const reduce::Certificate& certificate) const {
   const bool isReduced = reduction_->triangleCount() < faces_.size();
-  std::vector<double> errors(cut_.chunks.size(), cut_.moved + (isReduced ? frame_.rounding() : 0));
+  std::vector<double> errors(cut_.chunks.size(),
+                             cut_.moved + mostMoved_ + (isReduced ? frame_.rounding() : 0));
   for (std::size_t i = 0; i < certificate.ofRegion.size(); ++i) {
     errors[i] += static_cast<double>(certificate.ofRegion[i]);
   }
-  if (cut_.far.empty()) return errors;
-  // Where the surface was moved far, less was allowed by as much: the tolerance is kept there too.
-  double more = 0;
-  for (const CutMesh::Far& far : cut_.far) more = std::max(more, far.more);
+  if (isScaled_) return errors;
+  // Where the surface was moved, less was allowed by as much, or nothing if that is more.
+  const double most = std::max(tolerance_, cut_.moved + mostMoved_ + frame_.rounding());
   for (double& error : errors) {
-    const double all = error + more;
-    error = certificate.beyond.empty() ? std::max(error, std::min(all, tolerance_)) : all;
+    if (certificate.beyond.empty()) error = std::min(error, most);
   }
   return errors;
 }

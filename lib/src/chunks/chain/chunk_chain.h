@@ -92,7 +92,8 @@ class ChunkChain {
   using Placed = ReducedBand::Placed;
 
   [[nodiscard]] reduce::Regions regionsOf() const;
-  [[nodiscard]] float toleranceOf(double tolerance) const;
+  [[nodiscard]] double leftOf(double tolerance) const;
+  [[nodiscard]] bool hasScales(double tolerance) const;
   [[nodiscard]] std::vector<float> scalesOf(const octree::CutRule& rule) const;
   void reduce(double tolerance, reduce::LineMode lines);
   [[nodiscard]] std::vector<reduce::Index> findIntersecting(const reduce::ReducedMesh& reduced);
@@ -115,8 +116,10 @@ class ChunkChain {
   /// The vertices of bands, by their places in the frame.
   std::map<std::array<float, 3>, Placed> placed_;
   VertexIndex curveVertices_;  ///< numbers in use, see ChainLevel::curveVertex
+  bool isScaled_;              ///< tolerances differ from place to place
+  double mostMoved_ = 0;       ///< of CutMesh::movedAt
+  double tolerance_;           ///< of the last reduction, or of the first one to come
   std::optional<reduce::Reduction> reduction_;
-  double tolerance_ = 0;     ///< of the last reduction
   bool isSearched_ = false;  ///< the reduction's mesh for intersections, and none was found
 };
 

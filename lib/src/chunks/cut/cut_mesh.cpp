@@ -7,7 +7,6 @@
 #include <iterator>
 #include <span>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "base/collect.h"
@@ -22,6 +21,8 @@
 #include "chunks/cut/move_to_planes.h"
 #include "chunks/cut/name_planes.h"
 #include "chunks/cut/pairs_at.h"
+#include "chunks/cut/push_apart.h"
+#include "chunks/cut/surface_moves.h"
 #include "intersect/surface.h"
 #include "uniform/uniform_surface.h"
 
@@ -31,8 +32,11 @@ namespace {
 // Voxels; shorter edges are collapsed once they are cut. Slivers are cut in places that single
 // precision does not tell apart.
 constexpr double kLeastEdge = 1e-3;
-// Where triangles intersect once they are rounded, edges shorter than these, one after the other.
-constexpr double kRoundedEdges[] = {2e-3, 4e-3, 8e-3};
+// Where triangles intersect once they are rounded, edges shorter than these, one after the other;
+// then vertices are moved so many steps off the triangles that they are in; and where both sides of
+// a thin fold lie in one line on a plane, longer edges.
+constexpr double kRoundedEdges[] = {2e-3, 4e-3, 8e-3}, kMargins[] = {1e-4, 1e-3, 4e-3},
+                 kEdgesAtFolds[] = {1.6e-2, 3.2e-2};
 // Voxels; lower caps are flipped.
 constexpr double kLeastHeight = 1e-4;
 
@@ -63,12 +67,11 @@ class Cutter {
       cut(axis);
       axesCut_ = static_cast<std::size_t>(axis) + 1;
       // Short edges of the uniform mesh the first time, from then on those of what is new.
-      join(kLeastEdge, axis == 0 ? Marks() : out_.isNew, [](VertexIndex) { return true; });
+      join(kLeastEdge, axis == 0 ? Marks() : out_.isNew, false, [](VertexIndex) { return true; });
       flip(out_.isNew);
     }
-    out_.isSeparated = joinWhereRounded();
-    setFar();
-    out_.moved += reshaped_ * voxelsOfStep();
+    out_.isSeparated = separateWhereRounded();
+    out_.movedAt = moves_.take(out_.mesh.triangles, job_);
     finish();
     return std::move(out_);
   }
@@ -98,15 +101,20 @@ class Cutter {
   }
 
   [[nodiscard]] Position positionOf(VertexIndex v) const {
-    if (v < uniform_.size() && moved_[v] == 0) return uniform_[v];
+    if (v < uniform_.size() && isMoved_[v] == 0) return uniform_[v];
     return affine_.position(affine_.origin(), at_[v][0], at_[v][1], at_[v][2]);
   }
 
-  // Of a step of length 1 in the lattice, at most.
+  // Of a step of length 1 in the lattice, at most: the largest singular value of the lattice's axes
+  // is no more than the square root of the largest row sum of their products (Gershgorin).
   [[nodiscard]] double voxelsOfStep() const {
     double most = 0;
-    for (int axis = 0; axis < 3; ++axis) most = std::max(most, affine_.axis(axis).length());
-    return std::sqrt(3.0) * most / affine_.voxelSize();
+    for (int i = 0; i < 3; ++i) {
+      double sum = 0;
+      for (int j = 0; j < 3; ++j) sum += std::abs(affine_.axis(i).dot(affine_.axis(j)));
+      most = std::max(most, sum);
+    }
+    return std::sqrt(most) / affine_.voxelSize();
   }
 
   void load() {
@@ -117,7 +125,9 @@ class Cutter {
       base::reservePopulated(vector, room, job_);
       base::resizeLarge(vector, uniform_.size(), job_);
     };
-    make(at_), make(place_), make(moved_), make(out_.isNew);
+    make(at_), make(place_), make(out_.isNew);
+    base::resizeLarge(isMoved_, uniform_.size(), job_);
+    moves_.reserve(uniform_.size(), room, job_);
     if (hasNormals_) base::growLarge(out_.mesh.normals, room);
     job_.forRanges(at_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
@@ -137,55 +147,49 @@ class Cutter {
   // Whether there are any to move.
   bool moveAll(int axis) {
     const double perVoxel = affine_.axis(axis).length() / affine_.voxelSize();
-    const std::vector<MovedVertex> moved =
+    std::vector<MovedVertex> moved =
         moveToPlanes(planes_, axis, flatDistance_, out_.mesh.triangles, at_, job_);
-    for (const auto& [v, by] : moved) {
-      moved_[v] += by * perVoxel;
-      out_.isNew[v] = 1;
-      if (by >= kNearPlane) far_.insert(v);
-      if (!far_.contains(v)) out_.moved = std::max(out_.moved, moved_[v]);
-    }
+    noteMoved(moved, perVoxel);
     return !moved.empty();
   }
 
   // Flips caps with a marked vertex, or all without marks.
   void flip(Marks marks) {
-    unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
+    unlessIntersecting([&](const Stays& stays, std::vector<MovedVertex>& changed) {
       const auto mayFlip = [&](const std::array<VertexIndex, 4>& v) {
         return std::none_of(v.begin(), v.end(), stays) && isOnOneSide(v);
       };
-      return flipCaps(at_, kLeastHeight, marks, mayFlip, out_.mesh.triangles, changed, job_);
+      flipCaps(at_, kLeastHeight, marks, mayFlip, out_.mesh.triangles, changed, job_);
     });
   }
 
   // Collapses short edges of triangles with a marked vertex, or of all without marks, both ends of
   // which `isWanted`.
   template <class IsWanted>
-  void join(double least, Marks marks, const IsWanted& isWanted) {
-    unlessIntersecting([&](const Stays& stays, std::vector<VertexIndex>& changed) {
+  void join(double least, Marks marks, bool mayFold, const IsWanted& isWanted) {
+    unlessIntersecting([&](const Stays& stays, std::vector<MovedVertex>& changed) {
       const auto mayJoin = [&](VertexIndex v, VertexIndex into) {
         return isWanted(v) && isWanted(into) && !stays(v) && !stays(into) && mayGoInto(v, into);
       };
-      return joinNearVertices(at_, least, marks, mayJoin, out_.mesh.triangles, changed, job_);
+      joinNearVertices(at_, least, mayFold, marks, mayJoin, out_.mesh.triangles, changed, job_);
     });
   }
 
   // Makes a change to the triangles, except around vertices where it would make some of them
-  // intersect. `change` is told which vertices these are, lists those whose triangles it has
-  // changed, and returns how far that moves the surface at most.
+  // intersect. `change` is told which vertices these are, and lists those whose triangles it has
+  // changed, with how far that moves them in steps.
   template <class Change>
   void unlessIntersecting(const Change& change) {
     std::vector<Triangle> before;
     base::copyLarge(out_.mesh.triangles, before, job_);
     std::vector<std::uint8_t> stays(at_.size(), 0);
-    std::vector<VertexIndex> changed;
-    double moved = 0;
+    std::vector<MovedVertex> changed;
     for (bool isAny = true; isAny;) {
       changed.clear();
-      moved = change([&](VertexIndex v) { return stays[v] != 0; }, changed);
+      change([&](VertexIndex v) { return stays[v] != 0; }, changed);
       if (changed.empty()) return;
       std::vector<std::uint8_t> isChanged(at_.size(), 0);
-      for (const VertexIndex v : changed) isChanged[v] = 1;
+      for (const MovedVertex& v : changed) isChanged[v.vertex] = 1;
       isAny = false;
       const auto placeOf = [&](VertexIndex v) { return at_[v]; };
       for (const intersect::PolygonPair& pair : pairsAt(placeOf, isChanged)) {
@@ -197,66 +201,67 @@ class Cutter {
       }
       if (isAny) out_.mesh.triangles = before;
     }
-    for (const VertexIndex v : changed) out_.isNew[v] = 1;
-    reshaped_ += moved;
-    if (!far_.empty()) spreadMoves(before, changed);
+    for (auto& [v, by] : changed) {
+      out_.isNew[v] = 1;
+      by *= voxelsOfStep();
+    }
+    moves_.add(SurfaceMoves::Kind::Triangles, before, changed, job_);
   }
 
-  // The surface around a vertex whose triangles have changed was part of the triangles that it had
-  // `before`, so it may have been moved as far as their vertices. In rings, as changes may meet.
-  void spreadMoves(const std::vector<Triangle>& before, const std::vector<VertexIndex>& changed) {
-    constexpr int kRings = 3;
-    std::vector<std::uint8_t> isChanged(at_.size(), 0);
-    for (const VertexIndex v : changed) isChanged[v] = 1;
-    for (int ring = 0; ring < kRings; ++ring) {
-      for (const Triangle& t : before) {
-        const auto& v = t.vertices;
-        if ((isChanged[v[0]] | isChanged[v[1]] | isChanged[v[2]]) == 0) continue;
-        const double most = std::max({moved_[v[0]], moved_[v[1]], moved_[v[2]]});
-        if (most <= out_.moved) continue;
-        for (const VertexIndex w : v) {
-          if (isChanged[w] != 0 && moved_[w] < most) moved_[w] = most, far_.insert(w);
-        }
-      }
-    }
-  }
-
-  // The vertices of all triangles of which one was moved far.
-  void setFar() {
-    if (far_.empty()) return;
-    std::vector<double> most(at_.size(), 0);
-    for (const Triangle& t : out_.mesh.triangles) {
-      const auto& v = t.vertices;
-      const double m = std::max({moved_[v[0]], moved_[v[1]], moved_[v[2]]});
-      if (m <= out_.moved) continue;
-      for (const VertexIndex w : v) most[w] = std::max(most[w], m);
-    }
-    for (VertexIndex v = 0; v < most.size(); ++v) {
-      if (most[v] > out_.moved) out_.far.push_back({v, most[v] - out_.moved});
-    }
-  }
-
-  // Where triangles that were cut intersect once they are rounded, collapses their short edges.
-  // Those of the uniform mesh are known not to. Whether none is known to intersect at the end.
-  bool joinWhereRounded() {
+  // Where triangles that were cut intersect once they are rounded, collapses their short edges, and
+  // pushes them apart: sheets of the uniform mesh, which does not intersect itself, may be no
+  // farther from each other than rounding takes vertices that cuts have made. Whether none is known
+  // to intersect at the end.
+  bool separateWhereRounded() {
     const auto rounded = [&](VertexIndex v) {
       const Position world = affine_.toWorld(positionOf(v));
       return Vec3(singlePrecision_ ? base::toSingle(world) : world);
     };
     std::vector<std::uint8_t> marks = out_.isNew;
-    for (const double least : kRoundedEdges) {
-      const std::vector<intersect::PolygonPair> pairs = pairsAt(rounded, marks);
-      if (pairs.empty()) return true;
-      // Only their edges are collapsed, so only they can still intersect, or newly.
+    std::vector<intersect::PolygonPair> pairs = pairsAt(rounded, marks);
+    const auto separate = [&](const auto& change) {
+      if (pairs.empty()) return;
+      // Only what they have is changed, so only they can still intersect, or newly.
       marks.assign(at_.size(), 0);
       for (const intersect::PolygonPair& pair : pairs) {
         for (const std::uint32_t t : {pair.a, pair.b}) {
           for (const VertexIndex v : out_.mesh.triangles[t].vertices) marks[v] = 1;
         }
       }
-      join(least, marks, [&](VertexIndex v) { return marks[v] != 0; });
+      change();
+      pairs = pairsAt(rounded, marks);
+    };
+    const auto joinMarked = [&](double least) {
+      join(least, marks, true, [&](VertexIndex v) { return marks[v] != 0; });
+    };
+    for (const double least : kRoundedEdges) separate([&] { joinMarked(least); });
+    for (const double margin : kMargins) separate([&] { push(pairs, margin); });
+    for (const double least : kEdgesAtFolds) separate([&] { joinMarked(least); });
+    return pairs.empty();
+  }
+
+  // Moves vertices of pairs out of the other triangle, inside their chunks.
+  void push(const std::vector<intersect::PolygonPair>& pairs, double margin) {
+    const auto mayMove = [&](VertexIndex v, const Vec3& to) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Place now = placeAt(v, axis);
+        if ((now & 1) == 0 || planes_.placeOf(axis, to[axis]) != now) return false;
+      }
+      return true;
+    };
+    std::vector<MovedVertex> moved;
+    pushApart(out_.mesh.triangles, pairs, margin, mayMove, at_, moved);
+    noteMoved(moved, voxelsOfStep());
+  }
+
+  // Of vertices that were moved by so many units of `voxels` each.
+  void noteMoved(std::vector<MovedVertex>& moved, double voxels) {
+    for (auto& [v, by] : moved) {
+      by *= voxels;
+      if (v < uniform_.size()) isMoved_[v] = 1;
+      out_.isNew[v] = 1;
     }
-    return false;
+    moves_.add(SurfaceMoves::Kind::Places, out_.mesh.triangles, moved, job_);
   }
 
   // Pairs of which one triangle has a marked vertex.
@@ -358,8 +363,7 @@ class Cutter {
     }
     at_.push_back(p);
     place_.push_back(place);
-    moved_.push_back(std::max(moved_[a], moved_[b]));  // of a point between: no more
-    if (far_.contains(a) || far_.contains(b)) far_.insert(found->second);
+    moves_.addBetween(a, b);
     out_.isNew.push_back(1);
     if (hasNormals_) {
       const Vec3 m = Vec3(out_.mesh.normals[a]) * (1 - share) + Vec3(out_.mesh.normals[b]) * share;
@@ -429,10 +433,9 @@ class Cutter {
   CutMesh out_;
   std::vector<Vec3> at_;  ///< lattice points, counted from the origin of positions
   std::vector<PlacesAmongPlanes> place_;
-  std::size_t axesCut_ = 0;              ///< across the first so many axes the mesh is cut
-  double reshaped_ = 0;                  ///< how far collapses and flips have moved it, steps
-  std::vector<double> moved_;            ///< how far each vertex was moved to planes, voxels
-  std::unordered_set<VertexIndex> far_;  ///< those that were moved by more than all others
+  std::size_t axesCut_ = 0;            ///< across the first so many axes the mesh is cut
+  std::vector<std::uint8_t> isMoved_;  ///< of vertices of the uniform mesh: whether at_ is another
+  SurfaceMoves moves_;                 ///< voxels
   std::unordered_map<std::uint64_t, VertexIndex> cuts_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "base/job.h"
 #include "base/shared_array.h"
+#include "chunks/cut/moved_vertex.h"
 #include "grid/affine.h"
 
 namespace tufa::chunks {
@@ -42,15 +43,12 @@ struct CutMesh {
   /// Whether a search has shown that no triangle with a new vertex intersects another one once
   /// positions are rounded.
   bool isSeparated = false;
-  /// How far it is from the uniform mesh at most, as vertices were moved to planes, and apart,
-  /// except around those in `far`; voxels.
+  /// How far triangles at some vertices are from the uniform mesh at most, voxels: vertices were
+  /// moved to planes, and edges collapsed and flipped. Rising.
+  std::vector<MovedVertex> movedAt;
+  /// How much farther they may be, and all others, voxels: vertices were moved apart, and to a
+  /// lattice.
   double moved = 0;
-  /// The vertices around which it is farther than that, and how much. Rising.
-  struct Far {
-    VertexIndex vertex;
-    double more;  ///< voxels
-  };
-  std::vector<Far> far;
   std::vector<double> errors;  ///< of LOD 0: the same for each chunk
 
   /// The planes of a vertex, kNone where there are fewer than three.
@@ -67,8 +65,8 @@ struct CutMesh {
 ///
 /// Vertices within half a hundredth of a voxel of a plane are moved to it unless that turns a
 /// triangle: flat faces of parts often lie in such planes but for rounding, and would be shredded.
-/// So are those within `flatDistance` voxels where the surface lies along the plane, see
-/// CutMesh::far: the field is off by that beside edges of faces.
+/// So are those within `flatDistance` voxels where the surface lies along the plane: the field is
+/// off by that beside edges of faces.
 /// Short edges that are cut where single precision, if positions are to be written in it, does not
 /// tell their vertices apart are collapsed. Cost: linear, some 100 ns a triangle.
 [[nodiscard]] CutMesh cutAtChunks(Mesh uniform, const grid::Affine& affine, int size,

@@ -6,6 +6,7 @@
 
 #include "base/collect.h"
 #include "base/sort_unique.h"
+#include "chunks/cut/turned.h"
 
 namespace tufa::chunks {
 namespace {
@@ -24,7 +25,7 @@ std::uint64_t keyOf(VertexIndex from, VertexIndex to) { return std::uint64_t{fro
 class CapFlipper {
  public:
   CapFlipper(const std::vector<Vec3>& points, double height, const MayFlip& mayFlip,
-             std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed, base::Job& job)
+             std::vector<Triangle>& triangles, std::vector<MovedVertex>& changed, base::Job& job)
       : points_(points),
         height_(height),
         mayFlip_(mayFlip),
@@ -32,7 +33,7 @@ class CapFlipper {
         changed_(changed),
         job_(job) {}
 
-  double run(std::span<const std::uint8_t> marks) {
+  void run(std::span<const std::uint8_t> marks) {
     std::vector<std::uint32_t> caps =
         base::collectIf(job_, triangles_.size(), [&](std::uint32_t t) {
           const auto& v = triangles_[t].vertices;
@@ -46,7 +47,6 @@ class CapFlipper {
       base::sortUnique(caps);
       std::erase_if(caps, [&](std::uint32_t t) { return !isCap(t); });
     }
-    return farthest_;
   }
 
  private:
@@ -101,6 +101,17 @@ class CapFlipper {
 
   [[nodiscard]] bool isCap(std::uint32_t t) const { return apexOf(triangles_[t]) != kNone; }
 
+  [[nodiscard]] Vec3 normalOf(const Triangle& t) const {
+    const Vec3 a = points_[t.vertices[0]];
+    return (points_[t.vertices[1]] - a).cross(points_[t.vertices[2]] - a);
+  }
+
+  // Whether a triangle that gets this edge, in the direction of the one behind, would lie on that.
+  [[nodiscard]] bool folds(VertexIndex from, VertexIndex to, const Triangle& t) const {
+    const auto behind = behind_.find(keyOf(from, to));
+    return behind != behind_.end() && isFold(normalOf(t), normalOf(triangles_[behind->second]));
+  }
+
   // (r, p, q) and (s, q, p) become (r, p, s) and (r, s, q).
   void flip(std::uint32_t t) {
     const std::size_t i = apexOf(triangles_[t]);
@@ -118,6 +129,7 @@ class CapFlipper {
         behind_.contains(keyOf(s, r)) || !mayFlip_({p, q, r, s})) {
       return;
     }
+    if (folds(p, r, {r, p, s}) || folds(r, q, {r, s, q})) return;
     behind_.erase(keyOf(p, q));
     behind_.erase(keyOf(q, p));
     triangles_[t] = {r, p, s};
@@ -126,29 +138,27 @@ class CapFlipper {
     note(other);
     const double moved = std::max(moved_[t], moved_[other]) + heightOver(p, q, r);
     moved_[t] = moved_[other] = moved;
-    farthest_ = std::max(farthest_, moved);
     flipped_.insert(flipped_.end(), {t, other});
-    changed_.insert(changed_.end(), {p, q, r, s});
+    for (const VertexIndex v : {p, q, r, s}) changed_.push_back({v, moved});
   }
 
   const std::vector<Vec3>& points_;
   double height_;
   const MayFlip& mayFlip_;
   std::vector<Triangle>& triangles_;
-  std::vector<VertexIndex>& changed_;
+  std::vector<MovedVertex>& changed_;
   base::Job& job_;
   std::unordered_map<std::uint64_t, std::uint32_t> behind_;  ///< the triangle left of an edge
   std::vector<std::uint32_t> flipped_;                       ///< triangles, in the pass at hand
   std::unordered_map<std::uint32_t, double> moved_;          ///< how far flips have moved triangles
-  double farthest_ = 0;
 };
 
 }  // namespace
 
-double flipCaps(const std::vector<Vec3>& points, double height, std::span<const std::uint8_t> marks,
-                const MayFlip& mayFlip, std::vector<Triangle>& triangles,
-                std::vector<VertexIndex>& changed, base::Job& job) {
-  return CapFlipper(points, height, mayFlip, triangles, changed, job).run(marks);
+void flipCaps(const std::vector<Vec3>& points, double height, std::span<const std::uint8_t> marks,
+              const MayFlip& mayFlip, std::vector<Triangle>& triangles,
+              std::vector<MovedVertex>& changed, base::Job& job) {
+  CapFlipper(points, height, mayFlip, triangles, changed, job).run(marks);
 }
 
 }  // namespace tufa::chunks

@@ -23,38 +23,40 @@ bool has(const Triangle& t, VertexIndex v) {
 
 class Joiner {
  public:
-  Joiner(const std::vector<Vec3>& points, double least,
+  Joiner(const std::vector<Vec3>& points, double least, bool mayFold,
          const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
-         std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed, base::Job& job)
+         std::vector<Triangle>& triangles, std::vector<MovedVertex>& changed, base::Job& job)
       : points_(points),
         least_(least),
+        mayFold_(mayFold),
         mayGoInto_(mayGoInto),
         triangles_(triangles),
         changed_(changed),
         job_(job) {}
 
-  double run(std::span<const std::uint8_t> marks) {
+  void run(std::span<const std::uint8_t> marks) {
     const std::vector<Edge> edges = findEdges(marks);
-    if (edges.empty()) return 0;
+    if (edges.empty()) return;
     std::unordered_map<VertexIndex, VertexIndex> into;
     findTriangles(edges);
     for (auto [a, b] : edges) {
       while (into.contains(a)) a = into.at(a);
       while (into.contains(b)) b = into.at(b);
       if (!mayGoInto_(b, a)) std::swap(a, b);
-      if (a == b || !isShort(a, b) || !mayGoInto_(b, a) || !mayJoin(a, b) || spoils(a, b)) continue;
+      if (a == b || !isShort(a, b) || !mayGoInto_(b, a) || !mayJoin(a, b) || spoils(a, b) ||
+          (!mayFold_ && folds(a, b))) {
+        continue;
+      }
       join(a, b);
       into.emplace(b, a);
-      changed_.push_back(a);
     }
     std::erase_if(triangles_, [](const Triangle& t) { return has(t, kGone); });
-    double farthest = 0;
     for (const auto& [gone, next] : into) {
       VertexIndex last = next;
       while (into.contains(last)) last = into.at(last);
-      farthest = std::max(farthest, (points_[gone] - points_[last]).length());
+      const double by = (points_[gone] - points_[last]).length();
+      changed_.insert(changed_.end(), {{gone, by}, {last, by}});
     }
-    return farthest;
   }
 
  private:
@@ -147,6 +149,29 @@ class Joiner {
     });
   }
 
+  // Whether triangles that lie on each other would become neighbours if b went into a: along the
+  // edge of a thin sheet, the strip between both sides may be as narrow as the edges that go.
+  [[nodiscard]] bool folds(VertexIndex a, VertexIndex b) const {
+    // Of the triangle at `end` with an edge to x and without `other`.
+    const auto normalAt = [&](VertexIndex end, VertexIndex other, VertexIndex x) {
+      for (const std::uint32_t t : around_.at(end)) {
+        if (!has(triangles_[t], x) || has(triangles_[t], other)) continue;
+        const auto& v = triangles_[t].vertices;
+        const Vec3 p[3] = {points_[v[0] == b ? a : v[0]], points_[v[1] == b ? a : v[1]],
+                           points_[v[2] == b ? a : v[2]]};
+        return (p[1] - p[0]).cross(p[2] - p[0]);
+      }
+      return Vec3(0);
+    };
+    return std::any_of(around_.at(b).begin(), around_.at(b).end(), [&](std::uint32_t t) {
+      if (!has(triangles_[t], a)) return false;
+      return std::any_of(triangles_[t].vertices.begin(), triangles_[t].vertices.end(),
+                         [&](VertexIndex x) {
+                           return x != a && x != b && isFold(normalAt(a, b, x), normalAt(b, a, x));
+                         });
+    });
+  }
+
   void join(VertexIndex a, VertexIndex b) {
     for (const std::uint32_t t : around_.at(b)) {
       Triangle& triangle = triangles_[t];
@@ -163,21 +188,22 @@ class Joiner {
 
   const std::vector<Vec3>& points_;
   double least_;
+  bool mayFold_;
   const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto_;
   std::vector<Triangle>& triangles_;
-  std::vector<VertexIndex>& changed_;
+  std::vector<MovedVertex>& changed_;
   base::Job& job_;
   std::unordered_map<VertexIndex, std::vector<std::uint32_t>> around_;
 };
 
 }  // namespace
 
-double joinNearVertices(const std::vector<Vec3>& points, double least,
-                        std::span<const std::uint8_t> marks,
-                        const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
-                        std::vector<Triangle>& triangles, std::vector<VertexIndex>& changed,
-                        base::Job& job) {
-  return Joiner(points, least, mayGoInto, triangles, changed, job).run(marks);
+void joinNearVertices(const std::vector<Vec3>& points, double least, bool mayFold,
+                      std::span<const std::uint8_t> marks,
+                      const std::function<bool(VertexIndex, VertexIndex)>& mayGoInto,
+                      std::vector<Triangle>& triangles, std::vector<MovedVertex>& changed,
+                      base::Job& job) {
+  Joiner(points, least, mayFold, mayGoInto, triangles, changed, job).run(marks);
 }
 
 }  // namespace tufa::chunks

@@ -14,4 +14,13 @@ namespace tufa::chunks {
            n.length() >= leastShare * m.length());
 }
 
+/// Whether two triangles that share an edge, each given by twice its area along its normal, lie
+/// nearly on each other, and are no slivers: by more than 150 degrees of turn, above a twentieth of
+/// a square step.
+[[nodiscard]] inline bool isFold(const Vec3& m, const Vec3& n) {
+  constexpr double kCosine = -0.866, kTwiceArea = 0.1;
+  const double a = m.length(), b = n.length();
+  return a > kTwiceArea && b > kTwiceArea && m.dot(n) < kCosine * a * b;
+}
+
 }  // namespace tufa::chunks

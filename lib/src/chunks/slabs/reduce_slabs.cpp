@@ -21,8 +21,9 @@ static_assert(kLeastSlab > 2 * kBand, "bands do not touch");
 // at a crease depends on cells a few voxels around, a repair on what lies near a pair.
 constexpr int kMargin = kBand + 24;
 static_assert(kMargin % grid::kBlockSize == 0);
-// Voxels by which a cut may move the surface: a band must not depend on how far it did elsewhere.
-constexpr double kMostMoved = 0.02;
+// Voxels by which a cut may move vertices apart: a band must not depend on how far it did
+// elsewhere.
+constexpr double kMostMoved = 1e-3;
 
 class SlabReducer {
  public:

@@ -96,6 +96,9 @@ SubMesh subMesh(const CutMesh& mesh, const std::vector<std::uint8_t>& isWanted, 
     cut.onPlanes.push_back(used.rank(mesh.onPlanes[i]));
     cut.planesOf.push_back(mesh.planesOf[i]);
   }
+  for (const auto& [v, by] : mesh.movedAt) {
+    if (used.has(v)) cut.movedAt.push_back({used.rank(v), by});
+  }
   return sub;
 }
 

@@ -1,9 +1,10 @@
-// .obj and .off: text. Numbers are the shortest that read back to the same value.
+// .obj and .off: text. Numbers are the shortest that read back to the same value, positions as
+// doubles even if they are floats: the shortest digits of a float are another double, and sheets
+// may be no farther apart than that.
 
 #include <array>
 #include <string_view>
 
-#include "io/mesh/float_precision.h"
 #include "io/mesh/mesh_format.h"
 #include "io/mesh/text_line.h"
 
@@ -17,16 +18,7 @@ void writeVector(Line& line, std::string_view keyword, const Vector& v) {
 
 void writePositions(const Mesh& mesh, MeshSink& sink, std::string_view keyword) {
   Line line(sink);
-  const bool precise = needsDoublePrecision(mesh);
-  forEachItem(sink, mesh.positions, [&](const Position& p) {
-    if (precise) {
-      writeVector(line, keyword, p);
-    } else {
-      writeVector(
-          line, keyword,
-          Normal(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)));
-    }
-  });
+  forEachItem(sink, mesh.positions, [&](const Position& p) { writeVector(line, keyword, p); });
 }
 
 /// Object names end with the line, so no line break may be part of one, and no backslash at the
