@@ -6,8 +6,10 @@
 
 #include <tufa/extract.h>
 #include <tufa/shapes.h>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -240,6 +242,22 @@ TEST(MethodsOfCubes, PutTheSameVerticesOnLatticeEdges) {
       ASSERT_EQ(mesh.positions[i], plain.positions[i]);
       ASSERT_EQ(mesh.normals[i], plain.normals[i]);
     }
+  }
+}
+
+// Formats that join vertices by their places would else hold no manifold: on this bracket two
+// sheets have their points at one place in a few cells.
+TEST(MethodsWithPointsInCells, GiveEachVertexAPlaceOfItsOwn) {
+  ShapeOptions shape;
+  shape.voxelSize = 0.03;
+  const auto bracket = makeShape(Shape::Bracket, shape);
+  for (const Method method : {Method::ExtendedMarchingCubes, Method::CubicalMarchingSquares}) {
+    const Mesh mesh = extract(*bracket, method);
+    std::set<std::array<float, 3>> places;
+    for (const Position& p : mesh.positions) {
+      places.insert({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+    }
+    EXPECT_EQ(places.size(), mesh.positions.size());
   }
 }
 

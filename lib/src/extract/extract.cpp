@@ -21,6 +21,7 @@
 #include "extract/surface_nets.h"
 #include "extract/tetrahedra.h"
 #include "grid/volume.h"
+#include "refine/keep_apart.h"
 #include "refine/rounding.h"
 #include "uniform/place_vertices.h"
 
@@ -66,8 +67,19 @@ void requireTolerance(const std::string& what, double voxels) {
                                               " voxels, must be 0 or a finite number above it");
 }
 
-// To world space and, where that is harmless, to single precision, as contour() does.
-void finish(const grid::Affine& affine, Normals normals, Mesh& mesh, base::Job& job) {
+// Two sheets in a cell may have theirs at one place.
+bool hasPointsInCells(Method method) {
+  return method == Method::ExtendedMarchingCubes || method == Method::CubicalMarchingSquares;
+}
+
+// To world space and, where that is harmless, to single precision, as contour() does. `hasPoints`:
+// see hasPointsInCells().
+void finish(const grid::Affine& affine, Normals normals, bool hasPoints, Mesh& mesh,
+            base::Job& job) {
+  if (hasPoints) {
+    const bool isSingle = refine::isWrittenInSingle(mesh.positions, affine, job);
+    (void)refine::keepApart(mesh.positions, mesh.triangles, affine, isSingle, job);
+  }
   (void)refine::takeToWorld(mesh, affine, job);
   if (normals == Normals::Faces) uniform::setFaceNormals(mesh, job);
   if (normals == Normals::None) mesh.normals = {};
@@ -116,7 +128,7 @@ Mesh refinedDual(const openvdb::GridBase& grid, const ExtractOptions& options,
     for (Position& position : mesh.positions) position = affine.fromWorld(position);
     refineMesh(volume, {options.refine, stayBeyond(Method::Dual, options)}, mesh, out, job);
     job.beginStage("finish", 1.0);
-    finish(affine, second.normals, mesh, job);
+    finish(affine, second.normals, false, mesh, job);
     if (second.keepCells) mesh.cells = grid::cellsOf(mesh.positions, volume.transform, job);
     return std::move(mesh);
   };
@@ -163,7 +175,7 @@ Mesh extract(const openvdb::GridBase& grid, Method method, const ExtractOptions&
       refineMesh(volume, {options.refine, stayBeyond(method, options)}, mesh, out, job);
     }
     job.beginStage("finish", 1.0);
-    finish(volume.affine, options.contour.normals, mesh, job);
+    finish(volume.affine, options.contour.normals, hasPointsInCells(method), mesh, job);
     if (options.contour.keepCells) {
       mesh.cells = grid::cellsOf(mesh.positions, volume.transform, job);
     }

@@ -22,7 +22,7 @@ constexpr double kDepth = 2e-3;
 // Where the cut has moved the surface by less than this share of a tolerance at most, all of the
 // surface is reduced by that less: scales would save few triangles, and no proxy can stand in for a
 // reference with scales.
-constexpr double kLittleMoved = 0.02;
+constexpr double kLittleMoved = 0.012;
 
 }  // namespace
 

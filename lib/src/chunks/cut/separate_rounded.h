@@ -14,10 +14,8 @@ namespace tufa::chunks {
 void separateRounded(CutMesh& cut, const grid::Affine& affine, bool singlePrecision,
                      base::Job& job);
 
-/// Gives vertices that would be at the place of another one in world space, rounded as above, a
-/// place of their own, the next free one along x: what joins chunks by positions would make one
-/// vertex of sheets that touch. So no two vertices of a level have the same place unless a collapse
-/// brings them together.
+/// refine::keepApart(): no two vertices of a level have the same place, by which chunks are joined,
+/// unless a collapse brings them together.
 void keepApart(CutMesh& cut, const grid::Affine& affine, bool singlePrecision, base::Job& job);
 
 }  // namespace tufa::chunks
