@@ -168,10 +168,19 @@ class PlaneMover {
   }
 
   // Puts vertices back whose move makes some of the triangles intersect others: where sheets nearly
-  // touch, moves as small as these do.
+  // touch, moves as small as these do. Not asked of triangles that lie in the plane now, but at
+  // their border: flat faces have thousands, do not intersect each other, and are searched with all
+  // that is new once the mesh is cut.
   void returnIntersecting() {
     std::vector<std::uint8_t> marks(points_.size(), 0);
-    for (const VertexIndex v : near_) marks[v] = before_[v] == kStays ? 0 : 1;
+    for (const std::uint32_t t : touched_) {
+      const auto& corners = triangles_[t].vertices;
+      const bool isInPlane = std::all_of(corners.begin(), corners.end(),
+                                         [&](VertexIndex v) { return isOn(axis_, v); });
+      for (const VertexIndex v : corners) {
+        if (!isInPlane && before_[v] != kStays) marks[v] = 1;
+      }
+    }
     for (bool isAny = true; isAny;) {
       isAny = false;
       const std::vector<intersect::PolygonPair> pairs = findPairsAt(
