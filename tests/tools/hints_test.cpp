@@ -58,6 +58,7 @@ TEST_F(Hints, ForFilesOfOtherKinds) {
   makeSphere();
   ASSERT_EQ(run("mesh s.vdb -o s.STL").exitCode, 0);
   expectFailure("mesh s.STL -o m.ply", 3, "it is not an OpenVDB file; tufa voxelize");
+  expectFailure("check s.vdb", 2, "tufa mesh makes meshes of volumes");
   for (const auto& [name, part] : {std::pair("ct.mhd", "tufa import"), {"s.json", "tufa model"}}) {
     test::writeBytes(folder / name, "text of another kind");
     expectFailure(std::string("info ") + name, 3, part);

@@ -42,9 +42,11 @@ Mesh readMesh(const std::filesystem::path& path) {
   }
   const std::optional<MeshFormat> format = io::formatOfEnding(path);
   if (!format) {
+    const bool isVolume = path.extension() == ".vdb" || path.extension() == ".nvdb";
     throw Error(ErrorCode::InvalidArgument,
                 "cannot tell the mesh format of " + path.string() +
-                    ": meshes are read from .ply, .obj, .stl, .off and .glb");
+                    ": meshes are read from .ply, .obj, .stl, .off and .glb" +
+                    (isVolume ? "; tufa mesh makes meshes of volumes" : ""));
   }
   return readAs(*format, io::InputBytes(path));
 }
