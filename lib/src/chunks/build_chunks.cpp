@@ -239,7 +239,10 @@ class ChunkBuilder {
       grid::load(volume, job_);
       return chunks::cutVolume(std::move(volume), cutting, kEnds, report_, job_);
     }
-    return chunks::reduceSlabs(volume, std::move(slabs), rule, cutting,
+    // How many vertices lie along planes is another number in each slab.
+    chunks::CutOptions inSlabs = cutting;
+    inSlabs.flatDistance = 0;
+    return chunks::reduceSlabs(volume, std::move(slabs), rule, inSlabs,
                                scaled(kEnds, 1 / kFirstLevelEnd), kFirstLevelEnd, report_, job_);
   }
 
