@@ -17,10 +17,6 @@ using Edge = std::pair<VertexIndex, VertexIndex>;
 constexpr double kTurnCosine = 0.5;
 constexpr double kLeastShare = 0.1;
 
-bool has(const Triangle& t, VertexIndex v) {
-  return t.vertices[0] == v || t.vertices[1] == v || t.vertices[2] == v;
-}
-
 class Joiner {
  public:
   Joiner(const std::vector<Vec3>& points, double least, bool mayFold,

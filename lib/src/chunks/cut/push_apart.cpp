@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
+
+#include "chunks/cut/turned.h"
 
 namespace tufa::chunks {
 namespace {
@@ -14,10 +17,6 @@ struct Push {
   std::vector<std::pair<VertexIndex, Vec3>> moves;
   double depth = kMostDepth;  // of the deepest one; less than that if there are any
 };
-
-bool has(const Triangle& t, VertexIndex v) {
-  return t.vertices[0] == v || t.vertices[1] == v || t.vertices[2] == v;
-}
 
 // Puts the vertices of `moving` on one side of the plane of `other` to the other side, into `least`
 // if that is a shorter way.

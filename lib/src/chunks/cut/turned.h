@@ -1,8 +1,14 @@
 #pragma once
 
+#include <tufa/mesh.h>
+
 #include "base/vec3.h"
 
 namespace tufa::chunks {
+
+[[nodiscard]] inline bool has(const Triangle& t, VertexIndex v) {
+  return t.vertices[0] == v || t.vertices[1] == v || t.vertices[2] == v;
+}
 
 /// Whether a triangle whose corners move turns by more than the angle of `turnCosine`, or shrinks
 /// to less than `leastShare` of its area.
