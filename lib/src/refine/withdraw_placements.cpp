@@ -72,7 +72,7 @@ class PlacementGuard {
     std::vector<std::optional<Move>> chosen(vertices.size());
     if (conflicts.size() > mesh_.quads.size()) {
       for (std::size_t slot = 0; slot < vertices.size(); ++slot) {
-        if (placementMoves_.isAtMassPoint(vertices[slot])) continue;
+        if (placementMoves_.wasAtMassPoint(vertices[slot])) continue;
         chosen[slot] = PlacementMoves::toMassPoint(vertices[slot], points.mass[slot]);
       }
       return apply(chosen);
@@ -111,6 +111,7 @@ class PlacementGuard {
           placementMoves_.add(vertex, points.plain[slot], points.mass[slot], moves);
           if (conflicts[c].kind == Conflict::Kind::Fold) {
             placementMoves_.addSlidesOnSheet(vertex, moves);
+            placementMoves_.addMovesInCell(vertex, points.mass[slot], moves);
           }
         }
         settling[c] = moveSettling(conflicts[c], moves);
@@ -135,8 +136,8 @@ class PlacementGuard {
     return vertices;
   }
 
-  // The smallest move that settles a conflict, or else the smallest to a place of its own. Sorts
-  // the moves from the back, only as far as they are tried.
+  // The smallest move that settles a conflict, or else the smallest that may be made nevertheless.
+  // Sorts the moves from the back, only as far as they are tried.
   [[nodiscard]] std::optional<Move> moveSettling(const Conflict& conflict,
                                                  std::vector<Move>& moves) const {
     const auto isDearer = [](const Move& a, const Move& b) {
@@ -151,7 +152,8 @@ class PlacementGuard {
         return move;
       }
     }
-    const auto first = std::find_if(moves.rbegin(), moves.rend(), PlacementMoves::isWhole);
+    const auto first = std::find_if(moves.rbegin(), moves.rend(),
+                                    [](const Move& move) { return move.isFallback; });
     return first == moves.rend() ? std::optional<Move>() : *first;
   }
 
@@ -183,8 +185,11 @@ class PlacementGuard {
       const Move& move = *chosen;
       if (placementMoves_.note(move)) ++result_.vertices;
       mesh_.positions[move.vertex] = move.to;
-      if (PlacementMoves::leavesCrease(move)) surface_.sheets.withdraw(move.vertex);
-      if (move.isSlide) surface_.sheets.setOutOfCell(move.vertex);
+      if (PlacementMoves::leavesCrease(move)) {
+        surface_.sheets.withdraw(move.vertex);
+      } else if (move.isSlide) {
+        surface_.sheets.setOutOfCell(move.vertex);
+      }
       moved.push_back(move.vertex);
     }
     return moved;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,27 @@ TEST(WithdrawPlacements, LeavesNoFoldButOnCreases) {
     EXPECT_LE(foldsOf(surface), static_cast<int>(withdrawal.left)) << "seed " << seed;
   }
   EXPECT_GT(before, 20);
+}
+
+// Of samples that are hardly inside or outside, all vertices around are near them, in any order.
+TEST(WithdrawPlacements, LeavesNoFoldBetweenMassPointsThatCrowd) {
+  constexpr int kSide = 40;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> value(-1, 1);
+  const auto grid = openvdb::FloatGrid::create(1);
+  for (int i = 0; i < kSide * kSide * kSide; ++i) {
+    const openvdb::Coord at(i % kSide, i / kSide % kSide, i / (kSide * kSide));
+    const float x = value(random);
+    grid->tree().setValue(at, x * x * x);
+  }
+  base::Job job(1, {});
+  uniform::UniformSurface surface =
+      uniform::makeUniformSurface(grid::openVolume(*grid, {}, job), {}, {}, job);
+  const int before = foldsOf(surface);
+  const Withdrawal withdrawal = withdrawPlacements(surface, 0, job);
+  EXPECT_GT(before, 100);
+  EXPECT_EQ(foldsOf(surface), 0);
+  EXPECT_EQ(withdrawal.left, 0u);
 }
 
 // Every quad of a checkerboard meets a dozen others: tried one by one, moves took 25 times as long.
