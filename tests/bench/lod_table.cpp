@@ -3,7 +3,8 @@
 // tables: tufa_lod_table [--millions M] SHAPE|MESH|VDB...
 //
 // All on one thread; times are of the CPU. Errors are in voxels, both ways, and measured alike:
-// against the trilinear isosurface, by checkAgainst(), and for shapes against the true surface.
+// against the trilinear isosurface, by checkAgainst(); against the uniform mesh that each chain is
+// made of, which is what the reduction alone does; and for shapes against the true surface.
 
 #include <meshoptimizer.h>
 #include <openvdb/openvdb.h>
@@ -24,6 +25,7 @@
 #include <iostream>
 #include <limits>
 #include <optional>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -41,6 +43,7 @@ double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 
 struct Chain {
   std::vector<Mesh> levels;
+  Mesh uniform;  // what they are made of
   double seconds = 0;
 };
 
@@ -61,6 +64,8 @@ OwnChain ownChain(const openvdb::FloatGrid& grid) {
   start = cpuSeconds();
   (void)contour(grid, options.contour);
   chain.levelSeconds = cpuSeconds() - start;
+  options.contour.uniform = true;
+  chain.uniform = contour(grid, options.contour);
   return chain;
 }
 
@@ -96,6 +101,7 @@ Chain usualChain(const openvdb::FloatGrid& grid, const OwnChain& own) {
   for (const openvdb::Vec4I& q : quads) {
     corners.insert(corners.end(), {q[3], q[2], q[1], q[3], q[1], q[0]});
   }
+  const std::vector<unsigned> uniform = corners;
   std::vector<std::vector<unsigned>> levels;
   for (const Mesh& level : own.levels) {
     std::vector<unsigned> next(corners.size());
@@ -108,6 +114,7 @@ Chain usualChain(const openvdb::FloatGrid& grid, const OwnChain& own) {
   Chain chain;
   chain.seconds = cpuSeconds() - start;
   for (const std::vector<unsigned>& level : levels) chain.levels.push_back(meshOf(points, level));
+  chain.uniform = meshOf(points, uniform);
   return chain;
 }
 
@@ -123,6 +130,33 @@ Spread toIsosurface(const Mesh& mesh, const openvdb::FloatGrid& grid) {
   const DistanceReport report = checkAgainst(mesh, grid);
   return worse({report.meshToSurface.largest, report.meshToSurface.rms},
                {report.surfaceToMesh.largest, report.surfaceToMesh.rms});
+}
+
+// Points spread over a mesh by area, the same for the same mesh.
+std::vector<Position> samplesOf(const Mesh& mesh) {
+  constexpr int kSamples = 200000;
+  std::vector<double> weights;
+  const std::vector<Triangle> triangles = triangulate(mesh);
+  const auto corner = [&](const Triangle& t, std::size_t i) {
+    const Position& at = mesh.positions[t.vertices[i]];
+    return openvdb::Vec3d(at.x, at.y, at.z);
+  };
+  for (const Triangle& t : triangles) {
+    const openvdb::Vec3d a = corner(t, 0);
+    weights.push_back((corner(t, 1) - a).cross(corner(t, 2) - a).length());
+  }
+  std::mt19937 random(1);
+  std::discrete_distribution<std::size_t> pick(weights.begin(), weights.end());
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Position> points;
+  for (int i = 0; i < kSamples; ++i) {
+    const Triangle& t = triangles[pick(random)];
+    double u = unit(random), v = unit(random);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const openvdb::Vec3d at = corner(t, 0) * (1 - u - v) + corner(t, 1) * u + corner(t, 2) * v;
+    points.push_back({at[0], at[1], at[2]});
+  }
+  return points;
 }
 
 // Each triangle counts by its area.
@@ -162,7 +196,7 @@ std::vector<Position> pointsOn(const openvdb::FloatGrid& grid, Shape shape, doub
   return points;
 }
 
-Spread shapeToMesh(const Mesh& mesh, const std::vector<Position>& points, double voxel) {
+Spread pointsToMesh(const Mesh& mesh, const std::vector<Position>& points, double voxel) {
   Spread spread;
   double sum = 0;
   for (const double world : distancesTo(mesh, points)) {
@@ -171,6 +205,11 @@ Spread shapeToMesh(const Mesh& mesh, const std::vector<Position>& points, double
   }
   spread.rms = std::sqrt(sum / static_cast<double>(points.size())) / voxel;
   return spread;
+}
+
+Spread toUniform(const Mesh& mesh, const Mesh& uniform, double voxel) {
+  return worse(pointsToMesh(mesh, samplesOf(uniform), voxel),
+               pointsToMesh(uniform, samplesOf(mesh), voxel));
 }
 
 std::string number(double value) {
@@ -184,18 +223,22 @@ std::string both(double theirs, double ours) {
   return number(theirs) + " / " + number(ours) + " / " + number(ours / theirs);
 }
 
-void printLevel(const std::string& name, const openvdb::FloatGrid& grid,
-                const std::optional<Shape>& shape, const std::vector<Position>& points,
-                const Mesh& theirs, const Mesh& ours) {
+void printLevel(const std::string& name, const openvdb::FloatGrid& grid, const Shape* shape,
+                const std::vector<Position>& points, const Chain& usual, const Chain& own,
+                std::size_t level) {
   const double voxel = grid.voxelSize()[0];
+  const Mesh &theirs = usual.levels[level], &ours = own.levels[level];
+  const Spread start[2] = {toUniform(theirs, usual.uniform, voxel),
+                           toUniform(ours, own.uniform, voxel)};
   const Spread iso[2] = {toIsosurface(theirs, grid), toIsosurface(ours, grid)};
   const CheckReport checks[2] = {check(theirs), check(ours)};
   std::cout << "| " << name << " | " << theirs.triangleCount() << " / " << ours.triangleCount()
             << " | " << both(iso[0].largest, iso[1].largest) << " | "
-            << both(iso[0].rms, iso[1].rms) << " | ";
+            << both(iso[0].rms, iso[1].rms) << " | " << both(start[0].largest, start[1].largest)
+            << " | " << both(start[0].rms, start[1].rms) << " | ";
   if (shape) {
     const auto measure = [&](const Mesh& mesh) {
-      return worse(meshToShape(mesh, *shape, voxel), shapeToMesh(mesh, points, voxel));
+      return worse(meshToShape(mesh, *shape, voxel), pointsToMesh(mesh, points, voxel));
     };
     const Spread truth[2] = {measure(theirs), measure(ours)};
     std::cout << both(truth[0].largest, truth[1].largest) << " | "
@@ -218,14 +261,15 @@ std::string printVolume(const std::string& volume, double millions) {
   if (!grid) return "";
   const std::string name = path.stem().string();
   // The fields of the others are not distances.
-  std::optional<Shape> shape = shapeByName(name);
-  if (shape == Shape::Gyroid || shape == Shape::Terrain) shape.reset();
+  const std::optional<Shape> named = shapeByName(name);
+  const bool isDistance = named && *named != Shape::Gyroid && *named != Shape::Terrain;
+  const Shape* const shape = isDistance ? &*named : nullptr;
   const OwnChain own = ownChain(*grid);
   const Chain usual = usualChain(*grid, own);
   std::vector<Position> points;
   if (shape) points = pointsOn(*grid, *shape, grid->voxelSize()[0]);
   for (std::size_t i = 0; i < own.levels.size(); ++i) {
-    printLevel(name, *grid, shape, points, usual.levels[i], own.levels[i]);
+    printLevel(name, *grid, shape, points, usual, own, i);
   }
   return "| " + name + " | " + number(static_cast<double>(grid->activeVoxelCount()) * 1e-6) +
          " | " + std::to_string(own.levels.size()) + " | " + both(usual.seconds, own.seconds) +
@@ -233,10 +277,12 @@ std::string printVolume(const std::string& volume, double millions) {
 }
 
 void run(const std::vector<std::string>& volumes, double millions) {
-  std::cout << "Each cell: the usual way / Tufa, and how many times the former the latter is.\n\n"
-               "| volume | triangles | largest | rms | largest, true surface | rms, true surface "
-               "| smallest angle | non-manifold edges | pairs |\n"
-               "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  std::cout
+      << "Each cell: the usual way / Tufa, and how many times the former the latter is.\n\n"
+         "| volume | triangles | largest | rms | largest, own uniform mesh | rms, own uniform "
+         "mesh | largest, true surface | rms, true surface | smallest angle | non-manifold "
+         "edges | pairs |\n"
+         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
   std::string times;
   for (const std::string& volume : volumes) times += printVolume(volume, millions);
   std::cout << "\n| volume | active voxels, millions | levels | CPU seconds of the chain | Tufa's "

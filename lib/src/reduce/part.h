@@ -280,7 +280,8 @@ class Part {
   Outcome tryFlip(Index corner);
   bool flipStars(const Index* v, const Vec3f* n);
   [[nodiscard]] Link linkAfterFlip(const Index* v, int k) const;
-  bool flipDistance(const Index* v);
+  bool flipDistance(const Index* v, bool isNeedle);
+  bool flippedEdgeNear(Index from, Index to);
   bool flipIntersects(const Index* v);
   [[nodiscard]] bool flipKeepsSide(const Index* v) const;
   bool flipPassesOver(const Index* v);

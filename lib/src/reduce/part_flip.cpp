@@ -14,6 +14,7 @@ constexpr float kBetter = 1.2f;      // by this factor the squared sine must gro
 constexpr float kFlipTurnCosine = 0.9f;
 constexpr float kFlipFoldCosine = -0.5f;
 constexpr float kLeastFlipLength = 1e-6f;
+constexpr float kNeedleSine2 = 1e-4f;  // of 0.6 degrees: worth a second walk
 
 }  // namespace
 
@@ -64,7 +65,7 @@ Outcome Part::tryFlip(Index c) {
   for (const Index i : v) stamp_[i] = now_;
   if (!flipStars(v, n)) return Outcome::Star;
   n_ = unit(n[0] + n[1]);
-  if (!flipDistance(v)) return Outcome::Crossing;
+  if (!flipDistance(v, before < kNeedleSine2)) return Outcome::Crossing;
   if (flipIntersects(v)) return Outcome::Intersection;
   if (isOn(Outcome::Side) && (!flipKeepsSide(v) || flipPassesOver(v))) return Outcome::Side;
   applyFlip(v);
@@ -129,11 +130,10 @@ Part::Link Part::linkAfterFlip(const Index* v, int k) const {
   return link;
 }
 
-bool Part::flipDistance(const Index* v) {
+bool Part::flipDistance(const Index* v, bool isNeedle) {
   const Vec3f y = position_[v[0]], u = position_[v[1]], w = position_[v[2]], x = position_[v[3]];
   const Index t0 = flip_[0] / 3, t1 = flip_[1] / 3;
   taken_.clear();
-  roughFaces_.clear();
   const std::array<Index, 2> both{t0, t1};
   if (reference_->isScaled() && !scaleTolerance(both, v[0])) return false;
   for (const Index t : both) {
@@ -145,11 +145,19 @@ bool Part::flipDistance(const Index* v) {
       taken_.push_back({s, d0 <= d1 ? t0 : t1});
     }
   }
-  if (face_[v[0]] == kNone) return false;
-  const Index start = reference_->locate(face_[v[0]], y, n_);
-  if (start == kNone) return false;
-  if (isOn(Outcome::Crossing) && !edgeNear(start, {y, x - y, n_, false}, v[3])) return false;
+  // Where vertices crowd on a crease a walk can end among faces without area. Another one goes the
+  // other way, for the sake of needles only.
+  if (!flippedEdgeNear(v[0], v[3]) && !(isNeedle && flippedEdgeNear(v[3], v[0]))) return false;
   return !isOn(Outcome::Face) || facesNear();
+}
+
+bool Part::flippedEdgeNear(Index from, Index to) {
+  roughFaces_.clear();
+  if (face_[from] == kNone) return false;
+  const Vec3f start = position_[from];
+  const Index face = reference_->locate(face_[from], start, n_);
+  if (face == kNone) return false;
+  return !isOn(Outcome::Crossing) || edgeNear(face, {start, position_[to] - start, n_, false}, to);
 }
 
 bool Part::flipIntersects(const Index* v) {

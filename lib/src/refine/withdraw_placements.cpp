@@ -104,20 +104,29 @@ class PlacementGuard {
       std::vector<Move> moves;
       for (std::size_t c = begin; c < end; ++c) {
         moves.clear();
-        const Involved involved = finder_.involvedIn(conflicts[c]);
-        for (int i = 0; i < involved.count; ++i) {
-          const VertexIndex vertex = involved.vertices[i];
-          const std::size_t slot = slotOf(vertices, vertex);
-          placementMoves_.add(vertex, points.plain[slot], points.mass[slot], moves);
-          if (conflicts[c].kind == Conflict::Kind::Fold) {
-            placementMoves_.addSlidesOnSheet(vertex, moves);
-            placementMoves_.addMovesInCell(vertex, points.mass[slot], moves);
-          }
-        }
+        addMoves(conflicts[c], vertices, points, moves);
         settling[c] = moveSettling(conflicts[c], moves);
       }
     });
     return settling;
+  }
+
+  // The moves of a conflict's vertices; of a fold between such as have all come to their mass
+  // points those inside their cells, too.
+  void addMoves(const Conflict& conflict, const std::vector<VertexIndex>& vertices,
+                const uniform::FallbackPoints& points, std::vector<Move>& moves) const {
+    const Involved involved = finder_.involvedIn(conflict);
+    const auto end = involved.vertices.begin() + involved.count;
+    const bool isFold = conflict.kind == Conflict::Kind::Fold;
+    const bool isStuck = isFold && std::all_of(involved.vertices.begin(), end, [&](VertexIndex v) {
+                           return placementMoves_.wasAtMassPoint(v);
+                         });
+    std::for_each(involved.vertices.begin(), end, [&](VertexIndex vertex) {
+      const std::size_t slot = slotOf(vertices, vertex);
+      placementMoves_.add(vertex, points.plain[slot], points.mass[slot], moves);
+      if (isFold) placementMoves_.addSlidesOnSheet(vertex, moves);
+      if (isStuck) placementMoves_.addMovesInCell(vertex, points.mass[slot], moves);
+    });
   }
 
   // The vertices of all conflicts, rising. Marked as they are found: where a surface touches itself
