@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "support/expect_error.h"
+#include "support/mesh_oracle.h"
 #include "support/uniform_mesh.h"
 
 namespace tufa {
@@ -217,6 +218,21 @@ TEST_P(SampleVolume, GivesAManifold) {
   EXPECT_EQ(found.closed, report.openEdges == 0);
   EXPECT_EQ(found.duplicateFaces + found.collapsedFaces + found.invalidFaces, 0U);
   EXPECT_GT(found.volume, 0);
+}
+
+// Near the low end of its values the surface passes close to many samples, where vertices crowd.
+TEST(SampleSmoke, HasNoFolds) {
+  const std::filesystem::path path = kFolder / "openvdb_smoke.vdb";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no file " << path;
+  const auto grid = readGrid(path);
+  ContourOptions options;
+  for (const double isovalue : {0.01, 0.1, 1.0}) {
+    options.isovalue = isovalue;
+    options.uniform = true;
+    EXPECT_EQ(test::foldedEdges(contour(*grid, options), grid->voxelSize()[0]), 0U) << isovalue;
+  }
+  options.uniform = false;
+  EXPECT_EQ(test::foldedEdges(contour(*grid, options), grid->voxelSize()[0]), 0U);
 }
 
 class SampleOfOthers : public Sample {};

@@ -1,12 +1,12 @@
 #include "refine/adapt.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <functional>
+#include <numeric>
 #include <utility>
 
 #include "base/huge_pages.h"
-#include "base/parallel_sort.h"
 #include "base/polygons.h"
 #include "base/small_angles.h"
 #include "intersect/cut_candidates.h"
@@ -32,28 +32,35 @@ std::vector<VertexIndex> baseVerticesOf(const octree::Cut& cut) {
   return vertices;
 }
 
-// Vertices - edges + faces. Edges are told apart by sorting, as the mesh may be open.
+// Vertices - edges + faces. Edges are told apart at their lower ends, as the mesh may be open.
 std::int64_t eulerCharacteristic(const Mesh& mesh, base::Job& job) {
-  struct Edge {
-    VertexIndex low, high;
-    base::PolygonIndex polygon;  // so that no two are equal
-    auto operator<=>(const Edge&) const = default;
+  const std::size_t vertices = mesh.positions.size();
+  const auto forEdges = [&](const auto& body) {
+    base::forPolygons(mesh, [&](base::PolygonIndex polygon, base::Corners v) {
+      job.pollCancelled(polygon);
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        const VertexIndex a = v[i], b = v[i + 1 == v.size() ? 0 : i + 1];
+        body(std::min(a, b), std::max(a, b));
+      }
+    });
   };
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size() + 4 * mesh.quads.size());
-  base::forPolygons(mesh, [&](base::PolygonIndex polygon, base::Corners v) {
-    job.pollCancelled(polygon);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      const VertexIndex a = v[i], b = v[(i + 1) % v.size()];
-      edges.push_back({std::min(a, b), std::max(a, b), polygon});
+  std::vector<std::size_t> end(vertices + 1, 0);  // of the upper ends of each vertex's edges
+  forEdges([&](VertexIndex low, VertexIndex) { ++end[low + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<VertexIndex> upper(end.back());
+  forEdges([&](VertexIndex low, VertexIndex high) { upper[end[low]++] = high; });
+  std::atomic<std::int64_t> edges{0};
+  job.forRanges(vertices, base::kGrain, [&](std::size_t first, std::size_t last) {
+    std::int64_t distinct = 0;
+    for (std::size_t v = first; v < last; ++v) {
+      const auto begin = upper.begin() + static_cast<std::ptrdiff_t>(v == 0 ? 0 : end[v - 1]);
+      const auto stop = upper.begin() + static_cast<std::ptrdiff_t>(end[v]);
+      std::sort(begin, stop);
+      distinct += std::unique(begin, stop) - begin;
     }
+    edges += distinct;
   });
-  base::parallelSort(edges.begin(), edges.end(), std::less<>());
-  const auto isSame = [](const Edge& a, const Edge& b) {
-    return a.low == b.low && a.high == b.high;
-  };
-  const auto distinct = std::unique(edges.begin(), edges.end(), isSame) - edges.begin();
-  return static_cast<std::int64_t>(mesh.positions.size()) - distinct +
+  return static_cast<std::int64_t>(vertices) - edges +
          static_cast<std::int64_t>(mesh.triangles.size() + mesh.quads.size());
 }
 
