@@ -63,6 +63,7 @@ struct PhaseLimits {
   bool flips = true;
   int mostValence = 12;  ///< of a new star, unless it was higher: no fans of more needles
   LineMode lines = LineMode::Free;
+  bool asksFaces = false;  ///< measures faces where sections lead elsewhere, see distanceGuard()
   bool isLoose = false;    ///< edges need not end where their vertices are, see Part::edgeNear()
   bool allPlaces = false;  ///< tries the ends of an edge also where the best place is too far
   Index quota = kNone;     ///< most collapses of a part

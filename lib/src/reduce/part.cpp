@@ -119,7 +119,7 @@ void Part::loadSamples(const Surface& surface) {
     const Index r = sampleIds_[s], t = owners_[s];
     if (t == kNone) continue;
     samples_[s] = {reference_->positions()[r], firstSample_[t]};
-    isRough_[s] = reference_->isRough(r);
+    isRough_[s] = reference_->isRough(r) ? kRough : 0;
     hasRough_ |= isRough_[s] != 0;
     ++loaded, bent += reference_->isBent(r) ? 1 : 0;
     firstSample_[t] = s;
@@ -185,6 +185,10 @@ void Part::giveSamples() {
     samples_[taken.sample].next = first;
     owners_[taken.sample] = taken.triangle;
     first = taken.sample;
+    if (!asksWays_) continue;
+    isRough_[taken.sample] = kWays;
+    hasRough_ = true;
+    withWays_.push_back(sampleIds_[taken.sample]);
   }
 }
 

@@ -51,6 +51,9 @@ class Part {
   void clearCounts() { counts_ = {}; }
   /// Changes of LineVertex::change in all parts so far: vertices of the surface and planes.
   [[nodiscard]] std::vector<std::array<Index, 2>>& changes() { return changes_; }
+  /// Vertices of the reference at which ways are required from now on, of all parts since the list
+  /// was last cleared.
+  [[nodiscard]] std::vector<Index>& withWays() { return withWays_; }
   /// Triangles that have changed for the first time, as they were, in all parts so far.
   [[nodiscard]] std::vector<Form>& forms() { return newForms_; }
 
@@ -262,6 +265,10 @@ class Part {
   void noteFacesBetween(Index face, Index vertex);
   [[nodiscard]] bool isBelow(Index face, Index vertex, Vec3f axis) const;
   bool facesNear();
+  bool allFacesNear();
+  void clearTaken();
+  [[nodiscard]] Index localSample(Index referenceVertex) const;
+  [[nodiscard]] bool requiresWays(Index face) const;
   [[nodiscard]] bool faceNear(Index face) const;
   [[nodiscard]] Index ownerAfter(Index referenceVertex) const;
 
@@ -319,7 +326,9 @@ class Part {
   std::vector<Sample> samples_;
   std::vector<Index> owners_;
   std::vector<Taker> takers_;  ///< empty until one is asked for
-  std::vector<std::uint8_t> isRough_;
+  static constexpr std::uint8_t kRough = 1, kWays = 2;
+  std::vector<std::uint8_t> isRough_;  ///< kRough, or kWays where ways are required from now on
+  std::vector<Index> withWays_;
   bool hasRough_ = false;  ///< any of the samples
   bool isBent_ = false;    ///< three quarters of them, see VertexFlag
   std::span<const Index> sampleIds_;
@@ -373,6 +382,8 @@ class Part {
   LocalQuadric sum_;
   std::vector<Taken> taken_;
   std::vector<Index> roughFaces_;  ///< of the reference, to be tested
+  bool asksWays_ = false;          ///< of all faces at taken samples
+  Index walkedTo_ = kNone;         ///< the face at which the last walk along an edge ended
   NewAxis newAxis_[kMostRing];
   int newAxes_ = 0;
   Index apexFace_ = kNone;

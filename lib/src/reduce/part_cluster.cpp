@@ -271,8 +271,7 @@ Outcome Part::clusterShapeGuard() {
 
 // As distanceGuard().
 Outcome Part::clusterDistanceGuard(Index nearest) {
-  taken_.clear();
-  roughFaces_.clear();
+  clearTaken();
   if (reference_->isScaled()) {
     std::vector<Index> triangles = vanishing_;
     for (int i = 0; i < size_; ++i) triangles.push_back(at_[i] / 3);

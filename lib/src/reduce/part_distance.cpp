@@ -8,7 +8,8 @@
 // crossing edges at one point of each, any: at the nearest points. An operation changes the overlay
 // within its star only, and exactly these three kinds of points are tested there. Where the
 // reference is rough, what is seen along one axis may not be all of it: there faces are tested as
-// the certificate does.
+// the certificate does. Around what is smaller than the tolerance a section of the reference may
+// lead elsewhere than the edge: then all faces around are tested so.
 //
 // Vertices that were too far before go first, then the edges, which are fewer than the vertices
 // below a large star, then all vertices. Cost: 10 to 20 ns a reference vertex and 10 to 60 ns a
@@ -25,19 +26,27 @@
 namespace tufa::reduce {
 
 Outcome Part::distanceGuard(Index a, Index b) {
-  taken_.clear();
-  roughFaces_.clear();
+  clearTaken();
   if (reference_->isScaled() && !scaleStarTolerance(a)) return Outcome::Sample;
   if (!farSamplesNear()) return Outcome::Sample;
   if (!apexNear(a, b)) return Outcome::Apex;
-  if (isOn(Outcome::Crossing) && !crossingsNear()) return Outcome::Crossing;
+  asksWays_ = isOn(Outcome::Crossing) && !crossingsNear();
+  if (asksWays_ && !limits_.asksFaces) return Outcome::Crossing;
   bool isNear = true;
   for (int i = 0; i < size_ && isNear; ++i) isNear = samplesNear(at_[i] / 3, i);
   if (!isNear || !samplesNear(left_ / 3, 0) || !samplesNear(right_ / 3, split_)) {
     return Outcome::Sample;
   }
+  if (asksWays_) return allFacesNear() ? Outcome::Done : Outcome::Crossing;
   if (isOn(Outcome::Face) && !facesNear()) return Outcome::Face;
   return Outcome::Done;
+}
+
+// Before another operation is tried.
+void Part::clearTaken() {
+  taken_.clear();
+  roughFaces_.clear();
+  asksWays_ = false;
 }
 
 // Sets the tolerance of the attempt to the least one at the samples of some triangles and at the
@@ -230,9 +239,9 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
   const float close2 = std::min(kArrived * kArrived, 4 * squaredDistance_);
   const bool isFlip = flip_[0] != kNone;  // of an edge that is nearly flat
   bool hasArrived = false, isFar = false;
-  Index last = face;
+  walkedTo_ = face;
   const auto isNear = [&](Index crossed, Vec3f m, Vec3f right, Vec3f left) {
-    last = crossed;
+    walkedTo_ = crossed;
     const bool isLooked = isFlip ? reference_->isHeld(crossed) : reference_->isRoughFace(crossed);
     if (isLooked) roughFaces_.push_back(crossed);
     const float share = std::clamp(dot(m, z) * scale, 0.0f, 1.0f);
@@ -245,13 +254,13 @@ bool Part::edgeNear(Index face, const ReferenceMesh::Section& section, Index end
   const ReferenceMesh::Arrival arrival = reference_->follow(face, section, isNear);
   if (!arrival) {
     if (!hasArrived && (isFar || !limits_.isLoose)) return false;
-    if (!limits_.isLoose) noteFacesBetween(last, end);
+    if (!limits_.isLoose) noteFacesBetween(walkedTo_, end);
   } else if (!limits_.isLoose && squaredLength(arrival.at - z) > squaredDistance_ &&
              reference_->distance(arrival.face, section.start + z) > distance_) {
     return false;
   }
   const bool mayStray = (flags_[end] & kNarrow) != 0 || limits_.distance > kFarTolerance;
-  return !mayStray || limits_.isLoose || isBelow(last, end, section.axis);
+  return !mayStray || limits_.isLoose || isBelow(walkedTo_, end, section.axis);
 }
 
 // Where a walk has ended near a vertex but not at it: the faces that it did not pass.
@@ -265,6 +274,23 @@ void Part::noteFacesBetween(Index face, Index vertex) {
       });
     }
   }
+}
+
+// Whether all faces of the reference at samples that change their owner have ways, those first at
+// which the last section was lost: hardly any operation that fails gets farther.
+bool Part::allFacesNear() {
+  constexpr std::size_t kMost = 8192;  // samples; more would take milliseconds
+  if (taken_.size() > kMost) return false;
+  const auto ask = [&](Index v) {
+    reference_->allAround(v, [&](Index f) {
+      roughFaces_.push_back(f);
+      return true;
+    });
+  };
+  for (const Index v : reference_->vertices(walkedTo_)) ask(v);
+  if (!facesNear()) return false;
+  for (const Taken& t : taken_) ask(sampleIds_[t.sample]);
+  return facesNear();
 }
 
 // Whether a vertex is over the sheet of the reference that a face is on: a way along an edge may
@@ -338,10 +364,25 @@ struct Part::Changed {
 // The triangle that would own a reference vertex, or kNone if it is none of this part. Owners in
 // the surface may not be read here: other parts write theirs.
 Index Part::ownerAfter(Index r) const {
-  const Index local = surface_->isWhole ? partition_->localVertex(r) : partition_->localSample(r);
-  if (local >= sampleIds_.size() || sampleIds_[local] != r) return kNone;
+  const Index local = localSample(r);
+  if (local == kNone) return kNone;
   const Taker& taker = takers_[local];
   return taker.stamp == now_ ? taker.triangle : owners_[local];
+}
+
+// The number of a reference vertex in this part, or kNone.
+Index Part::localSample(Index r) const {
+  const Index local = surface_->isWhole ? partition_->localVertex(r) : partition_->localSample(r);
+  return local < sampleIds_.size() && sampleIds_[local] == r ? local : kNone;
+}
+
+// Whether nothing less than ways is a bound at a face.
+bool Part::requiresWays(Index face) const {
+  const auto v = reference_->vertices(face);
+  return std::any_of(v.begin(), v.end(), [&](Index r) {
+    const Index local = localSample(r);
+    return reference_->requiresWays(r) || (local != kNone && isRough_[local] == kWays);
+  });
 }
 
 // Faces of the reference at rough vertices that change their owner, and held ones below an edge
@@ -376,8 +417,9 @@ bool Part::faceNear(Index face) const {
   }
   if (owned.hasOneOwner()) return true;
   owned.corners = reference_->cornersOf(face);
-  return overlayBound2(mesh, owned, squaredDistance_) <= squaredDistance_ ||
-         (!reference_->isHeld(face) && wholeFace2(mesh, owned) <= squaredDistance_);
+  if (overlayBound2(mesh, owned, squaredDistance_) <= squaredDistance_) return true;
+  return !asksWays_ && !reference_->isHeld(face) && !requiresWays(face) &&
+         wholeFace2(mesh, owned) <= squaredDistance_;
 }
 
 }  // namespace tufa::reduce

@@ -133,7 +133,7 @@ Part::Link Part::linkAfterFlip(const Index* v, int k) const {
 bool Part::flipDistance(const Index* v, bool isNeedle) {
   const Vec3f y = position_[v[0]], u = position_[v[1]], w = position_[v[2]], x = position_[v[3]];
   const Index t0 = flip_[0] / 3, t1 = flip_[1] / 3;
-  taken_.clear();
+  clearTaken();
   const std::array<Index, 2> both{t0, t1};
   if (reference_->isScaled() && !scaleTolerance(both, v[0])) return false;
   for (const Index t : both) {

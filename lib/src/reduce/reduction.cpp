@@ -37,6 +37,9 @@ constexpr int kClusterPhases = 3;
 // samples.
 constexpr float kFewInner = 0.6f;
 constexpr Index kFewerParts = 2;
+// Voxels from which on faces are measured where sections lead elsewhere. Below, few are so that
+// could be, and to measure them takes a quarter more time.
+constexpr float kAsksFaces = 0.3f;
 // Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
 constexpr int kMostPhases = 24;
 // Where lines alone are reduced, triangles beside them get longer and thinner than they will be.
@@ -291,6 +294,7 @@ void Reduction::reduce(float tolerance, Index count, int phases) {
   for (int i = 0, left = phases; left > 0 && triangleCount() > count; ++i, --left) {
     const bool isLast = left == 1 && phases == kPhases;
     limits.distance = tolerance * kMargin * (i == 0 ? kFirstShare : 1);
+    limits.asksFaces = limits.distance >= kAsksFaces;
     limits.errorShare = isLast ? kLargeErrorShare : kErrorShare;
     limits.allPlaces = isLast;
     limits.clusters = options_.clusters && isFirst && lines_ == LineMode::Free &&
@@ -347,6 +351,8 @@ void Reduction::returnPart(std::unique_ptr<Part> part) {
   part->clearCounts();
   lastChanges_.insert(lastChanges_.end(), part->changes().begin(), part->changes().end());
   part->changes().clear();
+  lastWithWays_.insert(lastWithWays_.end(), part->withWays().begin(), part->withWays().end());
+  part->withWays().clear();
   lastForms_.insert(lastForms_.end(), part->forms().begin(), part->forms().end());
   part->forms().clear();
   lastStored_.push_back(std::move(part->stored()));
@@ -377,6 +383,8 @@ void Reduction::runPhase(const PhaseLimits& limits, Index count) {
     returnPart(std::move(part));
   });
   counts_ += lastCounts_;
+  reference_.requireWays(lastWithWays_);
+  lastWithWays_.clear();
   for (const auto& [vertex, plane] : lastChanges_) surface_.lineStep[vertex].addChange(plane);
   lastChanges_.clear();
   surface_.oldForms.insert(surface_.oldForms.end(), lastForms_.begin(), lastForms_.end());

@@ -206,6 +206,7 @@ class Reduction {
   std::vector<std::unique_ptr<Part>> parts_;  ///< as many as threads have been at work
   OperationCounts counts_, lastCounts_;
   std::vector<std::array<Index, 2>> lastChanges_;  ///< see Part::changes()
+  std::vector<Index> lastWithWays_;                ///< see Part::withWays()
   std::vector<Form> lastForms_;                    ///< see Part::forms()
   std::vector<SurfaceChanges> lastStored_;         ///< see Part::stored()
   Certificate certificate_;                        ///< of the distance to the present reference

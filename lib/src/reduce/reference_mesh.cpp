@@ -68,7 +68,7 @@ void ReferenceMesh::hold(std::span<const Index> faces, float radius, float share
 }
 
 void ReferenceMesh::releaseAll() {
-  for (std::uint8_t& marks : marks_) marks &= kRough | kIsBent;
+  for (std::uint8_t& marks : marks_) marks &= kRough | kIsBent | kWays;
   heldShare_ = 1;
 }
 

@@ -59,10 +59,16 @@ class ReferenceMesh {
     return ((marks_[v[0]] | marks_[v[1]] | marks_[v[2]]) & kAnyRough) != 0;
   }
   /// Whether a face at the vertex turns by more than 49 degrees from their common axis, so that
-  /// what is seen along one axis may not be all.
+  /// what is seen along one axis may not be all; or whether ways are required there.
   [[nodiscard]] bool isRough(Index vertex) const { return (marks_[vertex] & kAnyRough) != 0; }
   /// Whether the surface bends both ways at the vertex, see VertexFlag.
   [[nodiscard]] bool isBent(Index vertex) const { return (marks_[vertex] & kIsBent) != 0; }
+  /// From now on faces at these vertices are to have ways to the surface, as the certificate asks
+  /// for them: where sections lead elsewhere, nothing less is a bound. The vertices are rough then.
+  void requireWays(std::span<const Index> vertices) {
+    for (const Index v : vertices) marks_[v] |= kWays;
+  }
+  [[nodiscard]] bool requiresWays(Index vertex) const { return (marks_[vertex] & kWays) != 0; }
   [[nodiscard]] const Vec3f& corner(Index face, std::size_t i) const {
     return positions_[faces_.vertex(face, i)];
   }
@@ -226,14 +232,14 @@ class ReferenceMesh {
 
   static constexpr float kBeside = 1e-4f;  ///< voxels from a section, for an edge along it
   static constexpr int kMostSteps = 2000;
-  static constexpr std::uint8_t kRough = 1, kHeld = 2, kFrozen = 4, kIsBent = 8;
-  static constexpr std::uint8_t kAnyRough = kRough | kHeld | kFrozen;
+  static constexpr std::uint8_t kRough = 1, kHeld = 2, kFrozen = 4, kIsBent = 8, kWays = 16;
+  static constexpr std::uint8_t kAnyRough = kRough | kHeld | kFrozen | kWays;
 
   base::SharedArray<Vec3f> positions_;
   base::TriangleArray faces_;
   std::vector<Index> opposite_;  ///< of each corner, or of four of a quad's, see opposite()
   std::vector<Index> cornerOf_;
-  std::vector<std::uint8_t> marks_;  ///< of kRough, kHeld, kFrozen and kIsBent
+  std::vector<std::uint8_t> marks_;  ///< of these
   std::vector<float> scales_;
   float heldShare_ = 1;
 };
