@@ -277,10 +277,11 @@ void Part::noteFacesBetween(Index face, Index vertex) {
 }
 
 // Whether all faces of the reference at samples that change their owner have ways, those first at
-// which the last section was lost: hardly any operation that fails gets farther.
+// which the last section was lost: hardly any operation that fails gets farther. On a wedge it
+// would be chance whether an edge becomes a fold, so there sections have the last word.
 bool Part::allFacesNear() {
   constexpr std::size_t kMost = 8192;  // samples; more would take milliseconds
-  if (taken_.size() > kMost) return false;
+  if (taken_.size() > kMost || sharpestAfter().least() < kFoldCosine) return false;
   const auto ask = [&](Index v) {
     reference_->allAround(v, [&](Index f) {
       roughFaces_.push_back(f);
