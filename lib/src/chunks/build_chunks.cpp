@@ -239,7 +239,7 @@ class ChunkBuilder {
       grid::load(volume, job_);
       return chunks::cutVolume(std::move(volume), cutting, kEnds, report_, job_);
     }
-    // How many vertices lie along planes is another number in each slab.
+    // Flat faces are moved by how many vertices lie along a plane, which slabs see in part only.
     chunks::CutOptions inSlabs = cutting;
     inSlabs.flatDistance = 0;
     return chunks::reduceSlabs(volume, std::move(slabs), rule, inSlabs,

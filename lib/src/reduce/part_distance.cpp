@@ -277,8 +277,9 @@ void Part::noteFacesBetween(Index face, Index vertex) {
 }
 
 // Whether all faces of the reference at samples that change their owner have ways, those first at
-// which the last section was lost: hardly any operation that fails gets farther. On a wedge it
-// would be chance whether an edge becomes a fold, so there sections have the last word.
+// which the last section was lost: most operations that fail, fail there. Not on a wedge, whose
+// edges the fold guard lets be as sharp as they were: with the coarser steps allowed here, some
+// would become folds.
 bool Part::allFacesNear() {
   constexpr std::size_t kMost = 8192;  // samples; more would take milliseconds
   if (taken_.size() > kMost || sharpestAfter().least() < kFoldCosine) return false;

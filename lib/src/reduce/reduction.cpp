@@ -37,8 +37,8 @@ constexpr int kClusterPhases = 3;
 // samples.
 constexpr float kFewInner = 0.6f;
 constexpr Index kFewerParts = 2;
-// Voxels from which on faces are measured where sections lead elsewhere. Below, few are so that
-// could be, and to measure them takes a quarter more time.
+// Voxels from which on faces are measured where sections lead elsewhere. Below, that allows hardly
+// any more collapses, and takes a quarter more time.
 constexpr float kAsksFaces = 0.3f;
 // Where quotas were elsewhere than edges to collapse there may be more phases than asked for.
 constexpr int kMostPhases = 24;
